@@ -1,0 +1,48 @@
+"""adc_stuck_bit: one bit of the converter's offset binary code never changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from twin.angles import Array
+from twin.effect import Effect, Param, Parameters
+from twin.motion import Motion
+
+BITS = 14
+"""Word length that the bit's number is counted in (the paper's converter)."""
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    # The bit below the sign has weight ``step``; mid-scale is a multiple of two steps for all but the highest two
+    # bits, so the bit's value depends on the signal and the step alone, not on full scale.
+    step = 0.01 * np.abs(np.asarray(values["step_percent"], dtype=np.float64))
+    safe = np.where(step > 0.0, step, 1.0)
+    bit = np.floor(signal / safe) % 2.0
+    stuck = np.asarray(values.get("level", 0.0))
+    return signal + np.where(step > 0.0, step * (stuck - bit), 0.0)
+
+
+def derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
+    """The bit's number in a 14-bit code whose full scale lies between 1 and 2 amplitudes."""
+    step = 0.01 * float(np.ravel(values["step_percent"])[0])
+    return {"bit": (float(np.floor(np.log2(step * 2.0 ** (BITS - 1)))) if step > 0 else 0.0, "bit")}
+
+
+ADC_STUCK_BIT = Effect(
+    name="adc_stuck_bit",
+    stage="adc",
+    acts_on="channels",
+    params={
+        "step_percent": Param(
+            unit="%", null=0.0, lower=0.0, upper=30.0, doc="weight of the bit", role="level"
+        ),
+        "level": Param(unit="1", null=0.0, lower=0.0, upper=1.0, doc="stuck at", role="shape", counts=True),
+    },
+    forward=forward,
+    needs=frozenset({"one turn"}),
+    derived=derived,
+    source="offset binary code with one bit held; its mean goes into the offset",
+    signature="0 or one step per channel: a square pattern in code",
+)

@@ -1,0 +1,43 @@
+"""clipping: a channel cannot exceed the converter's range."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from twin.angles import Array
+from twin.effect import Effect, Param, Parameters
+from twin.motion import Motion
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    level = 0.01 * np.asarray(values["level_percent"])
+    return np.clip(signal, -level, level)
+
+
+def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    return [{"level_percent": float(level)} for level in np.linspace(84.0, 116.0, 81)]
+
+
+CLIPPING = Effect(
+    name="clipping",
+    stage="adc",
+    acts_on="channels",
+    params={
+        "level_percent": Param(
+            unit="%",
+            null=1000.0,
+            lower=30.0,
+            upper=1000.0,
+            doc="the limit, in amplitudes of x",
+            role="level",
+            typical=2.0,
+        )
+    },
+    forward=forward,
+    needs=frozenset({"one turn"}),
+    shapes=shapes,
+    source="definition: full scale of the converter below the signal's amplitude",
+    signature="four narrow spots, at the axes",
+)

@@ -1,0 +1,59 @@
+"""reference_ripple: the converter's reference carries a ripple, and x and y are converted one after the other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from twin.angles import TAU, Array, channels_of
+from twin.effect import BoolArray, Effect, Line, Param, Parameters
+from twin.motion import Motion
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    frequency = np.asarray(values["frequency_Hz"])
+    elapsed = motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
+    phase = TAU * frequency * elapsed + np.radians(values["phase_deg"])
+    # Without a delay of its own the second conversion comes a sixth of a period later: in an angle only the product
+    # of amplitude and delay is visible, and at a sixth the difference is as large as the ripple itself.
+    delay_us = values.get("delay_us", 0.0)
+    shift = TAU * np.where(np.asarray(delay_us) == 0.0, 1.0 / 6.0, 1e-6 * frequency * np.asarray(delay_us))
+    size = 0.01 * np.asarray(values["amplitude_percent"])
+    gain_x = 1.0 + size * np.cos(phase)
+    gain_y = 1.0 + size * np.cos(phase + shift)
+    return channels_of(signal[..., :1, :] * gain_x, signal[..., 1:, :] * gain_y)
+
+
+def limits(motion: Motion) -> tuple[float, float]:
+    duration = float(np.ptp(motion.time_s)) or 1.0
+    step = np.diff(motion.time_s)
+    fastest = float(np.min(step[step > 0.0], initial=1.0))
+    return 2.0 / duration, 0.5 / fastest
+
+
+def within(frequency_hz: Array) -> BoolArray:
+    """Any frequency (any shape) can be a ripple's."""
+    return np.asarray(frequency_hz > 0.0)
+
+
+REFERENCE_RIPPLE = Effect(
+    name="reference_ripple",
+    stage="adc",
+    acts_on="channels",
+    params={
+        "frequency_Hz": Param(unit="Hz", null=100.0, lower=1e-3, upper=1e7, doc="frequency", role="shape"),
+        "amplitude_percent": Param(
+            unit="%", null=0.0, lower=0.0, upper=50.0, doc="of the reference", typical=0.3
+        ),
+        "delay_us": Param(
+            unit="us", null=0.0, lower=0.0, upper=1e6, doc="from x to y; 0: a sixth of a period", role="shape"
+        ),
+        "phase_deg": Param(
+            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"
+        ),
+    },
+    forward=forward,
+    needs=frozenset({"time_s", "moving shaft"}),
+    line=Line(param="frequency_Hz", clock="time", limits=limits, within=within),
+    source="ratio of the signal to the converter's reference; paper, Eq. 3, for a periodic fluctuation",
+    signature="sin 2a times cos(2 pi f t + psi)",
+)

@@ -1,0 +1,27 @@
+"""Angles on the circle: wrapping, unwrapping and the type of array the project works on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+TAU = 2.0 * np.pi
+
+
+def wrap(angle: Any) -> Array:
+    """Angle [rad], any shape, brought to [-pi, pi)."""
+    return np.asarray((np.asarray(angle) + np.pi) % TAU - np.pi, dtype=np.float64)
+
+
+def wrap_deg(angle: Any) -> Array:
+    """Angle [deg], any shape, brought to [-180, 180)."""
+    return np.asarray((np.asarray(angle) + 180.0) % 360.0 - 180.0, dtype=np.float64)
+
+
+def channels_of(x: Any, y: Any) -> Array:
+    """Two channels, each broadcastable to (..., 1, n), stacked to (..., 2, n)."""
+    x, y = np.broadcast_arrays(x, y)
+    return np.concatenate([x, y], axis=-2)

@@ -1,0 +1,47 @@
+"""Every effect of the twin, in the order in which the signal meets them."""
+
+from __future__ import annotations
+
+from twin import adc, concentrator, cordic, empirical, hall, link, magnet, mechanics, reference
+from twin.effect import Effect
+
+STAGES = ("mechanics", "magnet", "concentrator", "hall", "adc", "cordic", "empirical", "link", "reference")
+_ACTS_ON = ("shaft", "field", "channels", "angle", "reference")
+
+_DECLARED: tuple[Effect, ...] = (
+    *mechanics.EFFECTS,
+    *magnet.EFFECTS,
+    *concentrator.EFFECTS,
+    *hall.EFFECTS,
+    *adc.EFFECTS,
+    *cordic.EFFECTS,
+    *empirical.EFFECTS,
+    *link.EFFECTS,
+    *reference.EFFECTS,
+)
+
+
+def in_order(effects: tuple[Effect, ...]) -> tuple[Effect, ...]:
+    """Effects in chain order: by the signal they act on, then by stage, then as declared."""
+    return tuple(sorted(effects, key=lambda e: (_ACTS_ON.index(e.acts_on), STAGES.index(e.stage))))
+
+
+CATALOGUE: tuple[Effect, ...] = in_order(_DECLARED)
+
+
+def base_name(key: str) -> str:
+    """The effect's name of an instance key: ``drive_ripple#2`` is a second ``drive_ripple``."""
+    return key.split("#", 1)[0]
+
+
+def find(key: str, effects: tuple[Effect, ...] = CATALOGUE) -> Effect:
+    """The effect with this name or instance key.
+
+    Raises KeyError with the known names where there is none.
+    """
+    name = base_name(key)
+    for effect in effects:
+        if effect.name == name:
+            return effect
+    known = ", ".join(sorted(effect.name for effect in effects))
+    raise KeyError(f"no effect named '{name}'; known: {known}")

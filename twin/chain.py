@@ -1,0 +1,179 @@
+"""The chain: effects in physical order, from the shaft to the angle word and to the reference's reading."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from twin.angles import Array, channels_of, wrap
+from twin.catalogue import CATALOGUE, base_name, find
+from twin.effect import ActsOn, Effect, Parameters
+from twin.motion import Motion
+from twin.sweep import Sweep
+
+Values = Mapping[str, Parameters]
+
+
+@dataclass(frozen=True)
+class Step:
+    """One operation of a run: the key and effect (None for a conversion), its parameters, the signals around it."""
+
+    key: str
+    effect: Effect | None
+    values: Parameters
+    before: Array
+    after: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """Effects with their parameters, and who counts which way.
+
+    ``values`` holds the parameters of the effects that are present, by instance key; every other effect is at null
+    and does nothing. ``sensor_sense`` is s of a = s theta + zero, ``output_sense`` is h of m = h atan2(y, x).
+    Immutable: the ``with_`` methods return another chain.
+    """
+
+    values: Values = field(default_factory=dict)
+    sensor_sense: int = 1
+    output_sense: int = 1
+    effects: tuple[Effect, ...] = CATALOGUE
+
+    # ---- changing -------------------------------------------------------------------------------------------------
+
+    def with_effect(self, key: str, **params: Any) -> Chain:
+        """This chain with the effect's parameters set; those not given keep their value, or null.
+
+        Raises KeyError for an unknown effect or parameter, ValueError for one out of range.
+        """
+        effect = find(key, self.effects)
+        for name, value in params.items():
+            if name not in effect.params:
+                raise KeyError(f"{key} has no parameter '{name}'; it has {', '.join(effect.params)}")
+            param = effect.params[name]
+            array = np.asarray(value, dtype=np.float64)
+            if not np.all((array >= param.lower) & (array <= param.upper)):
+                raise ValueError(
+                    f"{key}.{name} must lie between {param.lower:g} and {param.upper:g} {param.unit}; found {value}"
+                )
+        merged = {**effect.null(), **self.values.get(key, {}), **params}
+        return replace(self, values={**self.values, key: merged})
+
+    def with_values(self, values: Values) -> Chain:
+        """This chain with several effects' parameters set, unchecked (a fit's inner loop)."""
+        return replace(self, values={**self.values, **values})
+
+    def without(self, *keys: str) -> Chain:
+        """This chain with these effects back at null."""
+        return replace(self, values={key: params for key, params in self.values.items() if key not in keys})
+
+    # ---- running --------------------------------------------------------------------------------------------------
+
+    def active(self, acts_on: ActsOn) -> Iterator[tuple[str, Effect, Parameters]]:
+        """The effects not at null on this signal, in order: key, effect, complete parameters."""
+        for effect in self.effects:
+            if effect.acts_on != acts_on:
+                continue
+            for key in sorted(k for k in self.values if base_name(k) == effect.name):
+                values = {**effect.null(), **self.values[key]}
+                if not effect.is_null(values):
+                    yield key, effect, {name: _aligned(value, effect, name) for name, value in values.items()}
+
+    def steps(self, motion: Motion, rng: np.random.Generator | None = None) -> Iterator[Step]:
+        """Run the sensor's side of the chain and yield every operation with the signals around it.
+
+        The signals have the shapes of :data:`twin.effect.ActsOn`; the last one is the measured angle ``(..., 1, n)``.
+        """
+        signal: Array = np.broadcast_to(motion.shaft_rad, (2, len(motion)))
+        sense: Parameters = {"sensor_sense": self.sensor_sense, "output_sense": self.output_sense}
+        for acts_on in ("shaft", "field", "channels", "angle"):
+            for key, effect, values in self.active(acts_on):  # type: ignore[arg-type]
+                after = effect.forward(signal, motion, values, rng)
+                yield Step(key, effect, values, signal, after)
+                signal = after
+            if acts_on == "shaft":
+                after = self.sensor_sense * signal
+            elif acts_on == "field":
+                after = channels_of(np.cos(signal[..., :1, :]), np.sin(signal[..., 1:, :]))
+            elif acts_on == "channels":
+                after = np.arctan2(signal[..., 1:, :], signal[..., :1, :])
+            else:
+                after = self.output_sense * signal
+            yield Step(f"after {acts_on}", None, sense, signal, after)
+            signal = after
+
+    def readings(self, motion: Motion, values: Values | None = None) -> Array:
+        """Expected reading [rad], ``(n,)``, or ``(batch, n)`` where parameters are arrays of shape ``(batch,)``."""
+        chain = self if values is None else self.with_values(values)
+        last = None
+        for last in chain.steps(motion):
+            pass
+        assert last is not None
+        return last.after[..., 0, :]
+
+    def channels(self, motion: Motion, rng: np.random.Generator | None = None) -> Array:
+        """The two channels (..., 2, n) as the converter hands them on, nominal amplitude 1."""
+        return next(step.before for step in self.steps(motion, rng) if step.key == "after channels")
+
+    def reference(self, motion: Motion, rng: np.random.Generator | None = None) -> Array:
+        """The reference's reading [rad] (..., n) of the shaft angle."""
+        signal: Array = motion.shaft_rad[None, :]
+        for _, effect, values in self.active("reference"):
+            signal = effect.forward(signal, motion, values, rng)
+        return signal[..., 0, :]
+
+    def shaft(self, recorded: Motion) -> Motion:
+        """The motion whose reference readings are the shaft angles of ``recorded``: the reference's errors undone.
+
+        A fixed point: the errors change over a turn by much less than the angle does.
+        """
+        if not any(True for _ in self.active("reference")):
+            return recorded
+        guess = recorded
+        for _ in range(4):
+            error = self.reference(guess) - guess.shaft_rad
+            guess = replace(recorded, shaft_rad=recorded.shaft_rad - error)
+        return guess
+
+    def trace(self, motion: Motion, *, seed: int | None = None) -> dict[str, Array]:
+        """Every intermediate signal of one run by the name of its operation, and the reference's reading [rad]."""
+        rng = None if seed is None else np.random.default_rng(seed)
+        signals = {"shaft": motion.shaft_rad}
+        signals.update({step.key: step.after for step in self.steps(motion, rng)})
+        signals["reference"] = self.reference(motion, rng)
+        return signals
+
+    def simulate(self, motion: Motion, *, seed: int = 0) -> Sweep:
+        """One sweep as a bench records it: noise, rare events and quantisation included; angles in [0, 360) deg."""
+        rng = np.random.default_rng(seed)
+        channels = measured = None
+        for step in self.steps(motion, rng):
+            if step.key == "after channels":
+                channels = step.before
+            measured = step.after
+        assert channels is not None and measured is not None
+        reference = self.reference(motion, rng)
+        return Sweep.from_motion(
+            motion,
+            reference_deg=np.degrees(reference),
+            measured_deg=np.degrees(measured[0]) % 360.0,
+            channels=channels if "vx" in motion.columns else None,
+        )
+
+    def error(self, motion: Motion) -> Array:
+        """Expected angle error [rad] (..., n): reading minus reference, in the sense that the two count together."""
+        slope = self.sensor_sense * self.output_sense
+        return wrap(self.readings(motion) - slope * self.reference(motion))
+
+
+def _aligned(value: Any, effect: Effect, name: str) -> Any:
+    """A parameter as effects take it: a scalar, or an array (batch, 1, 1); per turn (turns,) or (batch, 1, turns)."""
+    array = np.asarray(value, dtype=np.float64)
+    if array.ndim == 0:
+        return float(array)
+    if effect.params[name].role == "per turn":
+        return array if array.ndim == 1 else array[:, None, :]
+    return array[:, None, None] if array.ndim == 1 else array

@@ -1,0 +1,74 @@
+"""cordic_truncation: the vectoring CORDIC stops after too few iterations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from twin.angles import Array, wrap
+from twin.effect import Effect, Param, Parameters
+from twin.motion import Motion
+
+
+def vectoring(angle: Array, iterations: int) -> Array:
+    """The angle [rad], any shape, as ``iterations`` vectoring steps return it (unbounded word length).
+
+    Shifts 2^0 to 2^-(iterations-1); the half-plane x < 0 is folded by 180 deg first.
+    """
+    x, y = np.cos(angle), np.sin(angle)
+    folded = x < 0.0
+    turned = np.where(folded, np.where(y >= 0.0, np.pi, -np.pi), 0.0)
+    x, y = np.where(folded, -x, x), np.where(folded, -y, y)
+    for k in range(iterations):
+        way = np.where(y >= 0.0, 1.0, -1.0)
+        x, y = x + way * y * 2.0**-k, y - way * x * 2.0**-k
+        turned = turned + way * np.arctan(2.0**-k)
+    return np.asarray(turned)
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    iterations = np.asarray(values["iterations"])
+    if iterations.size == 1:
+        count = int(iterations.ravel()[0])
+        return signal if count == 0 else signal + wrap(vectoring(signal, count) - signal)
+    rows = [vectoring(part, int(count)) for part, count in zip(signal, iterations.ravel(), strict=True)]
+    return np.stack(rows)
+
+
+def attainable(values: Parameters) -> Array:
+    """All angles [rad], sorted in [-pi, pi), that this many iterations can return."""
+    steps = np.arctan(2.0 ** -np.arange(int(values["iterations"]), dtype=np.float64))
+    angles = np.zeros(1)
+    for step in steps:
+        angles = np.concatenate([angles + step, angles - step])
+    return np.sort(np.unique(wrap(np.concatenate([angles, angles + np.pi]))))
+
+
+def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    return [{"iterations": float(count)} for count in range(5, 15)]
+
+
+CORDIC_TRUNCATION = Effect(
+    name="cordic_truncation",
+    stage="cordic",
+    acts_on="angle",
+    params={
+        "iterations": Param(
+            unit="1",
+            null=0,
+            lower=0,
+            upper=40,
+            doc="vectoring iterations; 0: exact",
+            role="level",
+            counts=True,
+        )
+    },
+    forward=forward,
+    footprint="values",
+    attainable=attainable,
+    shapes=shapes,
+    needs=frozenset({"one turn"}),
+    source="J. E. Volder, The CORDIC Trigonometric Computing Technique, IRE Trans. EC-8 (1959); paper, section 2.2.6",
+    signature="the finite set of angles that n iterations can return",
+)

@@ -1,0 +1,21 @@
+"""Structure without a name: shapes that the extended twin carries where no cause of the catalogue explains it.
+
+They act on the computed angle and are declared like any other effect, so they are simulated, fitted and searched for
+by the same code. Their names begin with ``unnamed``.
+"""
+
+from twin.empirical.local import UNNAMED_BUMP
+from twin.empirical.orders import UNNAMED_DIRECTION, UNNAMED_ORDER, UNNAMED_SPEED, UNNAMED_TEMPERATURE
+from twin.empirical.spread import UNNAMED_BURST
+from twin.empirical.time import UNNAMED_DRIFT, UNNAMED_TONE
+
+EFFECTS = (
+    UNNAMED_ORDER,
+    UNNAMED_DIRECTION,
+    UNNAMED_TEMPERATURE,
+    UNNAMED_SPEED,
+    UNNAMED_TONE,
+    UNNAMED_DRIFT,
+    UNNAMED_BUMP,
+    UNNAMED_BURST,
+)

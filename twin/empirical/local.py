@@ -1,0 +1,48 @@
+"""Unnamed structure at one place of the turn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from twin.angles import Array, wrap
+from twin.effect import Effect, Param, Parameters
+from twin.motion import Motion
+
+
+def _bump(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    away = wrap(motion.shaft_rad - np.radians(values["centre_deg"]))
+    width = np.radians(np.maximum(values["width_deg"], 0.1))
+    return signal + np.radians(values["height_deg"]) * np.exp(-0.5 * (away / width) ** 2)
+
+
+def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    finest = 2.0 * 360.0 / max(motion.points_per_turn, 8.0)
+    widths = [width for width in (3.0, 6.0, 12.0, 20.0) if width >= finest] or [finest]
+    return [
+        {"width_deg": width, "centre_deg": float(centre)}
+        for width in widths
+        for centre in np.arange(0.0, 360.0, max(width, 4.0))
+    ]
+
+
+UNNAMED_BUMP = Effect(
+    name="unnamed_bump",
+    stage="empirical",
+    acts_on="angle",
+    params={
+        "centre_deg": Param(
+            unit="deg", null=0.0, lower=-360.0, upper=720.0, doc="place", role="shape", typical=5.0
+        ),
+        "width_deg": Param(
+            unit="deg", null=10.0, lower=1.0, upper=35.0, doc="sigma", role="shape", typical=5.0
+        ),
+        "height_deg": Param(unit="deg", null=0.0, lower=-90.0, upper=90.0, doc="height"),
+    },
+    forward=_bump,
+    shapes=shapes,
+    needs=frozenset({"one turn"}),
+    source="Gaussian bump",
+    signature="an error at one place of the turn",
+)

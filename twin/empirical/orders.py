@@ -1,0 +1,131 @@
+"""Unnamed lines over the shaft angle: free orders, and low orders that scale with a condition."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from twin.angles import Array
+from twin.effect import BoolArray, Effect, Forward, Line, Param, Parameters
+from twin.motion import Motion
+
+Weight = Callable[[Motion, Parameters], Array]
+
+
+def _order_params(highest: float) -> dict[str, Param]:
+    return {
+        "order": Param(
+            unit="1/turn", null=0.0, lower=0.0, upper=highest, doc="cycles per turn", role="shape"
+        ),
+        "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=90.0, doc="amplitude"),
+        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase", role="phase"),
+    }
+
+
+def _weighted(weight: Weight) -> Forward:
+    def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+        wave = np.sin(np.asarray(values["order"]) * motion.shaft_rad + np.radians(values["phase_deg"]))
+        return signal + np.radians(values["amplitude_deg"]) * weight(motion, values) * wave
+
+    return forward
+
+
+def _always(motion: Motion, values: Parameters) -> Array:
+    return np.ones(len(motion))
+
+
+def _direction(motion: Motion, values: Parameters) -> Array:
+    return motion.direction
+
+
+def _temperature(motion: Motion, values: Parameters) -> Array:
+    warm = motion.temperature_c - 25.0
+    return np.asarray(warm / max(float(np.max(np.abs(warm))), 1e-9))
+
+
+def _speed(motion: Motion, values: Parameters) -> Array:
+    pace = motion.speed_rad_s / max(float(np.max(np.abs(motion.speed_rad_s))), 1e-9)
+    power = np.asarray(values["power"])
+    return np.asarray(
+        np.where(
+            power == 2.0,
+            pace * np.abs(pace),
+            np.where(power == -2.0, pace**2, np.where(power == -1.0, np.abs(pace), pace)),
+        )
+    )
+
+
+def _free_limits(motion: Motion) -> tuple[float, float]:
+    return 0.55, motion.points_per_turn / 2.0
+
+
+def unnamed_order(order: Array) -> BoolArray:
+    """Orders (any shape) that belong to no cause: 9 to 19, and what is not whole."""
+    whole = np.abs(order - np.round(order)) < 1e-9
+    return np.asarray(np.where(whole, (order >= 9) & (order <= 19), order > 0.55))
+
+
+def _low_orders(
+    orders: Sequence[int], extra: Sequence[Mapping[str, float]] = ({},)
+) -> Callable[[Motion], Sequence[Mapping[str, float]]]:
+    def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+        return [
+            {"order": float(k), **more} for more in extra for k in orders if 2 * k < motion.points_per_turn
+        ]
+
+    return shapes
+
+
+UNNAMED_ORDER = Effect(
+    name="unnamed_order",
+    stage="empirical",
+    acts_on="angle",
+    params=_order_params(1e5),
+    forward=_weighted(_always),
+    line=Line(param="order", clock="shaft", limits=_free_limits, within=unnamed_order),
+    needs=frozenset({"one turn"}),
+    source="Fourier component",
+    signature="a line at an order that no cause sets",
+)
+
+UNNAMED_DIRECTION = Effect(
+    name="unnamed_direction",
+    stage="empirical",
+    acts_on="angle",
+    params=_order_params(64.0),
+    forward=_weighted(_direction),
+    shapes=_low_orders(range(1, 9)),
+    needs=frozenset({"both directions"}),
+    source="Fourier component times the direction",
+    signature="a low order whose sign turns with the direction",
+)
+
+UNNAMED_TEMPERATURE = Effect(
+    name="unnamed_temperature",
+    stage="empirical",
+    acts_on="angle",
+    params=_order_params(64.0),
+    forward=_weighted(_temperature),
+    shapes=_low_orders((0, 1, 2, 3, 4, 5, 6, 7, 8)),
+    needs=frozenset({"temperature_c", "two temperatures"}),
+    source="Fourier component times (T - 25 C)",
+    signature="a low order that scales with temperature; its amplitude is the one farthest from 25 C",
+)
+
+UNNAMED_SPEED = Effect(
+    name="unnamed_speed",
+    stage="empirical",
+    acts_on="angle",
+    params={
+        **_order_params(64.0),
+        "power": Param(
+            unit="1", null=1.0, lower=-2.0, upper=2.0, role="shape", doc="1: w, -1: |w|, 2: w|w|, -2: w^2"
+        ),
+    },
+    forward=_weighted(_speed),
+    shapes=_low_orders((0, 1, 2, 3, 4), [{"power": 1.0}, {"power": -1.0}, {"power": 2.0}, {"power": -2.0}]),
+    needs=frozenset({"moving shaft", "two speeds"}),
+    source="Fourier component times a power of the speed",
+    signature="a low order that scales with speed; its amplitude is the one at the highest speed",
+)

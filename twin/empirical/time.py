@@ -1,0 +1,71 @@
+"""Unnamed structure over time: a tone, and a drift that is not one-sided."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from twin.angles import TAU, Array
+from twin.effect import BoolArray, Effect, Line, Param, Parameters
+from twin.motion import Motion
+
+
+def _tone(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    elapsed = motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
+    wave = np.cos(TAU * np.asarray(values["frequency_Hz"]) * elapsed + np.radians(values["phase_deg"]))
+    return signal + np.radians(values["amplitude_deg"]) * wave
+
+
+def _tone_limits(motion: Motion) -> tuple[float, float]:
+    duration = float(np.ptp(motion.time_s)) or 1.0
+    step = np.diff(motion.time_s)
+    return 2.0 / duration, 0.5 / float(np.min(step[step > 0.0], initial=1e9))
+
+
+def _any_tone(frequency_hz: Array) -> BoolArray:
+    return np.asarray(frequency_hz > 0.0)
+
+
+UNNAMED_TONE = Effect(
+    name="unnamed_tone",
+    stage="empirical",
+    acts_on="angle",
+    params={
+        "frequency_Hz": Param(unit="Hz", null=1.0, lower=0.0, upper=1e7, doc="frequency", role="shape"),
+        "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=90.0, doc="amplitude"),
+        "phase_deg": Param(
+            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"
+        ),
+    },
+    forward=_tone,
+    line=Line(param="frequency_Hz", clock="time", limits=_tone_limits, within=_any_tone),
+    needs=frozenset({"time_s"}),
+    source="Fourier component in time",
+    signature="a tone that the shaft angle does not carry",
+)
+
+MODES = 4
+
+
+def _drift(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    duration = float(np.ptp(motion.time_s)) or 1.0
+    share = (motion.time_s - motion.time_s[0]) / duration
+    moved = sum(
+        (np.radians(values[f"mode{k}_deg"]) * np.cos(np.pi * k * share) for k in range(1, MODES + 1)),
+        start=np.zeros(len(motion)),
+    )
+    return signal + moved
+
+
+UNNAMED_DRIFT = Effect(
+    name="unnamed_drift",
+    stage="empirical",
+    acts_on="angle",
+    params={
+        f"mode{k}_deg": Param(unit="deg", null=0.0, lower=-90.0, upper=90.0, doc=f"cos({k} pi t / duration)")
+        for k in range(1, MODES + 1)
+    },
+    forward=_drift,
+    needs=frozenset({"time_s"}),
+    source="cosine series in time",
+    signature="a slow movement of the zero that comes back",
+)

@@ -1,0 +1,85 @@
+"""Twin files: a chain with its parameters as TOML, written whole and read back with every figure checked."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from twin.catalogue import CATALOGUE, find
+from twin.chain import Chain
+from twin.effect import Effect
+from twin.sweep_file import write_beside
+
+SCHEMA = "halltwin.twin/1"
+
+
+class TwinError(ValueError):
+    """The twin file cannot be used; the message says in one line where, what was found and what was expected."""
+
+
+def to_dict(chain: Chain) -> dict[str, Any]:
+    """The chain as plain values: the content of a twin file."""
+    effects: dict[str, Any] = {}
+    for key, params in chain.values.items():
+        effect = find(key, chain.effects)
+        if not effect.is_null(params):
+            effects[key] = {name: _plain(value) for name, value in params.items()}
+    return {
+        "schema": SCHEMA,
+        "sensor_sense": chain.sensor_sense,
+        "output_sense": chain.output_sense,
+        "effects": effects,
+    }
+
+
+def from_dict(
+    content: Mapping[str, Any], *, name: str = "twin", effects: tuple[Effect, ...] = CATALOGUE
+) -> Chain:
+    """The chain of a twin file's content. Raises TwinError."""
+    if content.get("schema") != SCHEMA:
+        raise TwinError(f"{name}: schema is {content.get('schema')!r}; expected {SCHEMA!r}")
+    senses = {key: content.get(key, 1) for key in ("sensor_sense", "output_sense")}
+    for key, sense in senses.items():
+        if sense not in (1, -1):
+            raise TwinError(f"{name}: {key} is {sense!r}; expected 1 or -1")
+    chain = Chain(sensor_sense=senses["sensor_sense"], output_sense=senses["output_sense"], effects=effects)
+    declared = content.get("effects", {})
+    if not isinstance(declared, Mapping):
+        raise TwinError(f"{name}: effects is {declared!r}; expected tables such as [effects.offset]")
+    for key, params in declared.items():
+        try:
+            chain = chain.with_effect(key, **params)
+        except (KeyError, ValueError, TypeError) as error:
+            raise TwinError(f"{name}: [effects.{key}]: {error.args[0] if error.args else error}") from None
+    return chain
+
+
+def read_twin(path: str | Path, *, effects: tuple[Effect, ...] = CATALOGUE) -> Chain:
+    """Read a twin file. Raises TwinError."""
+    name = Path(path).name
+    try:
+        content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise TwinError(f"{name}: cannot be read ({error.strerror}); give the path of a twin TOML") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise TwinError(f"{name}: is no TOML ({error})") from None
+    return from_dict(content, name=name, effects=effects)
+
+
+def write_twin(path: str | Path, chain: Chain) -> None:
+    """Write a twin file, whole or not at all."""
+    import tomli_w
+
+    write_beside(Path(path), tomli_w.dumps(to_dict(chain)).encode())
+
+
+def _plain(value: Any) -> Any:
+    array = np.asarray(value, dtype=np.float64)
+    if array.ndim:
+        return [_plain(item) for item in array]
+    number = float(array)
+    return int(number) if number.is_integer() and abs(number) < 1e15 else number

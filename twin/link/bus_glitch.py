@@ -1,0 +1,60 @@
+"""bus_glitch: single bits flip in transmitted angle words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from twin.angles import TAU, Array
+from twin.effect import BoolArray, Effect, Param, Parameters
+from twin.motion import Motion
+
+WORD_BITS = 16
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    if rng is None:
+        return signal
+    out = np.array(signal)
+    flat = out.reshape(-1, out.shape[-1])
+    counts = np.broadcast_to(np.ravel(np.asarray(values["count"], dtype=np.int64)), (flat.shape[0],))
+    for row, count in zip(flat, counts, strict=True):
+        places = rng.choice(row.size, size=min(int(count), row.size), replace=False)
+        words = np.round(row[places] / TAU * 2**WORD_BITS).astype(np.int64) % 2**WORD_BITS
+        flipped = words ^ (1 << rng.integers(0, WORD_BITS, size=words.size))
+        row[places] += (flipped - words) / 2**WORD_BITS * TAU
+    return out
+
+
+def marks(
+    measured: Array, residual: Array, noise: float, step: float, motion: Motion
+) -> tuple[BoolArray, float]:
+    """Rows whose residual stands far out of the noise and is 360/2^k deg within the noise.
+
+    Chance: an outlier of any size lands within ``3 noise`` of some 360/2^k with the probability of the share of the
+    logarithmic axis that these windows cover.
+    """
+    size = np.abs(residual)
+    sigma = max(noise, step / np.sqrt(12.0), 1e-9)
+    far = size > 7.0 * sigma
+    power = np.round(np.log2(TAU / np.maximum(size, 1e-12)))
+    near = np.abs(size - TAU / 2.0**power) < 4.0 * sigma
+    mask = far & near & (power >= 1)
+    width = np.minimum(8.0 * sigma / np.maximum(size[mask], 1e-12) / np.log(2.0), 1.0)
+    # An outlier that is no power of two speaks as much against bit flips as one that is speaks for them.
+    others = int(np.count_nonzero(far & ~mask))
+    return mask, float(np.sum(np.log(np.maximum(width, 1e-3)))) + 3.0 * others
+
+
+BUS_GLITCH = Effect(
+    name="bus_glitch",
+    stage="link",
+    acts_on="angle",
+    params={
+        "count": Param(unit="1", null=0, lower=0, upper=1e6, doc="words hit", role="random", counts=True),
+    },
+    forward=forward,
+    footprint="sequence",
+    marks=marks,
+    source="definition: one bit of the angle word, so an error of 360/2^k deg",
+    signature="rare large errors of 360/2^k deg",
+)

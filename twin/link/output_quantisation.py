@@ -1,0 +1,52 @@
+"""output_quantisation: the angle word has b bits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from twin.angles import TAU, Array
+from twin.effect import Effect, Param, Parameters
+from twin.motion import Motion
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    bits = np.asarray(values["bits"], dtype=np.float64)
+    step = TAU / 2.0**bits
+    return np.where(bits > 0, np.round(signal / step) * step, signal)
+
+
+def attainable(values: Parameters) -> Array:
+    """All angles [rad] in [-pi, pi) of a word of this many bits."""
+    count = 2 ** int(values["bits"])
+    return np.asarray(np.arange(-count // 2, count // 2) * (TAU / count))
+
+
+def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    return [{"bits": float(bits)} for bits in range(5, 17)]
+
+
+def derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
+    """The step of the grid."""
+    return {"step_deg": (360.0 / 2.0 ** float(np.ravel(values["bits"])[0]), "deg")}
+
+
+OUTPUT_QUANTISATION = Effect(
+    name="output_quantisation",
+    stage="link",
+    acts_on="angle",
+    params={
+        "bits": Param(
+            unit="bit", null=0, lower=0, upper=40, doc="angle word; 0: continuous", role="level", counts=True
+        )
+    },
+    forward=forward,
+    footprint="values",
+    attainable=attainable,
+    shapes=shapes,
+    derived=derived,
+    needs=frozenset({"one turn"}),
+    source="definition; noise of step/sqrt(12)",
+    signature="every reading on a grid of 360/2^b degrees",
+)

@@ -1,0 +1,57 @@
+"""stale_frames: a fraction of the frames repeats the one before."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from twin.angles import Array, wrap
+from twin.effect import BoolArray, Effect, Param, Parameters
+from twin.motion import Motion
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    if rng is None:
+        return signal
+    stale = rng.random(signal.shape) < 0.01 * np.asarray(values["fraction_percent"])
+    stale[..., 0] = False
+    source = np.where(stale, 0, np.arange(signal.shape[-1]))
+    return np.take_along_axis(signal, np.maximum.accumulate(source, axis=-1), axis=-1)
+
+
+def marks(
+    measured: Array, residual: Array, noise: float, step: float, motion: Motion
+) -> tuple[BoolArray, float]:
+    """Rows that repeat the reading before bit for bit while the shaft moved on by more than grid and noise allow.
+
+    A repeat by chance needs the noise to cancel the movement: with a movement of ``move`` and a difference of two
+    noises of ``sqrt(2) noise`` its probability a row is the density there times the grid's step.
+    """
+    repeat = np.concatenate([[False], np.abs(wrap(np.diff(measured))) < 1e-9])
+    move = np.concatenate([[0.0], np.abs(np.diff(motion.shaft_rad))])
+    grid = max(step, 1e-6)
+    sigma = np.sqrt(2.0) * max(noise, 0.3 * grid)
+    mask = repeat & (move > 1.5 * grid) & (move > 4.0 * sigma)
+    chance = grid / sigma * np.exp(-0.5 * (np.maximum(move - grid, 0.0) / sigma) ** 2)
+    expected = float(np.sum(np.minimum(chance[(move > 1.5 * grid) & (move > 4.0 * sigma)], 1.0)))
+    count = int(mask.sum())
+    if count == 0:
+        return mask, 0.0
+    # Chernoff's bound on a Poisson count.
+    return mask, min(0.0, count - expected + count * float(np.log(max(expected, 1e-300) / count)))
+
+
+STALE_FRAMES = Effect(
+    name="stale_frames",
+    stage="link",
+    acts_on="angle",
+    params={
+        "fraction_percent": Param(
+            unit="%", null=0.0, lower=0.0, upper=99.0, doc="of the frames", role="random"
+        )
+    },
+    forward=forward,
+    footprint="sequence",
+    marks=marks,
+    source="definition: a link that sends its last word again",
+    signature="repeats; an error of one step",
+)

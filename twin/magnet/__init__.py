@@ -1,0 +1,6 @@
+"""The magnet: its field at the sensor and the orders its magnetisation adds."""
+
+from twin.magnet.magnet_harmonic import MAGNET_HARMONIC
+from twin.magnet.stray_field import STRAY_FIELD
+
+EFFECTS = (MAGNET_HARMONIC, STRAY_FIELD)

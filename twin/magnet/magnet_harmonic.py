@@ -1,0 +1,48 @@
+"""magnet_harmonic: higher azimuthal orders of the magnetisation turn the field unevenly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from twin.angles import Array
+from twin.effect import Effect, Param, Parameters
+from twin.motion import Motion
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    turn = np.radians(values["amplitude_deg"])
+    return signal + turn * np.sin(values["order"] * signal + np.radians(values["phase_deg"]))
+
+
+def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    return [{"order": float(order)} for order in range(3, 9) if 2 * order < motion.points_per_turn]
+
+
+MAGNET_HARMONIC = Effect(
+    name="magnet_harmonic",
+    stage="magnet",
+    acts_on="shaft",
+    params={
+        "order": Param(
+            unit="1/turn",
+            null=3,
+            lower=3,
+            upper=8,
+            doc="azimuthal order",
+            role="shape",
+            counts=True,
+            typical=1.0,
+        ),
+        "amplitude_deg": Param(
+            unit="deg", null=0.0, lower=0.0, upper=20.0, doc="amplitude in the field angle"
+        ),
+        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase", role="phase"),
+    },
+    forward=forward,
+    needs=frozenset({"one turn"}),
+    shapes=shapes,
+    source="azimuthal Fourier series of the field of an imperfectly magnetised cylinder",
+    signature="one line at order n, 3 to 8, any phase",
+)

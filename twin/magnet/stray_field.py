@@ -1,0 +1,42 @@
+"""stray_field: a uniform field fixed in the stator, relative to the magnet's field at the sensor."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from twin.angles import Array
+from twin.effect import Effect, Param, Parameters
+from twin.hall.offset import add
+from twin.motion import Motion
+
+FIELD_MT = 50.0
+"""The magnet's field at the sensor that the millitesla are counted against where no magnet is described."""
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    scale = 1.0 / values.get("field_mT", FIELD_MT)
+    return add(signal, values["bx_mT"] * scale, values["by_mT"] * scale)
+
+
+STRAY_FIELD = Effect(
+    name="stray_field",
+    stage="magnet",
+    acts_on="channels",
+    params={
+        "bx_mT": Param(unit="mT", null=0.0, lower=-50.0, upper=50.0, doc="stray field along the sensor's x"),
+        "by_mT": Param(unit="mT", null=0.0, lower=-50.0, upper=50.0, doc="stray field along the sensor's y"),
+        "field_mT": Param(
+            unit="mT",
+            null=FIELD_MT,
+            lower=1.0,
+            upper=500.0,
+            doc="the magnet's own field",
+            role="shape",
+            typical=10.0,
+        ),
+    },
+    forward=forward,
+    needs=frozenset({"two air gaps"}),
+    source="superposition of fields; a constant added to both channels ahead of the gains",
+    signature="order 1: the same as offset",
+)

@@ -1,0 +1,174 @@
+"""What the shaft does: the conditions under which each reading is taken."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from twin.angles import TAU, Array, wrap
+
+STOP_AND_MEASURE_S = 0.02
+"""Readings farther apart than this, with no speed recorded, were taken at standstill."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Shaft angle and conditions, one row a reading, in the order in which they were taken.
+
+    All arrays have the shape ``(n,)``. ``columns`` names what the bench recorded itself
+    (``time_s``, ``direction``, ``speed_rpm``, ``turn``, ``temperature_c``, ``vx``): what was not recorded
+    is inferred where the rows allow it (direction from their order, speed from dense time stamps), else zero.
+    """
+
+    shaft_rad: Array
+    time_s: Array
+    direction: Array
+    speed_rad_s: Array
+    turn: Array
+    temperature_c: Array
+    columns: frozenset[str] = frozenset()
+
+    def __len__(self) -> int:
+        return int(self.shaft_rad.shape[-1])
+
+    @classmethod
+    def from_angle(
+        cls,
+        shaft_rad: Array,
+        *,
+        time_s: Array | None = None,
+        direction: Array | None = None,
+        speed_rad_s: Array | None = None,
+        turn: Array | None = None,
+        temperature_c: Array | None = None,
+        has_channels: bool = False,
+    ) -> Motion:
+        """Complete a motion from what is known of it; angles may be wrapped [rad], time in s.
+
+        A missing temperature reading (NaN) is taken from its neighbours in row order.
+        """
+        wrapped = np.asarray(shaft_rad, dtype=np.float64)
+        n = wrapped.size
+        shaft = (
+            wrapped
+            if n == 0
+            else np.concatenate([wrapped[:1], wrapped[0] + np.cumsum(wrap(np.diff(wrapped)))])
+        )
+        columns = set()
+        if time_s is not None:
+            columns.add("time_s")
+        if direction is not None:
+            columns.add("direction")
+            way = np.where(np.asarray(direction) < 0, -1.0, 1.0)
+        else:
+            way = infer_direction(shaft)
+        if speed_rad_s is not None:
+            columns.add("speed_rpm")
+            # A recorded speed may be unsigned: its sense is the direction's.
+            speed = np.abs(np.asarray(speed_rad_s, dtype=np.float64)) * way
+        elif time_s is not None and n > 2 and 0 < float(np.median(np.diff(time_s))) <= STOP_AND_MEASURE_S:
+            speed = infer_speed(shaft, np.asarray(time_s), way)
+        else:
+            speed = np.zeros(n)
+        if turn is not None:
+            columns.add("turn")
+        if temperature_c is not None and np.isfinite(temperature_c).any():
+            columns.add("temperature_c")
+            known = np.flatnonzero(np.isfinite(temperature_c))
+            temperature = np.interp(np.arange(n), known, np.asarray(temperature_c)[known])
+        else:
+            temperature = np.full(n, 25.0)
+        if has_channels:
+            columns.add("vx")
+        return cls(
+            shaft_rad=shaft,
+            time_s=np.arange(n, dtype=np.float64) if time_s is None else np.asarray(time_s, dtype=np.float64),
+            direction=way,
+            speed_rad_s=speed,
+            turn=np.zeros(n, dtype=np.int64) if turn is None else np.unique(turn, return_inverse=True)[1],
+            temperature_c=temperature,
+            columns=frozenset(columns),
+        )
+
+    @cached_property
+    def segments(self) -> tuple[tuple[int, int, float], ...]:
+        """Stretches of constant direction: (first row, one past the last row, direction)."""
+        cuts = [0, *(np.flatnonzero(np.diff(self.direction)) + 1).tolist(), len(self)]
+        return tuple(
+            (a, b, float(self.direction[a])) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a
+        )
+
+    @cached_property
+    def travel_rad(self) -> Array:
+        """Path of the shaft [rad] since the first row, ever growing."""
+        return (
+            np.concatenate([[0.0], np.cumsum(np.abs(np.diff(self.shaft_rad)))]) if len(self) else np.zeros(0)
+        )
+
+    @cached_property
+    def turns(self) -> float:
+        """How many turns the shaft has travelled, both directions counted."""
+        return float(self.travel_rad[-1] / TAU) if len(self) else 0.0
+
+    @cached_property
+    def points_per_turn(self) -> float:
+        """Distinct angles a turn of travel: readings repeated in place count once."""
+        moved = int(np.count_nonzero(np.abs(np.diff(self.shaft_rad)) > 1e-4))
+        return (moved + 1) / max(self.turns, 1e-9) if self.turns > 0.5 else float(moved + 1)
+
+    @cached_property
+    def provides(self) -> frozenset[str]:
+        """What this motion lets one see: recorded columns and properties of the protocol."""
+        found = set(self.columns)
+        if len({way for _, _, way in self.segments}) == 2:
+            found.add("both directions")
+        speeds = np.unique(np.round(self.speed_rad_s, 6))
+        if speeds.size > 1 and np.ptp(speeds) > 0.2 * np.max(np.abs(speeds)):
+            found.add("two speeds")
+        if np.any(self.speed_rad_s != 0.0):
+            found.add("moving shaft")
+        if np.ptp(self.shaft_rad) > 0.95 * TAU * (1 - 1 / max(self.points_per_turn, 2)):
+            found.add("one turn")
+        if self.turns > 1.8:
+            found.add("several turns")
+        if np.ptp(self.temperature_c) > 5.0:
+            found.add("two temperatures")
+        if self.turn.max(initial=0) > 0:
+            found.add("two turns")
+        return frozenset(found)
+
+
+def infer_direction(shaft_rad: Array) -> Array:
+    """Direction (+1 or -1) of each row from the order of the angles (n,); a row at rest keeps the last one.
+
+    A step back that is much shorter than the usual step is jitter of the stop, not a reversal.
+    """
+    step = np.diff(shaft_rad)
+    moving = (
+        np.abs(step) > 0.1 * np.median(np.abs(step[step != 0.0])) if np.any(step) else np.zeros(0, dtype=bool)
+    )
+    if not moving.any():
+        return np.ones(shaft_rad.size)
+    last = np.maximum.accumulate(np.where(moving, np.arange(step.size), -1))
+    last = np.where(last < 0, np.flatnonzero(moving)[0], last)
+    sign = np.sign(step[last])
+    return np.concatenate([sign[:1], sign])
+
+
+def infer_speed(shaft_rad: Array, time_s: Array, direction: Array) -> Array:
+    """Signed speed [rad/s] (n,): the median over each stretch of one direction and one time step."""
+    dt = np.diff(time_s)
+    step = np.diff(shaft_rad)
+    rate = np.divide(step, dt, out=np.full_like(step, np.nan), where=dt > 0)
+    # A stretch ends where the direction turns or where the pace changes by more than a fifth, for good.
+    padded = np.pad(rate, 4, mode="edge")
+    smooth = np.nanmedian(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1)
+    jump = np.abs(np.diff(smooth)) > 0.2 * np.maximum(np.abs(smooth[1:]), np.abs(smooth[:-1]))
+    cuts = [0, *(np.flatnonzero(jump) + 1).tolist(), rate.size]
+    speed = np.empty(shaft_rad.size)
+    for a, b in zip(cuts[:-1], cuts[1:], strict=True):
+        speed[a:b] = np.nanmedian(rate[a:b]) if b > a else 0.0
+    speed[-1] = speed[-2]
+    return np.abs(np.nan_to_num(speed)) * direction

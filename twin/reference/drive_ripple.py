@@ -1,0 +1,50 @@
+"""drive_ripple: the drive's own ripple in the reference, or the wind-up of the coupling, at the motor's order."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from twin.angles import Array
+from twin.effect import BoolArray, Effect, Line, Param, Parameters
+from twin.motion import Motion
+
+LOWEST_ORDER = 20
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    ripple = np.sin(np.asarray(values["order"]) * signal + np.radians(values["phase_deg"]))
+    return signal + np.radians(values["amplitude_deg"]) * ripple
+
+
+def limits(motion: Motion) -> tuple[float, float]:
+    return LOWEST_ORDER, motion.points_per_turn / 2.0
+
+
+def within(order: Array) -> BoolArray:
+    """Which orders (any shape) a motor sets: whole numbers from 20 upwards."""
+    return np.asarray((order >= LOWEST_ORDER) & (np.abs(order - np.round(order)) < 1e-9))
+
+
+DRIVE_RIPPLE = Effect(
+    name="drive_ripple",
+    stage="reference",
+    acts_on="reference",
+    params={
+        "order": Param(
+            unit="1/turn",
+            null=50,
+            lower=20,
+            upper=1e5,
+            doc="50 for a 200-step stepper",
+            role="shape",
+            counts=True,
+        ),
+        "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=10.0, doc="amplitude"),
+        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase", role="phase"),
+    },
+    forward=forward,
+    line=Line(param="order", clock="shaft", limits=limits, within=within),
+    needs=frozenset({"one turn"}),
+    source="a 2-phase stepper of 200 steps has 50 electrical periods a turn; a BLDC motor 6 x pole pairs torque ripple",
+    signature="lines at p >= 20 and its multiples",
+)

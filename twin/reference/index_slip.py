@@ -1,0 +1,44 @@
+"""index_slip: the reference's zero jumps once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from twin.angles import Array
+from twin.effect import Effect, Param, Parameters
+from twin.motion import Motion
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    after = motion.time_s >= np.asarray(values["time_s"])
+    return signal + np.radians(values["step_deg"]) * after
+
+
+def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    rows = np.unique(np.linspace(2, len(motion) - 2, min(len(motion) - 3, 160)).astype(int))
+    return [{"time_s": float(motion.time_s[row])} for row in rows]
+
+
+INDEX_SLIP = Effect(
+    name="index_slip",
+    stage="reference",
+    acts_on="reference",
+    params={
+        "step_deg": Param(unit="deg", null=0.0, lower=-180.0, upper=180.0, doc="the jump"),
+        "time_s": Param(
+            unit="s",
+            null=0.0,
+            lower=-1e12,
+            upper=1e12,
+            doc="its instant; the row without time stamps",
+            role="shape",
+        ),
+    },
+    forward=forward,
+    shapes=shapes,
+    needs=frozenset({"time_s"}),
+    source="definition: an incremental encoder that loses or gains counts once",
+    signature="a step in order 0",
+)

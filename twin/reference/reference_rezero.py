@@ -1,0 +1,50 @@
+"""reference_rezero: an incremental reference without index finds a new zero for each turn (sweep)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from twin.angles import Array
+from twin.effect import Effect, Param, Parameters
+from twin.motion import Motion
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    turns = int(motion.turn.max(initial=0)) + 1
+    zeros = values.get("zeros_deg")
+    if zeros is not None and np.size(zeros) > 1:
+        zeros_deg = np.asarray(zeros, dtype=np.float64)
+    elif rng is not None:
+        spread = np.asarray(values.get("spread_deg", 0.0))
+        zeros_deg = spread * rng.standard_normal((*signal.shape[:-2], 1, turns))
+    else:
+        return signal
+    return signal + np.radians(zeros_deg)[..., motion.turn]
+
+
+def derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
+    """The scatter of the turns' zeros."""
+    zeros = np.ravel(values.get("zeros_deg", 0.0))
+    return {"spread_deg": (float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, "deg")}
+
+
+REFERENCE_REZERO = Effect(
+    name="reference_rezero",
+    stage="reference",
+    acts_on="reference",
+    params={
+        "zeros_deg": Param(
+            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="one zero a turn", role="per turn"
+        ),
+        "spread_deg": Param(
+            unit="deg", null=0.0, lower=0.0, upper=360.0, doc="scatter of zeros drawn anew", role="random"
+        ),
+    },
+    forward=forward,
+    derived=derived,
+    needs=frozenset({"turn", "two turns"}),
+    source="definition: an incremental encoder counts from where it was switched on",
+    signature="order 0, constant within a turn",
+)

@@ -25,3 +25,8 @@ def channels_of(x: Any, y: Any) -> Array:
     """Two channels, each broadcastable to (..., 1, n), stacked to (..., 2, n)."""
     x, y = np.broadcast_arrays(x, y)
     return np.concatenate([x, y], axis=-2)
+
+
+def radians(value: Any) -> Array:
+    """Degrees to radians, any shape."""
+    return np.asarray(np.radians(value), dtype=np.float64)

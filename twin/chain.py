@@ -15,6 +15,8 @@ from twin.motion import Motion
 from twin.sweep import Sweep
 
 Values = Mapping[str, Parameters]
+SIGNALS: tuple[ActsOn, ...] = ("shaft", "field", "channels", "angle")
+"""The signals of the sensor's side, in order; a conversion follows each."""
 
 
 @dataclass(frozen=True)
@@ -89,8 +91,8 @@ class Chain:
         """
         signal: Array = np.broadcast_to(motion.shaft_rad, (2, len(motion)))
         sense: Parameters = {"sensor_sense": self.sensor_sense, "output_sense": self.output_sense}
-        for acts_on in ("shaft", "field", "channels", "angle"):
-            for key, effect, values in self.active(acts_on):  # type: ignore[arg-type]
+        for acts_on in SIGNALS:
+            for key, effect, values in self.active(acts_on):
                 after = effect.forward(signal, motion, values, rng)
                 yield Step(key, effect, values, signal, after)
                 signal = after
@@ -108,10 +110,7 @@ class Chain:
     def readings(self, motion: Motion, values: Values | None = None) -> Array:
         """Expected reading [rad], ``(n,)``, or ``(batch, n)`` where parameters are arrays of shape ``(batch,)``."""
         chain = self if values is None else self.with_values(values)
-        last = None
-        for last in chain.steps(motion):
-            pass
-        assert last is not None
+        *_, last = chain.steps(motion)
         return last.after[..., 0, :]
 
     def channels(self, motion: Motion, rng: np.random.Generator | None = None) -> Array:
@@ -154,7 +153,8 @@ class Chain:
             if step.key == "after channels":
                 channels = step.before
             measured = step.after
-        assert channels is not None and measured is not None
+        assert channels is not None
+        assert measured is not None
         reference = self.reference(motion, rng)
         return Sweep.from_motion(
             motion,

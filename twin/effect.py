@@ -47,9 +47,7 @@ class Forward(Protocol):
     Without a generator the effect acts in expectation: what is random then does nothing.
     """
 
-    def __call__(
-        self, signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None
-    ) -> Array: ...
+    def __call__(self, signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,9 +147,7 @@ class Effect:
 
     def missing(self, provides: frozenset[str]) -> tuple[str, ...]:
         """What a sweep lacks for this effect to be visible, sorted."""
-        return tuple(
-            sorted(need for need in self.needs if not any(part in provides for part in need.split("|")))
-        )
+        return tuple(sorted(need for need in self.needs if not any(part in provides for part in need.split("|"))))
 
 
 class Marks(Protocol):

@@ -12,12 +12,13 @@ import numpy as np
 from twin.catalogue import CATALOGUE, find
 from twin.chain import Chain
 from twin.effect import Effect
+from twin.errors import UserError
 from twin.sweep_file import write_beside
 
 SCHEMA = "halltwin.twin/1"
 
 
-class TwinError(ValueError):
+class TwinError(UserError):
     """The twin file cannot be used; the message says in one line where, what was found and what was expected."""
 
 
@@ -36,9 +37,7 @@ def to_dict(chain: Chain) -> dict[str, Any]:
     }
 
 
-def from_dict(
-    content: Mapping[str, Any], *, name: str = "twin", effects: tuple[Effect, ...] = CATALOGUE
-) -> Chain:
+def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[Effect, ...] = CATALOGUE) -> Chain:
     """The chain of a twin file's content. Raises TwinError."""
     if content.get("schema") != SCHEMA:
         raise TwinError(f"{name}: schema is {content.get('schema')!r}; expected {SCHEMA!r}")

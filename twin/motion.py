@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -51,11 +52,7 @@ class Motion:
         """
         wrapped = np.asarray(shaft_rad, dtype=np.float64)
         n = wrapped.size
-        shaft = (
-            wrapped
-            if n == 0
-            else np.concatenate([wrapped[:1], wrapped[0] + np.cumsum(wrap(np.diff(wrapped)))])
-        )
+        shaft = wrapped if n == 0 else np.concatenate([wrapped[:1], wrapped[0] + np.cumsum(wrap(np.diff(wrapped)))])
         columns = set()
         if time_s is not None:
             columns.add("time_s")
@@ -96,16 +93,12 @@ class Motion:
     def segments(self) -> tuple[tuple[int, int, float], ...]:
         """Stretches of constant direction: (first row, one past the last row, direction)."""
         cuts = [0, *(np.flatnonzero(np.diff(self.direction)) + 1).tolist(), len(self)]
-        return tuple(
-            (a, b, float(self.direction[a])) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a
-        )
+        return tuple((a, b, float(self.direction[a])) for a, b in itertools.pairwise(cuts) if b > a)
 
     @cached_property
     def travel_rad(self) -> Array:
         """Path of the shaft [rad] since the first row, ever growing."""
-        return (
-            np.concatenate([[0.0], np.cumsum(np.abs(np.diff(self.shaft_rad)))]) if len(self) else np.zeros(0)
-        )
+        return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(self.shaft_rad)))]) if len(self) else np.zeros(0)
 
     @cached_property
     def turns(self) -> float:
@@ -146,9 +139,7 @@ def infer_direction(shaft_rad: Array) -> Array:
     A step back that is much shorter than the usual step is jitter of the stop, not a reversal.
     """
     step = np.diff(shaft_rad)
-    moving = (
-        np.abs(step) > 0.1 * np.median(np.abs(step[step != 0.0])) if np.any(step) else np.zeros(0, dtype=bool)
-    )
+    moving = np.abs(step) > 0.1 * np.median(np.abs(step[step != 0.0])) if np.any(step) else np.zeros(0, dtype=bool)
     if not moving.any():
         return np.ones(shaft_rad.size)
     last = np.maximum.accumulate(np.where(moving, np.arange(step.size), -1))
@@ -168,7 +159,7 @@ def infer_speed(shaft_rad: Array, time_s: Array, direction: Array) -> Array:
     jump = np.abs(np.diff(smooth)) > 0.2 * np.maximum(np.abs(smooth[1:]), np.abs(smooth[:-1]))
     cuts = [0, *(np.flatnonzero(jump) + 1).tolist(), rate.size]
     speed = np.empty(shaft_rad.size)
-    for a, b in zip(cuts[:-1], cuts[1:], strict=True):
+    for a, b in itertools.pairwise(cuts):
         speed[a:b] = np.nanmedian(rate[a:b]) if b > a else 0.0
     speed[-1] = speed[-2]
     return np.abs(np.nan_to_num(speed)) * direction

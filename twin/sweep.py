@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from twin.angles import Array, wrap_deg
+from twin.angles import Array, radians, wrap_deg
+from twin.errors import UserError
 from twin.motion import Motion
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ FEWEST_ROWS = 8
 _LARGEST = 1e12
 
 
-class SweepError(ValueError):
+class SweepError(UserError):
     """The sweep cannot be used; the message says in one line where, what was found and what was expected."""
 
 
@@ -79,9 +80,7 @@ class Sweep:
         for needed in REQUIRED:
             if needed not in columns:
                 found = ", ".join(columns) or "none"
-                raise SweepError(
-                    f"{name}: column {needed} is missing; found {found}; rename the column or add it"
-                )
+                raise SweepError(f"{name}: column {needed} is missing; found {found}; rename the column or add it")
         if ("vx" in columns) != ("vy" in columns):
             have, lack = ("vx", "vy") if "vx" in columns else ("vy", "vx")
             raise SweepError(f"{name}: column {have} stands without {lack}; give both channels or none")
@@ -112,9 +111,7 @@ class Sweep:
         return cls(**used, rejected=dict(sorted(rejected.items())), name=name)
 
     @classmethod
-    def from_motion(
-        cls, motion: Motion, *, reference_deg: Array, measured_deg: Array, channels: Array | None
-    ) -> Self:
+    def from_motion(cls, motion: Motion, *, reference_deg: Array, measured_deg: Array, channels: Array | None) -> Self:
         """The sweep of a simulation: the columns that ``motion`` says were recorded."""
         has = motion.columns
         return cls(
@@ -146,7 +143,7 @@ class Sweep:
     def motion(self) -> Motion:
         """The conditions of each reading, with the reference's reading as shaft angle."""
         return Motion.from_angle(
-            np.radians(self.reference_deg),
+            radians(self.reference_deg),
             time_s=self.time_s,
             direction=self.direction,
             speed_rad_s=None if self.speed_rpm is None else self.speed_rpm * (2.0 * np.pi / 60.0),
@@ -161,9 +158,7 @@ def _check_usable(data: Mapping[str, Array], *, name: str, rejected: int) -> Non
     n = reference.size
     if n < FEWEST_ROWS:
         lost = f" ({rejected} rejected for missing cells)" if rejected else ""
-        raise SweepError(
-            f"{name}: {n} usable rows{lost}; expected at least {FEWEST_ROWS} readings over the circle"
-        )
+        raise SweepError(f"{name}: {n} usable rows{lost}; expected at least {FEWEST_ROWS} readings over the circle")
     if np.ptp(reference) == 0.0:
         raise SweepError(
             f"{name}: column reference_deg: every row is {reference[0]:g} deg; expected readings at different angles"
@@ -180,12 +175,8 @@ def _check_usable(data: Mapping[str, Array], *, name: str, rejected: int) -> Non
         )
     if np.unique(np.round(wrap_deg(reference), 3)).size < FEWEST_ROWS:
         count = np.unique(np.round(wrap_deg(reference), 3)).size
-        raise SweepError(
-            f"{name}: column reference_deg: {count} different angles; expected at least {FEWEST_ROWS}"
-        )
-    follows = max(
-        abs(np.mean(np.exp(1j * np.radians(measured - sense * reference)))) for sense in (1.0, -1.0)
-    )
+        raise SweepError(f"{name}: column reference_deg: {count} different angles; expected at least {FEWEST_ROWS}")
+    follows = max(abs(np.mean(np.exp(1j * radians(measured - sense * reference)))) for sense in (1.0, -1.0))
     if follows < 0.6:
         raise SweepError(
             f"{name}: measured_deg does not follow reference_deg (correlation on the circle {follows:.2f}, expected "

@@ -14,9 +14,7 @@ import numpy as np
 from twin.angles import Array
 from twin.sweep import COLUMNS, SweepError
 
-_MISSING = frozenset(
-    {"", "nan", "na", "n/a", "null", "none", "-", "inf", "+inf", "-inf", "infinity", "-infinity"}
-)
+_MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "-", "inf", "+inf", "-inf", "infinity", "-infinity"})
 
 
 def read_columns(path: Path) -> dict[str, Array]:
@@ -33,9 +31,7 @@ def read_columns(path: Path) -> dict[str, Array]:
     except IsADirectoryError:
         raise SweepError(f"{path.name}: is a folder; give the path of a sweep (CSV)") from None
     except (OSError, EOFError) as error:
-        raise SweepError(
-            f"{path.name}: cannot be read ({error}); expected a CSV file, plain or gzip"
-        ) from None
+        raise SweepError(f"{path.name}: cannot be read ({error}); expected a CSV file, plain or gzip") from None
     except UnicodeDecodeError as error:
         raise SweepError(f"{path.name}: byte {error.start} is not UTF-8 text; expected a CSV file") from None
     return parse_csv(text, name=path.name)
@@ -44,14 +40,10 @@ def read_columns(path: Path) -> dict[str, Array]:
 def parse_csv(text: str, *, name: str) -> dict[str, Array]:
     """The known columns of CSV text; lines that begin with # are comments. Raises SweepError."""
     lines = text.splitlines()
-    start = next(
-        (k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")), None
-    )
+    start = next((k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")), None)
     if start is None:
         raise SweepError(f"{name}: the file is empty; expected a header line and one row per reading")
-    delimiter = (
-        ";" if ";" in lines[start] else "\t" if "\t" in lines[start] and "," not in lines[start] else ","
-    )
+    delimiter = ";" if ";" in lines[start] else "\t" if "\t" in lines[start] and "," not in lines[start] else ","
     header = [cell.strip().strip('"').strip() for cell in lines[start].split(delimiter)]
     if all(_is_number(cell) for cell in header):
         raise SweepError(
@@ -60,12 +52,8 @@ def parse_csv(text: str, *, name: str) -> dict[str, Array]:
         )
     for cell in header:
         if cell in COLUMNS and header.count(cell) > 1:
-            raise SweepError(
-                f"{name}: line {start + 1}: column {cell} stands {header.count(cell)} times; keep one"
-            )
-    body = [
-        k for k in range(start + 1, len(lines)) if lines[k].strip() and not lines[k].lstrip().startswith("#")
-    ]
+            raise SweepError(f"{name}: line {start + 1}: column {cell} stands {header.count(cell)} times; keep one")
+    body = [k for k in range(start + 1, len(lines)) if lines[k].strip() and not lines[k].lstrip().startswith("#")]
     if not body:
         raise SweepError(f"{name}: no row below the header of line {start + 1}; expected one row per reading")
     wanted = {cell: place for place, cell in enumerate(header) if cell in COLUMNS}
@@ -84,9 +72,7 @@ def _fast_table(rows: list[str], delimiter: str, width: int) -> Array | None:
     return table if table.shape[1] == width else None
 
 
-def _careful_table(
-    lines: list[str], body: list[int], delimiter: str, header: list[str], *, name: str
-) -> Array:
+def _careful_table(lines: list[str], body: list[int], delimiter: str, header: list[str], *, name: str) -> Array:
     """Cell by cell, so that the first fault is named by line and column."""
     table = np.full((len(body), len(header)), np.nan)
     known = [cell in COLUMNS for cell in header]
@@ -126,9 +112,7 @@ def _read_parquet(path: Path) -> dict[str, Array]:
     try:
         import pyarrow.parquet as parquet  # type: ignore[import-not-found,import-untyped,unused-ignore]
     except ImportError:
-        raise SweepError(
-            f"{path.name}: reading Parquet needs pyarrow; pip install pyarrow, or save as CSV"
-        ) from None
+        raise SweepError(f"{path.name}: reading Parquet needs pyarrow; pip install pyarrow, or save as CSV") from None
     try:
         table = parquet.read_table(path)
         return {
@@ -148,10 +132,7 @@ def write_columns(path: Path, columns: Mapping[str, Array], *, comments: tuple[s
     out.write(",".join(columns) + "\n")
     whole = {"turn", "direction"}
     cells = [
-        [
-            f"{int(v)}" if name in whole and np.isfinite(v) else "" if np.isnan(v) else f"{v:.9g}"
-            for v in values
-        ]
+        [f"{int(v)}" if name in whole and np.isfinite(v) else "" if np.isnan(v) else f"{v:.9g}" for v in values]
         for name, values in columns.items()
     ]
     out.write("\n".join(",".join(row) for row in zip(*cells, strict=True)) + "\n")

@@ -35,9 +35,7 @@ ADC_STUCK_BIT = Effect(
     stage="adc",
     acts_on="channels",
     params={
-        "step_percent": Param(
-            unit="%", null=0.0, lower=0.0, upper=30.0, doc="weight of the bit", role="level"
-        ),
+        "step_percent": Param(unit="%", null=0.0, lower=0.0, upper=30.0, doc="weight of the bit", role="level"),
         "level": Param(unit="1", null=0.0, lower=0.0, upper=1.0, doc="stuck at", role="shape", counts=True),
     },
     forward=forward,

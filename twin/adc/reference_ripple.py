@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import TAU, Array, channels_of
+from twin.angles import TAU, Array, channels_of, radians
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
@@ -12,7 +12,7 @@ from twin.motion import Motion
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     frequency = np.asarray(values["frequency_Hz"])
     elapsed = motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
-    phase = TAU * frequency * elapsed + np.radians(values["phase_deg"])
+    phase = TAU * frequency * elapsed + radians(values["phase_deg"])
     # Without a delay of its own the second conversion comes a sixth of a period later: in an angle only the product
     # of amplitude and delay is visible, and at a sixth the difference is as large as the ripple itself.
     delay_us = values.get("delay_us", 0.0)
@@ -41,15 +41,11 @@ REFERENCE_RIPPLE = Effect(
     acts_on="channels",
     params={
         "frequency_Hz": Param(unit="Hz", null=100.0, lower=1e-3, upper=1e7, doc="frequency", role="shape"),
-        "amplitude_percent": Param(
-            unit="%", null=0.0, lower=0.0, upper=50.0, doc="of the reference", typical=0.3
-        ),
+        "amplitude_percent": Param(unit="%", null=0.0, lower=0.0, upper=50.0, doc="of the reference", typical=0.3),
         "delay_us": Param(
             unit="us", null=0.0, lower=0.0, upper=1e6, doc="from x to y; 0: a sixth of a period", role="shape"
         ),
-        "phase_deg": Param(
-            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"
-        ),
+        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
     },
     forward=forward,
     needs=frozenset({"time_s", "moving shaft"}),

@@ -20,9 +20,7 @@ XY_SKEW = Effect(
     stage="adc",
     acts_on="shaft",
     params={
-        "delay_us": Param(
-            unit="us", null=0.0, lower=-1e5, upper=1e5, doc="y sampled this much after x", typical=20.0
-        )
+        "delay_us": Param(unit="us", null=0.0, lower=-1e5, upper=1e5, doc="y sampled this much after x", typical=20.0)
     },
     forward=forward,
     needs=frozenset({"two speeds|both directions", "moving shaft"}),

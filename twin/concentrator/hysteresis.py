@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -27,8 +27,8 @@ def lag(motion: Motion, lag_rad: Array, memory_rad: Array) -> Array:
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    memory = np.radians(np.maximum(values["memory_deg"], 1e-3))
-    return signal + lag(motion, np.atleast_1d(np.radians(values["lag_deg"])), np.atleast_1d(memory))
+    memory = radians(np.maximum(values["memory_deg"], 1e-3))
+    return signal + lag(motion, np.atleast_1d(radians(values["lag_deg"])), np.atleast_1d(memory))
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -40,9 +40,7 @@ HYSTERESIS = Effect(
     stage="concentrator",
     acts_on="shaft",
     params={
-        "lag_deg": Param(
-            unit="deg", null=0.0, lower=0.0, upper=5.0, doc="steady lag behind the direction of turning"
-        ),
+        "lag_deg": Param(unit="deg", null=0.0, lower=0.0, upper=5.0, doc="steady lag behind the direction of turning"),
         "memory_deg": Param(
             unit="deg",
             null=10.0,

@@ -6,15 +6,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from twin.angles import Array, wrap
+from twin.angles import Array, radians, wrap
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
 
 def _bump(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    away = wrap(motion.shaft_rad - np.radians(values["centre_deg"]))
-    width = np.radians(np.maximum(values["width_deg"], 0.1))
-    return signal + np.radians(values["height_deg"]) * np.exp(-0.5 * (away / width) ** 2)
+    away = wrap(motion.shaft_rad - radians(values["centre_deg"]))
+    width = radians(np.maximum(values["width_deg"], 0.1))
+    return signal + radians(values["height_deg"]) * np.exp(-0.5 * (away / width) ** 2)
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -32,12 +32,8 @@ UNNAMED_BUMP = Effect(
     stage="empirical",
     acts_on="angle",
     params={
-        "centre_deg": Param(
-            unit="deg", null=0.0, lower=-360.0, upper=720.0, doc="place", role="shape", typical=5.0
-        ),
-        "width_deg": Param(
-            unit="deg", null=10.0, lower=1.0, upper=35.0, doc="sigma", role="shape", typical=5.0
-        ),
+        "centre_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=720.0, doc="place", role="shape", typical=5.0),
+        "width_deg": Param(unit="deg", null=10.0, lower=1.0, upper=35.0, doc="sigma", role="shape", typical=5.0),
         "height_deg": Param(unit="deg", null=0.0, lower=-90.0, upper=90.0, doc="height"),
     },
     forward=_bump,

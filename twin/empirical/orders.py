@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import BoolArray, Effect, Forward, Line, Param, Parameters
 from twin.motion import Motion
 
@@ -15,9 +15,7 @@ Weight = Callable[[Motion, Parameters], Array]
 
 def _order_params(highest: float) -> dict[str, Param]:
     return {
-        "order": Param(
-            unit="1/turn", null=0.0, lower=0.0, upper=highest, doc="cycles per turn", role="shape"
-        ),
+        "order": Param(unit="1/turn", null=0.0, lower=0.0, upper=highest, doc="cycles per turn", role="shape"),
         "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=90.0, doc="amplitude"),
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase", role="phase"),
     }
@@ -25,8 +23,8 @@ def _order_params(highest: float) -> dict[str, Param]:
 
 def _weighted(weight: Weight) -> Forward:
     def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-        wave = np.sin(np.asarray(values["order"]) * motion.shaft_rad + np.radians(values["phase_deg"]))
-        return signal + np.radians(values["amplitude_deg"]) * weight(motion, values) * wave
+        wave = np.sin(np.asarray(values["order"]) * motion.shaft_rad + radians(values["phase_deg"]))
+        return signal + radians(values["amplitude_deg"]) * weight(motion, values) * wave
 
     return forward
 
@@ -70,9 +68,7 @@ def _low_orders(
     orders: Sequence[int], extra: Sequence[Mapping[str, float]] = ({},)
 ) -> Callable[[Motion], Sequence[Mapping[str, float]]]:
     def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
-        return [
-            {"order": float(k), **more} for more in extra for k in orders if 2 * k < motion.points_per_turn
-        ]
+        return [{"order": float(k), **more} for more in extra for k in orders if 2 * k < motion.points_per_turn]
 
     return shapes
 
@@ -119,9 +115,7 @@ UNNAMED_SPEED = Effect(
     acts_on="angle",
     params={
         **_order_params(64.0),
-        "power": Param(
-            unit="1", null=1.0, lower=-2.0, upper=2.0, role="shape", doc="1: w, -1: |w|, 2: w|w|, -2: w^2"
-        ),
+        "power": Param(unit="1", null=1.0, lower=-2.0, upper=2.0, role="shape", doc="1: w, -1: |w|, 2: w|w|, -2: w^2"),
     },
     forward=_weighted(_speed),
     shapes=_low_orders((0, 1, 2, 3, 4), [{"power": 1.0}, {"power": -1.0}, {"power": 2.0}, {"power": -2.0}]),

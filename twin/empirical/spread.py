@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -14,7 +14,7 @@ def _burst(signal: Array, motion: Motion, values: Parameters, rng: np.random.Gen
         return signal
     row = np.arange(len(motion))
     inside = (row >= np.asarray(values["first_row"])) & (row <= np.asarray(values["last_row"]))
-    return signal + inside * np.radians(values["rms_deg"]) * rng.standard_normal(signal.shape)
+    return signal + inside * radians(values["rms_deg"]) * rng.standard_normal(signal.shape)
 
 
 UNNAMED_BURST = Effect(
@@ -22,15 +22,9 @@ UNNAMED_BURST = Effect(
     stage="empirical",
     acts_on="angle",
     params={
-        "first_row": Param(
-            unit="row", null=0.0, lower=0.0, upper=1e9, doc="first row", role="shape", counts=True
-        ),
-        "last_row": Param(
-            unit="row", null=0.0, lower=0.0, upper=1e9, doc="last row", role="shape", counts=True
-        ),
-        "rms_deg": Param(
-            unit="deg", null=0.0, lower=0.0, upper=90.0, doc="RMS beyond the noise", role="random"
-        ),
+        "first_row": Param(unit="row", null=0.0, lower=0.0, upper=1e9, doc="first row", role="shape", counts=True),
+        "last_row": Param(unit="row", null=0.0, lower=0.0, upper=1e9, doc="last row", role="shape", counts=True),
+        "rms_deg": Param(unit="deg", null=0.0, lower=0.0, upper=90.0, doc="RMS beyond the noise", role="random"),
     },
     forward=_burst,
     footprint="spread",

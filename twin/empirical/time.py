@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import TAU, Array
+from twin.angles import TAU, Array, radians
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
 
 def _tone(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     elapsed = motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
-    wave = np.cos(TAU * np.asarray(values["frequency_Hz"]) * elapsed + np.radians(values["phase_deg"]))
-    return signal + np.radians(values["amplitude_deg"]) * wave
+    wave = np.cos(TAU * np.asarray(values["frequency_Hz"]) * elapsed + radians(values["phase_deg"]))
+    return signal + radians(values["amplitude_deg"]) * wave
 
 
 def _tone_limits(motion: Motion) -> tuple[float, float]:
@@ -32,9 +32,7 @@ UNNAMED_TONE = Effect(
     params={
         "frequency_Hz": Param(unit="Hz", null=1.0, lower=0.0, upper=1e7, doc="frequency", role="shape"),
         "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=90.0, doc="amplitude"),
-        "phase_deg": Param(
-            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"
-        ),
+        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
     },
     forward=_tone,
     line=Line(param="frequency_Hz", clock="time", limits=_tone_limits, within=_any_tone),
@@ -50,7 +48,7 @@ def _drift(signal: Array, motion: Motion, values: Parameters, rng: np.random.Gen
     duration = float(np.ptp(motion.time_s)) or 1.0
     share = (motion.time_s - motion.time_s[0]) / duration
     moved = sum(
-        (np.radians(values[f"mode{k}_deg"]) * np.cos(np.pi * k * share) for k in range(1, MODES + 1)),
+        (radians(values[f"mode{k}_deg"]) * np.cos(np.pi * k * share) for k in range(1, MODES + 1)),
         start=np.zeros(len(motion)),
     )
     return signal + moved

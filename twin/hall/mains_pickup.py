@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import TAU, Array
+from twin.angles import TAU, Array, radians
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.hall.offset import add
 from twin.motion import Motion
@@ -13,15 +13,13 @@ from twin.motion import Motion
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     # Counted from the middle of the record, so that a small change of frequency hardly moves the fitted phase.
     elapsed = motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
-    wave = 0.01 * np.cos(TAU * np.asarray(values["frequency_Hz"]) * elapsed + np.radians(values["phase_deg"]))
+    wave = 0.01 * np.cos(TAU * np.asarray(values["frequency_Hz"]) * elapsed + radians(values["phase_deg"]))
     return add(signal, np.asarray(values["x_percent"]) * wave, np.asarray(values["y_percent"]) * wave)
 
 
 def within(frequency_hz: Array) -> BoolArray:
     """Which frequencies (any shape) are a supply's: 50 or 60 Hz within 1 %."""
-    return np.asarray(
-        (np.abs(frequency_hz / 50.0 - 1.0) <= 0.01) | (np.abs(frequency_hz / 60.0 - 1.0) <= 0.01)
-    )
+    return np.asarray((np.abs(frequency_hz / 50.0 - 1.0) <= 0.01) | (np.abs(frequency_hz / 60.0 - 1.0) <= 0.01))
 
 
 MAINS_PICKUP = Effect(
@@ -40,9 +38,7 @@ MAINS_PICKUP = Effect(
         ),
         "x_percent": Param(unit="%", null=0.0, lower=-50.0, upper=50.0, doc="amplitude on x", typical=0.2),
         "y_percent": Param(unit="%", null=0.0, lower=-50.0, upper=50.0, doc="amplitude on y", typical=0.2),
-        "phase_deg": Param(
-            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"
-        ),
+        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
     },
     forward=forward,
     needs=frozenset({"time_s", "moving shaft"}),

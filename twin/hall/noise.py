@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -32,7 +32,7 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     noise = rng.standard_normal(signal.shape)
     if correlation != 0.0:
         noise = np.sqrt(1.0 - share) * noise + np.sqrt(share) * autoregressive(rng, signal.shape, correlation)
-    return signal + np.radians(values["rms_deg"]) * noise
+    return signal + radians(values["rms_deg"]) * noise
 
 
 NOISE = Effect(

@@ -12,9 +12,7 @@ from twin.motion import Motion
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     warm = 0.01 * (motion.temperature_c - 25.0)
-    return add(
-        signal, np.asarray(values["x_percent_per_K"]) * warm, np.asarray(values["y_percent_per_K"]) * warm
-    )
+    return add(signal, np.asarray(values["x_percent_per_K"]) * warm, np.asarray(values["y_percent_per_K"]) * warm)
 
 
 OFFSET_DRIFT = Effect(
@@ -22,12 +20,8 @@ OFFSET_DRIFT = Effect(
     stage="hall",
     acts_on="channels",
     params={
-        "x_percent_per_K": Param(
-            unit="%/K", null=0.0, lower=-1.0, upper=1.0, doc="drift of Vx/Ax", typical=0.003
-        ),
-        "y_percent_per_K": Param(
-            unit="%/K", null=0.0, lower=-1.0, upper=1.0, doc="drift of Vy/Ay", typical=0.003
-        ),
+        "x_percent_per_K": Param(unit="%/K", null=0.0, lower=-1.0, upper=1.0, doc="drift of Vx/Ax", typical=0.003),
+        "y_percent_per_K": Param(unit="%/K", null=0.0, lower=-1.0, upper=1.0, doc="drift of Vy/Ay", typical=0.003),
     },
     forward=forward,
     needs=frozenset({"temperature_c", "two temperatures"}),

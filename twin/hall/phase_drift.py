@@ -19,9 +19,7 @@ PHASE_DRIFT = Effect(
     name="phase_drift",
     stage="hall",
     acts_on="field",
-    params={
-        "deg_per_K": Param(unit="deg/K", null=0.0, lower=-0.5, upper=0.5, doc="drift of beta", typical=0.002)
-    },
+    params={"deg_per_K": Param(unit="deg/K", null=0.0, lower=-0.5, upper=0.5, doc="drift of beta", typical=0.002)},
     forward=forward,
     needs=frozenset({"temperature_c", "two temperatures"}),
     source="linear temperature coefficient of the orthogonality error; the paper's future work",

@@ -25,9 +25,7 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return out
 
 
-def marks(
-    measured: Array, residual: Array, noise: float, step: float, motion: Motion
-) -> tuple[BoolArray, float]:
+def marks(measured: Array, residual: Array, noise: float, step: float, motion: Motion) -> tuple[BoolArray, float]:
     """Rows whose residual stands far out of the noise and is 360/2^k deg within the noise.
 
     Chance: an outlier of any size lands within ``3 noise`` of some 360/2^k with the probability of the share of the

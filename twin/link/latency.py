@@ -18,9 +18,7 @@ LATENCY = Effect(
     stage="link",
     # An old reading is a reading of where the shaft was: the delay acts on the shaft angle at the sampling instant.
     acts_on="shaft",
-    params={
-        "delay_us": Param(unit="us", null=0.0, lower=-1e6, upper=1e6, doc="age of the reading", typical=20.0)
-    },
+    params={"delay_us": Param(unit="us", null=0.0, lower=-1e6, upper=1e6, doc="age of the reading", typical=20.0)},
     forward=forward,
     needs=frozenset({"two speeds|both directions", "moving shaft"}),
     source="kinematics: e = -w tau",

@@ -37,9 +37,7 @@ OUTPUT_QUANTISATION = Effect(
     stage="link",
     acts_on="angle",
     params={
-        "bits": Param(
-            unit="bit", null=0, lower=0, upper=40, doc="angle word; 0: continuous", role="level", counts=True
-        )
+        "bits": Param(unit="bit", null=0, lower=0, upper=40, doc="angle word; 0: continuous", role="level", counts=True)
     },
     forward=forward,
     footprint="values",

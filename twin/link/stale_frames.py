@@ -18,9 +18,7 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return np.take_along_axis(signal, np.maximum.accumulate(source, axis=-1), axis=-1)
 
 
-def marks(
-    measured: Array, residual: Array, noise: float, step: float, motion: Motion
-) -> tuple[BoolArray, float]:
+def marks(measured: Array, residual: Array, noise: float, step: float, motion: Motion) -> tuple[BoolArray, float]:
     """Rows that repeat the reading before bit for bit while the shaft moved on by more than grid and noise allow.
 
     A repeat by chance needs the noise to cancel the movement: with a movement of ``move`` and a difference of two
@@ -44,11 +42,7 @@ STALE_FRAMES = Effect(
     name="stale_frames",
     stage="link",
     acts_on="angle",
-    params={
-        "fraction_percent": Param(
-            unit="%", null=0.0, lower=0.0, upper=99.0, doc="of the frames", role="random"
-        )
-    },
+    params={"fraction_percent": Param(unit="%", null=0.0, lower=0.0, upper=99.0, doc="of the frames", role="random")},
     forward=forward,
     footprint="sequence",
     marks=marks,

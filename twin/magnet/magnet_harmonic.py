@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    turn = np.radians(values["amplitude_deg"])
-    return signal + turn * np.sin(values["order"] * signal + np.radians(values["phase_deg"]))
+    turn = radians(values["amplitude_deg"])
+    return signal + turn * np.sin(values["order"] * signal + radians(values["phase_deg"]))
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -35,9 +35,7 @@ MAGNET_HARMONIC = Effect(
             counts=True,
             typical=1.0,
         ),
-        "amplitude_deg": Param(
-            unit="deg", null=0.0, lower=0.0, upper=20.0, doc="amplitude in the field angle"
-        ),
+        "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=20.0, doc="amplitude in the field angle"),
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase", role="phase"),
     },
     forward=forward,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -29,7 +29,7 @@ def play(shaft: Array, motion: Motion, half_width: Array) -> Array:
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     # The play follows the nominal shaft angle: what the other effects add to it is far below its width.
     shaft = motion.shaft_rad
-    return signal + play(shaft, motion, np.abs(np.radians(values["half_width_deg"]))) - shaft
+    return signal + play(shaft, motion, np.abs(radians(values["half_width_deg"]))) - shaft
 
 
 BACKLASH = Effect(
@@ -37,9 +37,7 @@ BACKLASH = Effect(
     stage="mechanics",
     acts_on="shaft",
     params={
-        "half_width_deg": Param(
-            unit="deg", null=0.0, lower=0.0, upper=5.0, doc="half of the dead zone", typical=0.1
-        )
+        "half_width_deg": Param(unit="deg", null=0.0, lower=0.0, upper=5.0, doc="half of the dead zone", typical=0.1)
     },
     forward=forward,
     needs=frozenset({"both directions"}),

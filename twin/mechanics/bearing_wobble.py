@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    turn = np.radians(values["amplitude_deg"])
-    return signal + turn * np.sin(values["order"] * signal + np.radians(values["phase_deg"]))
+    turn = radians(values["amplitude_deg"])
+    return signal + turn * np.sin(values["order"] * signal + radians(values["phase_deg"]))
 
 
 def within(order: Array) -> BoolArray:
@@ -24,9 +24,7 @@ BEARING_WOBBLE = Effect(
     stage="mechanics",
     acts_on="shaft",
     params={
-        "order": Param(
-            unit="1/turn", null=0.4, lower=0.3, upper=0.5, doc="cage cycles per turn", role="shape"
-        ),
+        "order": Param(unit="1/turn", null=0.4, lower=0.3, upper=0.5, doc="cage cycles per turn", role="shape"),
         "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=5.0, doc="amplitude"),
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase", role="phase"),
     },

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    return signal + np.radians(values["amplitude_deg"]) * np.sin(
-        2.0 * signal + np.radians(values["phase_deg"])
-    )
+    return signal + radians(values["amplitude_deg"]) * np.sin(2.0 * signal + radians(values["phase_deg"]))
 
 
 CARDAN_COUPLING = Effect(
@@ -20,9 +18,7 @@ CARDAN_COUPLING = Effect(
     stage="mechanics",
     acts_on="shaft",
     params={
-        "amplitude_deg": Param(
-            unit="deg", null=0.0, lower=0.0, upper=20.0, doc="amplitude of the uneven turning"
-        ),
+        "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=20.0, doc="amplitude of the uneven turning"),
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="its phase", role="phase"),
     },
     forward=forward,

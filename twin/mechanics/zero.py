@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    return signal + np.radians(values["zero_deg"])
+    return signal + radians(values["zero_deg"])
 
 
 ZERO = Effect(
     name="zero",
     stage="mechanics",
     acts_on="field",
-    params={
-        "zero_deg": Param(
-            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="reference zero to sensor x axis"
-        )
-    },
+    params={"zero_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="reference zero to sensor x axis")},
     forward=forward,
     source="definition; paper, Eq. 1: the standard angle is counted from the sensor's x axis",
     signature="order 0",

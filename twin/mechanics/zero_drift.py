@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -17,7 +17,7 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     # The amplitude is what the zero moves by over this record, whatever the time constant.
     tau = np.maximum(values["time_constant_s"], 1e-9)
     reach = -np.expm1(-duration / tau)
-    return signal + np.radians(values["amplitude_deg"]) * -np.expm1(-elapsed / tau) / reach
+    return signal + radians(values["amplitude_deg"]) * -np.expm1(-elapsed / tau) / reach
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -30,9 +30,7 @@ ZERO_DRIFT = Effect(
     stage="mechanics",
     acts_on="shaft",
     params={
-        "amplitude_deg": Param(
-            unit="deg", null=0.0, lower=-20.0, upper=20.0, doc="movement over the whole record"
-        ),
+        "amplitude_deg": Param(unit="deg", null=0.0, lower=-20.0, upper=20.0, doc="movement over the whole record"),
         "time_constant_s": Param(
             unit="s",
             null=1e3,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
@@ -12,8 +12,8 @@ LOWEST_ORDER = 20
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    ripple = np.sin(np.asarray(values["order"]) * signal + np.radians(values["phase_deg"]))
-    return signal + np.radians(values["amplitude_deg"]) * ripple
+    ripple = np.sin(np.asarray(values["order"]) * signal + radians(values["phase_deg"]))
+    return signal + radians(values["amplitude_deg"]) * ripple
 
 
 def limits(motion: Motion) -> tuple[float, float]:

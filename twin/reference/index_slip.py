@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     after = motion.time_s >= np.asarray(values["time_s"])
-    return signal + np.radians(values["step_deg"]) * after
+    return signal + radians(values["step_deg"]) * after
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    return signal + np.radians(values["amplitude_deg"]) * np.sin(signal + np.radians(values["phase_deg"]))
+    return signal + radians(values["amplitude_deg"]) * np.sin(signal + radians(values["phase_deg"]))
 
 
 REFERENCE_ECCENTRICITY = Effect(

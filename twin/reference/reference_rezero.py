@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -21,7 +21,7 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
         zeros_deg = spread * rng.standard_normal((*signal.shape[:-2], 1, turns))
     else:
         return signal
-    return signal + np.radians(zeros_deg)[..., motion.turn]
+    return signal + radians(zeros_deg)[..., motion.turn]
 
 
 def derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
@@ -35,9 +35,7 @@ REFERENCE_REZERO = Effect(
     stage="reference",
     acts_on="reference",
     params={
-        "zeros_deg": Param(
-            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="one zero a turn", role="per turn"
-        ),
+        "zeros_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="one zero a turn", role="per turn"),
         "spread_deg": Param(
             unit="deg", null=0.0, lower=0.0, upper=360.0, doc="scatter of zeros drawn anew", role="random"
         ),

@@ -1,0 +1,7 @@
+"""The one kind of error that is the user's to mend."""
+
+from __future__ import annotations
+
+
+class UserError(ValueError):
+    """One line: which file, row or column, what was found, what was expected, what to do. The program exits with 2."""

@@ -11,7 +11,7 @@ from . import channel_causes as channel
 from . import shaft_causes as shaft
 from . import word_causes as word
 from .baseline import Injected, Setting
-from .motion import Demands
+from .motion import NO_DEMANDS, Demands
 from .protocols import PROTOCOLS
 
 
@@ -21,12 +21,12 @@ class Cause:
 
     plan: Callable[[np.random.Generator, float, Setting], Injected]
     protocols: tuple[str, ...]
-    demands: Demands = Demands()
-    easy_demands: Demands = Demands()
+    demands: Demands = NO_DEMANDS
+    easy_demands: Demands = NO_DEMANDS
     """Asked on the easy bench besides."""
 
 
-ONE_TURN = ("static", "static_both", "many_turns", "speeds", "oven", "spin")
+ONE_TURN = tuple(PROTOCOLS)
 BOTH_WAYS = ("static_both", "oven_both", "speeds")
 STOPPED = ("static", "static_both", "many_turns", "oven")
 OVENS = ("oven", "oven_both")
@@ -41,9 +41,7 @@ CAUSES: dict[str, Cause] = {
     "magnet_harmonic": Cause(shaft.plan_magnet_harmonic, ONE_TURN),
     "cardan_coupling": Cause(shaft.plan_cardan_coupling, STOPPED, Demands(channels=True)),
     "reference_eccentricity": Cause(shaft.plan_reference_eccentricity, STOPPED, Demands(channels=True)),
-    "drive_ripple": Cause(
-        shaft.plan_drive_ripple, LONG, Demands(points=96, single_readings=True), Demands(points=300)
-    ),
+    "drive_ripple": Cause(shaft.plan_drive_ripple, LONG, Demands(points=96, single_readings=True), Demands(points=300)),
     "bearing_wobble": Cause(
         shaft.plan_bearing_wobble, ("static", "many_turns", "spin"), Demands(turns=4, single_readings=True)
     ),
@@ -57,12 +55,8 @@ CAUSES: dict[str, Cause] = {
     "phase_drift": Cause(channel.plan_phase_drift, OVENS),
     "offset_drift": Cause(channel.plan_offset_drift, OVENS),
     "gain_drift": Cause(channel.plan_gain_drift, OVENS),
-    "zero_drift": Cause(
-        shaft.plan_zero_drift, LONG, Demands(turns=2, time_column=True, single_readings=True)
-    ),
-    "index_slip": Cause(
-        shaft.plan_index_slip, LONG, Demands(turns=2, time_column=True, single_readings=True)
-    ),
+    "zero_drift": Cause(shaft.plan_zero_drift, LONG, Demands(turns=2, time_column=True, single_readings=True)),
+    "index_slip": Cause(shaft.plan_index_slip, LONG, Demands(turns=2, time_column=True, single_readings=True)),
     "mains_pickup": Cause(channel.plan_mains_pickup, LIVE, Demands(time_column=True, mains_free=True)),
     "reference_ripple": Cause(channel.plan_reference_ripple, LIVE, Demands(time_column=True)),
     "reference_jitter": Cause(channel.plan_reference_jitter, ONE_TURN, Demands(single_readings=True)),
@@ -72,5 +66,3 @@ CAUSES: dict[str, Cause] = {
     "stale_frames": Cause(word.plan_stale_frames, SEQUENCE, Demands(single_readings=True)),
     "bus_glitch": Cause(word.plan_bus_glitch, ONE_TURN, Demands(single_readings=True)),
 }
-
-EVERY_PROTOCOL = tuple(PROTOCOLS)

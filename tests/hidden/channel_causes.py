@@ -234,6 +234,7 @@ def adc_stuck_bit(channels: Channels, motion: Motion, injected: Injected) -> Cha
         lsb = 2.0 * full_scale / 2.0**word
         code = np.clip(np.round((channel + full_scale) / lsb), 0, 2.0**word - 1).astype(np.int64)
         stuck = code | mask if high else code & ~mask
-        return stuck * lsb - full_scale
+        level: Array = stuck * lsb - full_scale
+        return level
 
     return convert(channels[0]), convert(channels[1])

@@ -11,11 +11,9 @@ from .baseline import Injected
 from .chain import Bench, convert, field_channels, reference
 from .motion import Array
 
-NOT_A_MEAN = frozenset(
-    {"cordic_truncation", "output_quantisation", "stale_frames", "bus_glitch", "adc_stuck_bit"}
-)
+NOT_A_MEAN = frozenset({"cordic_truncation", "output_quantisation", "stale_frames", "bus_glitch", "adc_stuck_bit"})
 """Seen in values and their sequence: no clearance is given for them."""
-FREED = ("zero_deg", "offset_x", "offset_y", "amplitude_x", "amplitude_y", "phase_deg", "quadratic")
+FREED = ("amplitude_x", "amplitude_y", "offset_x", "offset_y", "phase_deg", "quadratic")
 
 
 def observed(bench: Bench, causes: Sequence[Injected]) -> Array:
@@ -23,9 +21,8 @@ def observed(bench: Bench, causes: Sequence[Injected]) -> Array:
     x, y = convert(bench, field_channels(bench, causes), causes)
     back = np.exp(-1j * np.radians(bench.baseline.sense * reference(bench, causes) + bench.baseline.zero_deg))
     turned = (x + 1j * y) * back
-    if bench.channels:
-        return np.degrees(np.concatenate([turned.imag, turned.real]))
-    return np.degrees(np.angle(turned))
+    seen: Array = np.concatenate([turned.imag, turned.real]) if bench.channels else np.angle(turned)
+    return np.rad2deg(seen)
 
 
 def _whiten(bench: Bench, columns: Array) -> Array:
@@ -56,18 +53,25 @@ def clearance_sigma(bench: Bench, causes: Sequence[Injected], name: str) -> floa
         return float(added / (1 + added) * np.sqrt(len(bench.motion.time_s) / 2))
     others = [injected for injected in causes if injected.name != name]
     bare = observed(bench, others)
-    columns = [observed(bench, causes) - bare]
-    for parameter in FREED:
-        nudged = replace(bench.baseline, **{parameter: getattr(bench.baseline, parameter) + 1e-4})
-        if parameter == "zero_deg":
-            # `observed` turns back by the zero as well: nudge the shaft instead
-            columns.append(_turned(bench, bare))
-            continue
-        columns.append((observed(replace(bench, baseline=nudged), others) - bare) / 1e-4)
+    # `observed` turns back by the zero, so its derivative has to be written down
+    columns = [observed(bench, causes) - bare, _turned(bench, bare)]
+    # the common scale does not show in an angle
+    freed = FREED if bench.channels else FREED[1:]
+    columns += [_derivative(bench, others, parameter) for parameter in freed]
     white = _whiten(bench, np.stack(columns, axis=1))
     signal, nuisance = white[:, 0], white[:, 1:]
-    fitted, *_ = np.linalg.lstsq(nuisance, signal, rcond=1e-10)
+    fitted, *_ = np.linalg.lstsq(nuisance, signal, rcond=1e-9)
     return float(np.linalg.norm(signal - nuisance @ fitted))
+
+
+def _derivative(bench: Bench, causes: Sequence[Injected], parameter: str) -> Array:
+    """Central difference of the readings in one parameter of the baseline."""
+    at, nudge = getattr(bench.baseline, parameter), 1e-4
+    ahead, behind = (
+        observed(replace(bench, baseline=replace(bench.baseline, **{parameter: at + way})), causes)
+        for way in (nudge, -nudge)
+    )
+    return (ahead - behind) / (2 * nudge)
 
 
 def _turned(bench: Bench, bare: Array) -> Array:

@@ -18,11 +18,11 @@ import numpy as np
 from . import baseline as baselines
 from . import noise as noises
 from . import protocols, structures
-from .baseline import Baseline, Injected, Setting
-from .catalogue import CAUSES, EVERY_PROTOCOL
+from .baseline import Injected, Setting
+from .catalogue import CAUSES
 from .chain import Bench, Readings, sample
 from .clearance import clearance_sigma
-from .motion import Array, Demands, Motion
+from .motion import Array, Demands
 from .noise import Noise
 from .streams import stream
 
@@ -80,8 +80,8 @@ def draw(
         barred = ""
     suitable = suitable_protocols(labels, structure)
     if asked:
-        if asked not in EVERY_PROTOCOL:
-            raise ValueError(f"protocol must be one of {EVERY_PROTOCOL}; instead received {asked!r}")
+        if asked not in protocols.PROTOCOLS:
+            raise ValueError(f"protocol must be one of {sorted(protocols.PROTOCOLS)}; instead received {asked!r}")
         chosen = asked
     elif suitable:
         chosen = protocols.choose(stream(seed, key, "protocol"), suitable)
@@ -145,7 +145,7 @@ def suitable_protocols(labels: Sequence[str], structure: str | None = None) -> t
     lists = [CAUSES[name].protocols for name in labels]
     if structure is not None:
         lists.append(structures.STRUCTURES[structure].protocols)
-    return tuple(one for one in EVERY_PROTOCOL if all(one in names for names in lists))
+    return tuple(one for one in protocols.PROTOCOLS if all(one in names for names in lists))
 
 
 def demanded(labels: Sequence[str], structure: str | None, bench: str) -> Demands:
@@ -194,8 +194,7 @@ def _columns(
     setup: Bench, readings: Readings, demands: Demands, bench: str, rng: np.random.Generator
 ) -> dict[str, Array]:
     """The columns a bench of this kind writes down; redundant ones are left out at times."""
-    motion: Motion = setup.motion
-    own: Baseline = setup.baseline
+    motion = setup.motion
     hard = bench == "hard"
     omit = 0.5 if hard else 0.1
     columns: dict[str, Array] = {}
@@ -232,6 +231,4 @@ def _columns(
         columns["temperature_c"] = warm
     if setup.channels:
         columns["vx"], columns["vy"] = readings.x, readings.y
-    if own.channel_sense < 0 and not setup.channels and rng.random() < 0.0:
-        raise AssertionError
     return columns

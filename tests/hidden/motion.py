@@ -82,6 +82,9 @@ class Demands:
         )
 
 
+NO_DEMANDS = Demands()
+
+
 @dataclass(frozen=True)
 class Leg:
     """A stretch of one direction, speed and temperature."""

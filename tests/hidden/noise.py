@@ -23,22 +23,22 @@ class Noise:
 
     def sample(self, rng: np.random.Generator, rows: int) -> Array:
         """Angle noise in degrees, shape (rows,)."""
-        white = rng.standard_normal(rows)
+        unit: Array = rng.standard_normal(rows)
         if self.kind == "ar1":
-            return self.sigma_deg * _coloured(white, self.correlation)
-        if self.kind == "pink":
-            return self.sigma_deg * np.fft.irfft(np.fft.rfft(white) * _pink_gain(rows), rows)
-        if self.kind == "jig":
+            unit = _coloured(unit, self.correlation)
+        elif self.kind == "pink":
+            unit = np.fft.irfft(np.fft.rfft(unit) * _pink_gain(rows), rows)
+        elif self.kind == "jig":
             shared = np.repeat(rng.standard_normal(-(-rows // self.repeats)), self.repeats)[:rows]
-            return self.sigma_deg * (0.95 * shared + np.sqrt(1 - 0.95**2) * white)
-        return self.sigma_deg * white
+            unit = 0.95 * shared + np.sqrt(1 - 0.95**2) * unit
+        return self.sigma_deg * unit
 
     def whiten(self, columns: Array) -> Array:
         """Columns of shape (rows, k) [deg] in units of independent standard deviations."""
         rows = len(columns)
         if self.kind == "ar1":
-            independent = columns[1:] - self.correlation * columns[:-1]
-            return independent / (self.sigma_deg * np.sqrt(1 - self.correlation**2))
+            innovation: Array = columns[1:] - self.correlation * columns[:-1]
+            return innovation / (self.sigma_deg * float(np.sqrt(1 - self.correlation**2)))
         if self.kind == "pink":
             gain = _pink_gain(rows)[:, None]
             spectrum = np.fft.rfft(columns, axis=0)
@@ -62,14 +62,14 @@ def _coloured(white: Array, correlation: float) -> Array:
 
 
 def _pink_gain(rows: int) -> Array:
-    """Spectral gain 1/sqrt(f) of unit total variance, no mean; shape (rows // 2 + 1,)."""
+    """Gain 1/sqrt(f) of a spectrum for unit total variance, no mean; shape (rows // 2 + 1,)."""
     index = np.arange(rows // 2 + 1, dtype=float)
     gain = np.zeros_like(index)
     gain[1:] = index[1:] ** -0.5
     weight = np.full_like(index, 2.0)
     if rows % 2 == 0:
         weight[-1] = 1.0
-    return gain / np.sqrt(np.sum(weight * gain**2) / rows)
+    return gain / float(np.sqrt(np.sum(weight * gain**2) / rows))
 
 
 def choose(rng: np.random.Generator, *, bench: str, repeats: int) -> Noise:

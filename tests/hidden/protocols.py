@@ -101,10 +101,7 @@ def _oven(rng: np.random.Generator, hard: bool, demands: Demands) -> tuple[Leg, 
     """Four temperatures, one way, one or two turns each."""
     each = 1 if hard else int(rng.choice((1, 2)))
     pause = 1800.0 if rng.random() < 0.4 else 0.0
-    return tuple(
-        Leg(each, 1, 0.0, level, pause if number else 0.0)
-        for number, level in enumerate(_levels(rng, hard))
-    )
+    return tuple(Leg(each, 1, 0.0, level, pause if number else 0.0) for number, level in enumerate(_levels(rng, hard)))
 
 
 def _oven_both(rng: np.random.Generator, hard: bool, demands: Demands) -> tuple[Leg, ...]:
@@ -128,7 +125,7 @@ PROTOCOLS: dict[str, Draw] = {
     "oven": _oven,
     "oven_both": _oven_both,
 }
-WEIGHTS = {"static": 3.0, "static_both": 2.0, "speeds": 2.0, "oven": 2.0, "spin_both": 0.5}
+WEIGHTS = {"static": 4.0, "static_both": 3.0, "speeds": 2.0, "oven": 1.5, "spin_both": 0.5}
 """How often a protocol is taken among the suitable ones; 1 where not listed."""
 
 

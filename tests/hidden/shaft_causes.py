@@ -15,7 +15,8 @@ from .motion import Array, Motion
 def _line(angle_deg: Array, order: float, injected: Injected) -> Array:
     """amplitude sin(order angle + phase)."""
     phase = np.radians(injected.parameters["phase_deg"])
-    return injected.parameters["amplitude_deg"] * np.sin(order * np.radians(angle_deg) + phase)
+    wave: Array = np.sin(order * np.radians(angle_deg) + phase)
+    return injected.parameters["amplitude_deg"] * wave
 
 
 def _any_phase(rng: np.random.Generator) -> float:
@@ -103,15 +104,11 @@ def bearing_wobble(shaft: Array, motion: Motion, injected: Injected) -> Array:
 
 
 def plan_zero_drift(rng: np.random.Generator, strength: float, setting: Setting) -> Injected:
-    """Strength: half of what is covered during the sweep; time_constant_s is infinite for a linear drift."""
+    """Strength: half of what is covered during the sweep; a linear drift has no time_constant_s."""
     duration = float(np.ptp(setting.motion.time_s))
     way = float(rng.choice((-1.0, 1.0)))
     if rng.random() < 0.35:
-        return Injected(
-            "zero_drift",
-            strength,
-            {"amplitude_deg": 2 * way * strength, "time_constant_s": float("inf")},
-        )
+        return Injected("zero_drift", strength, {"amplitude_deg": 2 * way * strength})
     constant = duration * float(rng.uniform(0.12, 0.6))
     final = 2 * way * strength / (1 - np.exp(-duration / constant))
     return Injected("zero_drift", strength, {"amplitude_deg": float(final), "time_constant_s": constant})
@@ -120,8 +117,8 @@ def plan_zero_drift(rng: np.random.Generator, strength: float, setting: Setting)
 def zero_drift(shaft: Array, motion: Motion, injected: Injected) -> Array:
     """First order in time towards amplitude_deg, or linear and there at the end."""
     since = motion.time_s - motion.time_s[0]
-    constant = injected.parameters["time_constant_s"]
-    share = -np.expm1(-since / constant) if np.isfinite(constant) else since / since[-1]
+    constant = injected.parameters.get("time_constant_s")
+    share: Array = since / since[-1] if constant is None else -np.expm1(-since / constant)
     return shaft + injected.parameters["amplitude_deg"] * share
 
 
@@ -166,9 +163,7 @@ def hysteresis(shaft: Array, motion: Motion, injected: Injected) -> Array:
 
 def plan_reference_eccentricity(rng: np.random.Generator, strength: float, setting: Setting) -> Injected:
     """Strength: the amplitude."""
-    return Injected(
-        "reference_eccentricity", strength, {"amplitude_deg": strength, "phase_deg": _any_phase(rng)}
-    )
+    return Injected("reference_eccentricity", strength, {"amplitude_deg": strength, "phase_deg": _any_phase(rng)})
 
 
 def reference_eccentricity(motion: Motion, injected: Injected) -> Array:

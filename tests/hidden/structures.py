@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .baseline import Injected, Setting
-from .motion import Array, Demands, Motion
+from .motion import NO_DEMANDS, Array, Demands, Motion
+from .protocols import PROTOCOLS
 
 Plan = Callable[[np.random.Generator, Setting], dict[str, float]]
 Added = Callable[[Motion, dict[str, float]], Array]
@@ -21,7 +22,8 @@ Added = Callable[[Motion, dict[str, float]], Array]
 
 def _wave(turns: Array, given: dict[str, float]) -> Array:
     """sin of an angle in turns, with the structure's phase."""
-    return np.sin(2 * np.pi * turns + np.radians(given["phase_deg"]))
+    wave: Array = np.sin(2 * np.pi * turns + np.radians(given["phase_deg"]))
+    return wave
 
 
 def _phase(rng: np.random.Generator) -> float:
@@ -58,7 +60,8 @@ def _plan_bump(rng: np.random.Generator, setting: Setting) -> dict[str, float]:
 
 def _bump(motion: Motion, given: dict[str, float]) -> Array:
     away = np.mod(motion.shaft_deg - given["centre_deg"] + 180.0, 360.0) - 180.0
-    return given["sign"] * np.exp(-4 * np.log(2.0) * (away / given["fwhm_deg"]) ** 2)
+    bump: Array = given["sign"] * np.exp(-4 * np.log(2.0) * (away / given["fwhm_deg"]) ** 2)
+    return bump
 
 
 def _plan_direction(rng: np.random.Generator, setting: Setting) -> dict[str, float]:
@@ -74,7 +77,8 @@ def _plan_temperature(rng: np.random.Generator, setting: Setting) -> dict[str, f
 
 
 def _temperature(motion: Motion, given: dict[str, float]) -> Array:
-    return motion.warmth / np.abs(motion.warmth).max() * _order(motion, given)
+    share: Array = motion.warmth / np.abs(motion.warmth).max()
+    return share * _order(motion, given)
 
 
 def _plan_time(rng: np.random.Generator, setting: Setting) -> dict[str, float]:
@@ -108,7 +112,8 @@ def _plan_speed(rng: np.random.Generator, setting: Setting) -> dict[str, float]:
 
 def _speed(motion: Motion, given: dict[str, float]) -> Array:
     share = motion.speed_rpm / np.abs(motion.speed_rpm).max()
-    return -share * np.abs(share)
+    lag: Array = -share * np.abs(share)
+    return lag
 
 
 @dataclass(frozen=True)
@@ -119,15 +124,13 @@ class Structure:
     plan: Plan
     added: Added
     """Unit amplitude, shape (n,)."""
-    demands: Demands = Demands()
+    demands: Demands = NO_DEMANDS
 
 
-ALL = ("static", "static_both", "many_turns", "speeds", "oven", "spin")
+ALL = tuple(PROTOCOLS)
 STRUCTURES: dict[str, Structure] = {
     "order_9_to_19": Structure(ALL, _plan_high_order, _order),
-    "non_integer_order": Structure(
-        ("static", "many_turns", "spin"), _plan_non_integer, _non_integer, Demands(turns=4)
-    ),
+    "non_integer_order": Structure(("static", "many_turns", "spin"), _plan_non_integer, _non_integer, Demands(turns=4)),
     "local_bump": Structure(ALL, _plan_bump, _bump),
     "direction_times_order": Structure(("static_both", "oven_both", "spin_both"), _plan_direction, _direction),
     "temperature_times_order": Structure(("oven", "oven_both"), _plan_temperature, _temperature),

@@ -48,8 +48,8 @@ def plan_output_quantisation(rng: np.random.Generator, strength: float, setting:
 
 def to_words(angle_deg: Array, bits: int) -> Words:
     """Nearest word of an angle."""
-    scale = 2**bits
-    return np.mod(np.round(angle_deg * (scale / 360.0)).astype(np.int64), scale)
+    nearest: Words = np.mod(np.round(angle_deg * (2**bits / 360.0)), 2**bits).astype(np.int64)
+    return nearest
 
 
 def _apart(rng: np.random.Generator, allowed: Array, count: int) -> Array:

@@ -1,0 +1,207 @@
+"""Score an answerer on sweeps it has never seen.
+
+    python -m tests.hidden.study --set single,pairs --draws 20 --seed 7 -o study.json
+    python -m tests.hidden.study --make hysteresis --seed 5 --bench hard -o sweep.csv
+
+The second form writes one draw, as the list of failures of the first names it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import multiprocessing
+import os
+import tempfile
+import time
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from .generator import draw
+from .scoring import verdict
+from .sets import GROUPS, Job, jobs
+from .tables import print_group
+
+Answerer = Callable[[str], Mapping[str, Any]]
+DEFAULT_ANSWERER = "scenarios.explain:explain_file"
+ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+GRAINY = frozenset(
+    {
+        "output_quantisation",
+        "cordic_truncation",
+        "stale_frames",
+        "adc_stuck_bit",
+        "reference_jitter",
+        "noise_burst",
+    }
+)
+"""Where the noise put in is not what a perfect answer leaves."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What became of one draw."""
+
+    job: Job
+    truth: Mapping[str, Any]
+    verdict: str
+    """One of scoring.VERDICTS, or failed."""
+    names: tuple[str, ...]
+    alternatives: tuple[tuple[str, ...], ...]
+    says: str
+    """The answer's own verdict."""
+    cpu_s: float
+    noise_ratio: float | None
+    """RMS that the extended twin leaves over that of noise and rounding."""
+    message: str = ""
+
+    def record(self) -> dict[str, object]:
+        """For a JSON file."""
+        return {
+            **self.job.record(),
+            "command": self.job.command(),
+            "verdict": self.verdict,
+            "names": list(self.names),
+            "indistinguishable_from": [list(one) for one in self.alternatives],
+            "answer_verdict": self.says,
+            "cpu_s": self.cpu_s,
+            "noise_ratio": self.noise_ratio,
+            "message": self.message,
+            "truth": dict(self.truth),
+        }
+
+
+def load(answerer: str) -> Answerer:
+    """The callable that "module:function" names."""
+    module, _, function = answerer.partition(":")
+    found: Answerer = getattr(importlib.import_module(module), function)
+    return found
+
+
+def noise_ratio(answer: Mapping[str, Any], truth: Mapping[str, Any]) -> float | None:
+    """Extended RMS over the RMS of noise and rounding put in; None where values and sequence rule."""
+    if GRAINY & set(truth["strength_deg"]) or "extended" not in answer:
+        return None
+    rms = answer["extended"].get("rms_deg")
+    return None if rms is None else float(rms) / float(truth["floor_deg"])
+
+
+def carry_out(job: Job, answerer: str, folder: str) -> Result:
+    """Draw, write, ask and score; whatever the answerer raises is kept as a failure."""
+    hidden = job.draw()
+    path = Path(folder) / f"{job.group}-{job.seed}-{os.getpid()}.csv"
+    hidden.write_csv(path)
+    explain = load(answerer)
+    started = time.process_time()
+    try:
+        answer = explain(str(path))
+        spent = time.process_time() - started
+        entries = list(answer["causes"])
+        return Result(
+            job=job,
+            truth=hidden.truth,
+            verdict=verdict(answer, hidden.truth),
+            names=tuple(entry["name"] for entry in entries),
+            alternatives=tuple(tuple(entry.get("indistinguishable_from", ())) for entry in entries),
+            says=str(answer.get("verdict", "")),
+            cpu_s=spent,
+            noise_ratio=noise_ratio(answer, hidden.truth),
+        )
+    except Exception as error:
+        return Result(
+            job=job,
+            truth=hidden.truth,
+            verdict="failed",
+            names=(),
+            alternatives=(),
+            says="",
+            cpu_s=time.process_time() - started,
+            noise_ratio=None,
+            message=f"{type(error).__name__}: {error}",
+        )
+    finally:
+        path.unlink(missing_ok=True)
+
+
+def run(todo: Sequence[Job], *, answerer: str, processes: int, console: Console) -> list[Result]:
+    """Carry out all jobs, in their order."""
+    # read by the libraries when a worker loads them, so it has to stand before the pool does
+    os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
+    results: dict[int, Result] = {}
+    context = multiprocessing.get_context("spawn")
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        ProcessPoolExecutor(processes, mp_context=context) as pool,
+        console.status("drawing") as status,
+    ):
+        pending = {pool.submit(carry_out, job, answerer, folder): at for at, job in enumerate(todo)}
+        for future in as_completed(pending):
+            results[pending[future]] = future.result()
+            wrong = sum(result.verdict != "right" for result in results.values())
+            status.update(f"{len(results)} of {len(todo)} answered, {wrong} not right")
+    return [results[at] for at in range(len(todo))]
+
+
+def parser() -> argparse.ArgumentParser:
+    """Options of the command."""
+    made = argparse.ArgumentParser(prog="python -m tests.hidden.study", description=__doc__.splitlines()[0])
+    made.add_argument("--set", default="single", help=f"comma-separated, of {', '.join(GROUPS)}; or all")
+    made.add_argument("--only", default="", help="comma-separated causes, structures or labels to keep")
+    made.add_argument("--draws", type=int, default=20, help="draws of each label")
+    made.add_argument("--seed", type=int, default=1)
+    made.add_argument("--jobs", type=int, default=2, help="processes")
+    made.add_argument("--answerer", default=DEFAULT_ANSWERER, help="module:function, path -> dict")
+    made.add_argument("--make", metavar="CAUSES", help="write one draw: names joined by + or ','; or clean")
+    made.add_argument("--bench", default="easy", choices=("easy", "hard"))
+    made.add_argument("--strength", default="normal", choices=("normal", "weak"))
+    made.add_argument("--protocol")
+    made.add_argument("--structure")
+    made.add_argument("-o", "--output", type=Path, help="JSON of the study, or CSV of the draw")
+    return made
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The command."""
+    options = parser().parse_args(arguments)
+    # a file or a pipe has no width of its own
+    console = Console() if Console().is_terminal else Console(width=160)
+    if options.make is not None:
+        causes = [one for one in options.make.replace(",", "+").split("+") if one not in ("", "clean")]
+        hidden = draw(
+            causes,
+            seed=options.seed,
+            bench=options.bench,
+            strength=options.strength,
+            protocol=options.protocol,
+            structure=options.structure,
+        )
+        if options.output is not None:
+            hidden.write_csv(options.output)
+        console.print_json(json.dumps(hidden.truth))
+        return 0
+
+    groups = list(GROUPS) if options.set == "all" else options.set.split(",")
+    only = frozenset(one.strip() for one in options.only.split(",") if one.strip())
+    todo = [job for group in groups for job in jobs(group, draws=options.draws, seed=options.seed, only=only)]
+    results = run(todo, answerer=options.answerer, processes=options.jobs, console=console)
+    for group in groups:
+        print_group(console, group, [result for result in results if result.job.group == group])
+    if options.output is not None:
+        record = {
+            "answerer": options.answerer,
+            "seed": options.seed,
+            "draws": options.draws,
+            "results": [result.record() for result in results],
+        }
+        options.output.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

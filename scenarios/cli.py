@@ -1,13 +1,14 @@
-"""The command line. Each command lives in a file of its own and is imported when it is called."""
+"""The command line: options only. What a command does lives in the file of its name, imported when it is called."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from importlib import import_module
-from typing import Any
+from pathlib import Path
+from typing import Annotated
 
 import typer
+
+from twin.errors import UserError
 
 app = typer.Typer(
     name="halltwin",
@@ -15,25 +16,38 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    rich_markup_mode=None,
 )
 
+Seed = Annotated[int, typer.Option(help="Seed of everything random; the same seed gives the same bytes.")]
 
-def later(module: str, function: str) -> Callable[..., Any]:
-    """A function of the project that is imported only when it is called, so that ``--help`` answers at once."""
 
-    def call(*args: Any, **kwargs: Any) -> Any:
-        return getattr(import_module(module), function)(*args, **kwargs)
+@app.command()
+def explain(
+    sweep: Annotated[Path, typer.Argument(help="Measured sweep: CSV or .csv.gz.")],
+    twin: Annotated[Path | None, typer.Option(help="Hold the sweep against this twin as it is.")] = None,
+    json: Annotated[Path | None, typer.Option(help="Write the answer as JSON.")] = None,
+    report: Annotated[Path | None, typer.Option(help="Write a self-contained HTML report.")] = None,
+    extended: Annotated[Path | None, typer.Option(help="Write the extended twin (TOML).")] = None,
+    seed: Seed = 0,
+) -> None:
+    """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""
+    from scenarios.explain import run
 
-    return call
+    run(sweep, twin=twin, json_path=json, report=report, extended=extended, seed=seed)
+
+
+@app.command()
+def causes(
+    markdown: Annotated[bool, typer.Option("--markdown", help="As the table of the README.")] = False,
+) -> None:
+    """List the causes that the twin can simulate and the search can name."""
+    from scenarios.causes import run
+
+    run(markdown=markdown)
 
 
 def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
-    # The commands are declared in scenarios.commands: one function each, with its options.
-    from scenarios import commands  # noqa: F401
-    from twin.errors import UserError
-
     try:
         app()
     except UserError as error:

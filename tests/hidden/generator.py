@@ -93,7 +93,7 @@ def draw(
     own = baselines.choose(stream(seed, key, "baseline"), bench=bench)
     rng = stream(seed, key, "bench")
     noise = noises.choose(rng, bench=bench, repeats=motion.repeats)
-    channels = bool(demands.channels or rng.random() < 0.35)
+    channels = bool(demands.channels or rng.random() < 0.25)
     channels = bool(forced) or (channels and not barred)
     setting = Setting(motion, own, noise, _bits(rng, bench, noise, labels), strength == "weak")
 
@@ -109,7 +109,7 @@ def draw(
         step = 360.0 / 2**bits
         # the definition asks that rounding rule over what is left otherwise
         noise = replace(noise, sigma_deg=min(noise.sigma_deg, step / np.sqrt(12.0) / (1.6 * GRID_CAUSE)))
-    scale, grid = _channel_unit(rng, bench)
+    scale, grid = _channel_unit(rng, bench, by_name.get("adc_stuck_bit"))
     setup = Bench(motion, own, noise, bits, channels, scale, grid)
     readings = sample(setup, injected, stream(seed, key, "noise"))
     columns = _columns(setup, readings, demands, bench, stream(seed, key, "columns"))
@@ -167,9 +167,11 @@ def _settle(name: str, rng: np.random.Generator, setting: Setting) -> Injected:
 def _bits(rng: np.random.Generator, bench: str, noise: Noise, labels: Sequence[str]) -> int:
     """Bits of the angle word where rounding is not the cause."""
     fine = rng.random() < 0.75
+    if "cordic_truncation" in labels:
+        # a coarse word would leave nothing of the set of angles to see
+        return 14 if bench == "hard" else 16
     if bench == "hard":
-        # iterations fewer than a coarse word needs would leave nothing to see
-        return 14 if "cordic_truncation" in labels else 12
+        return 12
     small = 360.0 / 2**14 / np.sqrt(12.0) < 0.7 * GRID_CAUSE * noise.sigma_deg
     return 14 if small and not fine else 16
 
@@ -181,8 +183,12 @@ def _tolerated(setup: Bench, labels: Sequence[str]) -> list[str]:
     return ["output_quantisation"] if near and "output_quantisation" not in labels else []
 
 
-def _channel_unit(rng: np.random.Generator, bench: str) -> tuple[float, float]:
+def _channel_unit(rng: np.random.Generator, bench: str, stuck: Injected | None) -> tuple[float, float]:
     """Recorded unit over nominal amplitude, and its step."""
+    if stuck is not None:
+        # what is recorded are the codes of that converter, as they are or as multiples of the amplitude
+        step = float(2.0 * stuck.hidden["full_scale"][0] / 2.0 ** stuck.hidden["bits"][0])
+        return (1.0, step) if bench == "easy" or rng.random() < 0.5 else (1.0 / step, 1.0)
     if bench == "easy" or rng.random() < 0.5:
         return 1.0, 2.0**-15
     unit = int(rng.integers(0, 3))

@@ -108,6 +108,7 @@ class Layout:
     uneven: float = 0.0
     """Half width of a uniform spread, as a share of the spacing."""
     dwell_s: float = 0.4
+    start_s: float = 0.0
     repeats: int = 1
     reversal: str = "overrun"
     """overrun: one step further before turning back; same: the last angle once more; back: one step back."""
@@ -146,13 +147,13 @@ def run(protocol: str, layout: Layout, rng: np.random.Generator) -> Motion:
     moving = bool(np.any(rpm > 0))
     with np.errstate(divide="ignore"):
         each_s = np.where(rpm > 0, step_deg / (6.0 * rpm), layout.dwell_s * layout.repeats)
-    before = np.concatenate([[0.0], np.cumsum(each_s)[:-1]])
+    before = layout.start_s + np.concatenate([[0.0], np.cumsum(each_s)[:-1]])
     first = np.diff(leg, prepend=-1) > 0
     before += np.cumsum(np.where(first, np.array([one.pause_s for one in legs])[leg], 0.0))
     if moving and layout.uneven > 0:
         # a shaft at constant speed is early or late by the angle it is off
         before += wander * direction / (6.0 * rpm)
-        before -= before[0]
+        before += layout.start_s - before[0]
 
     revolution = np.zeros(stops, dtype=np.int64)
     for number in range(len(legs)):

@@ -157,6 +157,7 @@ def drive(name: str, rng: np.random.Generator, *, bench: str, demands: Demands) 
         jitter_deg=0.0 if style < 0.15 else 0.001,
         uneven=float(rng.uniform(0.05, 0.25)) if style > 0.8 else 0.0,
         dwell_s=0.4 if rng.random() < 0.6 else float(np.round(rng.uniform(0.05, 1.5), 2)),
+        start_s=float(np.round(rng.uniform(0.0, 5e4), 3)) if hard and rng.random() < 0.3 else 0.0,
         repeats=repeats,
         reversal="overrun" if moving else str(rng.choice(("overrun", "same", "back"))),
         legs=legs,

@@ -104,13 +104,16 @@ def bearing_wobble(shaft: Array, motion: Motion, injected: Injected) -> Array:
 
 
 def plan_zero_drift(rng: np.random.Generator, strength: float, setting: Setting) -> Injected:
-    """Strength: half of what is covered during the sweep; a linear drift has no time_constant_s."""
+    """Covers one to two strengths during the sweep, for the zero takes the mean.
+
+    A linear drift has no time_constant_s; its amplitude_deg is what it has covered at the end.
+    """
     duration = float(np.ptp(setting.motion.time_s))
-    way = float(rng.choice((-1.0, 1.0)))
+    covered = strength * float(rng.choice((-1.0, 1.0)) * rng.uniform(1.0, 2.0))
     if rng.random() < 0.35:
-        return Injected("zero_drift", strength, {"amplitude_deg": 2 * way * strength})
+        return Injected("zero_drift", strength, {"amplitude_deg": covered})
     constant = duration * float(rng.uniform(0.12, 0.6))
-    final = 2 * way * strength / (1 - np.exp(-duration / constant))
+    final = covered / (1 - np.exp(-duration / constant))
     return Injected("zero_drift", strength, {"amplitude_deg": float(final), "time_constant_s": constant})
 
 
@@ -185,15 +188,15 @@ def reference_rezero(motion: Motion, injected: Injected) -> Array:
 
 
 def plan_index_slip(rng: np.random.Generator, strength: float, setting: Setting) -> Injected:
-    """A step in e of sqrt(2) strength, in the middle seven tenths of the rows."""
+    """A step in e of one to one and a half strengths, in the middle seven tenths of the rows."""
     rows = len(setting.motion.time_s)
     row = int(rng.integers(int(0.15 * rows), int(0.85 * rows)))
-    step = float(rng.choice((-1.0, 1.0))) * np.sqrt(2.0) * strength
+    step = strength * float(rng.choice((-1.0, 1.0)) * rng.uniform(1.0, 1.5))
     time = setting.motion.time_s
     return Injected(
         "index_slip",
         strength,
-        {"step_deg": float(step), "time_s": float(0.5 * (time[row - 1] + time[row]))},
+        {"step_deg": step, "time_s": float(0.5 * (time[row - 1] + time[row]))},
     )
 
 

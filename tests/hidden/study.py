@@ -15,14 +15,17 @@ import multiprocessing
 import os
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
+from .coverage import held
+from .coverage import table as coverage_table
 from .generator import draw
 from .scoring import verdict
 from .sets import GROUPS, Job, jobs
@@ -59,6 +62,10 @@ class Result:
     cpu_s: float
     noise_ratio: float | None
     """RMS that the extended twin leaves over that of noise and rounding."""
+    intervals: Mapping[str, bool] = field(default_factory=dict)
+    """By "cause.parameter": the interval held the truth."""
+    answered: tuple[Mapping[str, Any], ...] = ()
+    """The causes as the answer gave them."""
     message: str = ""
 
     def record(self) -> dict[str, object]:
@@ -72,6 +79,8 @@ class Result:
             "answer_verdict": self.says,
             "cpu_s": self.cpu_s,
             "noise_ratio": self.noise_ratio,
+            "intervals": dict(self.intervals),
+            "answered": [dict(entry) for entry in self.answered],
             "message": self.message,
             "truth": dict(self.truth),
         }
@@ -112,6 +121,8 @@ def carry_out(job: Job, answerer: str, folder: str) -> Result:
             says=str(answer.get("verdict", "")),
             cpu_s=spent,
             noise_ratio=noise_ratio(answer, hidden.truth),
+            intervals=held(answer, hidden.truth),
+            answered=tuple(entries),
         )
     except Exception as error:
         return Result(
@@ -146,6 +157,16 @@ def run(todo: Sequence[Job], *, answerer: str, processes: int, console: Console)
             wrong = sum(result.verdict != "right" for result in results.values())
             status.update(f"{len(results)} of {len(todo)} answered, {wrong} not right")
     return [results[at] for at in range(len(todo))]
+
+
+def confusion(results: Sequence[Result], group: str) -> dict[str, dict[str, int]]:
+    """How often each name was given, for every label of a set; "nothing" where none was."""
+    counts: dict[str, Counter[str]] = {}
+    for result in results:
+        if result.job.group == group:
+            given = result.names or ("failed" if result.verdict == "failed" else "nothing",)
+            counts.setdefault(result.job.label, Counter()).update(given)
+    return {label: dict(names) for label, names in counts.items()}
 
 
 def parser() -> argparse.ArgumentParser:
@@ -192,11 +213,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     results = run(todo, answerer=options.answerer, processes=options.jobs, console=console)
     for group in groups:
         print_group(console, group, [result for result in results if result.job.group == group])
+    intervals = [result.intervals for result in results if result.verdict == "right"]
+    if any(intervals):
+        console.print(coverage_table(intervals))
     if options.output is not None:
         record = {
             "answerer": options.answerer,
             "seed": options.seed,
             "draws": options.draws,
+            "confusion": {group: confusion(results, group) for group in groups},
             "results": [result.record() for result in results],
         }
         options.output.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")

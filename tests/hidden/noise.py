@@ -76,9 +76,9 @@ def choose(rng: np.random.Generator, *, bench: str, repeats: int) -> Noise:
     """The noise of a bench."""
     if bench == "easy":
         return Noise("white", float(rng.uniform(0.01, 0.03)))
-    sigma = float(rng.uniform(0.02, 0.05))
+    sigma = float(rng.uniform(0.015, 0.04))
     if repeats > 1:
         return Noise("jig", sigma, repeats=repeats)
-    if rng.random() < 0.3:
+    if rng.random() < 0.25:
         return Noise("pink", sigma)
     return Noise("ar1", sigma, float(rng.uniform(0.6, 0.9)))

@@ -1,0 +1,191 @@
+"""The paper's modified particle swarm (Eq. 8-11), for many sweeps at once.
+
+Printed as: velocity = inertia x velocity + c1 r1 (own best - position) + c2 r2 (swarm's best - position), with an
+inertia that falls linearly over the iterations (Eq. 10); velocities may be held to multiples of a step (Table 2); a
+particle whose error leaves the band Delta E (Eq. 7) at any angle is discarded (Eq. 11).
+
+Repaired, because it is not printed or cannot work as printed:
+
+- c1, c2 and the inertia's limits are the field's usual 1.494, 0.9 and 0.4.
+- The objective is a sum of squares: the printed signed sum (Eq. 6) lets errors cancel.
+- r1 and r2 are drawn for every coordinate, so that the swarm can turn.
+- Eq. 11 is applied once a particle inside the band is known (before that it would discard everybody). A discarded
+  particle starts again beside the best of a randomly chosen other one, which is what makes the rule pay.
+- Eq. 11 is looked up at a few sentinel readings spread over the turn: a particle outside the band there is outside it
+  for certain, and the cost stays independent of the number of readings.
+
+The search runs in coordinates that span the range with 0..1, so that every parameter moves alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.angles import Array
+
+Objective = Callable[[Array], Array]
+"""Positions (batch, particles, d) -> cost (batch, particles)."""
+Outside = Callable[[Array], NDArray[np.bool_]]
+"""Positions (batch, particles, d) -> whether the particle leaves the band Delta E (batch, particles)."""
+
+_FASTEST = 0.5
+"""Longest move in one iteration, as a part of the range."""
+_SETTLED = 1e-3
+"""The swarm has settled when its own bests cost, on average, this much more than the best of all."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SwarmSettings:
+    """How the swarm moves. The defaults are the paper's 100 particles and 200 iterations."""
+
+    particles: int = 100
+    iterations: int = 200
+    inertia_max: float = 0.9
+    inertia_min: float = 0.4
+    own_pull: float = 1.494
+    best_pull: float = 1.494
+    bounds: Literal["reflect", "clamp"] = "reflect"
+    stop_settled: bool = False
+    """Stop before the last iteration where every swarm of the batch has settled."""
+
+
+class SwarmResult(NamedTuple):
+    """What the swarm found, for each sweep of the batch.
+
+    ``best_history`` is the cost of the best of all after each iteration, the start first; ``own_history`` the mean
+    of the particles' own bests: the two curves of Fig. 13.
+    """
+
+    best: Array
+    """(batch, d)"""
+    best_cost: Array
+    """(batch,)"""
+    best_history: Array
+    """(batch, iterations + 1)"""
+    own_history: Array
+    """(batch, iterations + 1)"""
+    evaluations: int
+    """Evaluated particles a sweep."""
+    discarded: NDArray[np.int64]
+    """Particles discarded by Eq. 11, (batch,)."""
+
+
+def inertia(settings: SwarmSettings, iteration: int) -> float:
+    """Eq. 10."""
+    share = (settings.iterations - iteration) / max(settings.iterations, 1)
+    return share * (settings.inertia_max - settings.inertia_min) + settings.inertia_min
+
+
+def run(
+    objective: Objective,
+    lower: Array,
+    upper: Array,
+    *,
+    rng: np.random.Generator,
+    settings: SwarmSettings | None = None,
+    steps: Array | None = None,
+    outside: Outside | None = None,
+) -> SwarmResult:
+    """Search each box lower..upper (batch, d) with its own swarm.
+
+    ``steps`` (d,) holds velocities, and with them positions, to multiples of the steps (Table 2); ``outside`` turns
+    on the discard rule. The cost of an evaluation is the objective's alone.
+    """
+    settings = settings or SwarmSettings()
+    batch, dims = lower.shape
+    span = (upper - lower)[:, None, :]
+    low = lower[:, None, :]
+    shape = (batch, settings.particles, dims)
+    grid = None if steps is None else steps / span
+    sweeps = np.arange(batch)
+
+    place = rng.random(shape)
+    if grid is not None:
+        place = np.round(place / grid) * grid
+    velocity = (rng.random(shape) - 0.5) * 0.5
+    own = place.copy()
+    own_cost = objective(low + span * place)
+    leader = np.argmin(own_cost, axis=1)
+    discarded = np.zeros(batch, dtype=np.int64)
+    best_history = [own_cost[sweeps, leader]]
+    own_history = [own_cost.mean(axis=1)]
+
+    for iteration in range(1, settings.iterations + 1):
+        best = own[sweeps, leader][:, None, :]
+        pulls = rng.random((2, *shape))
+        velocity *= inertia(settings, iteration - 1)
+        velocity += settings.own_pull * pulls[0] * (own - place)
+        velocity += settings.best_pull * pulls[1] * (best - place)
+        np.clip(velocity, -_FASTEST, _FASTEST, out=velocity)
+        if grid is not None:
+            velocity = np.round(velocity / grid) * grid
+        place += velocity
+        _keep_inside(place, velocity, settings.bounds)
+
+        points = low + span * place
+        now = objective(points)
+        if outside is not None:
+            out = _discard(points, own, place, velocity, low, span, leader, outside, rng)
+            discarded += out.sum(axis=1)
+            now[out] = np.inf
+        better = now < own_cost
+        np.copyto(own, place, where=better[..., None])
+        np.copyto(own_cost, now, where=better)
+        leader = np.argmin(own_cost, axis=1)
+        best_history.append(own_cost[sweeps, leader])
+        own_history.append(own_cost.mean(axis=1))
+        if settings.stop_settled and np.all(own_history[-1] <= (1.0 + _SETTLED) * best_history[-1]):
+            break
+
+    return SwarmResult(
+        best=lower + (upper - lower) * own[sweeps, leader],
+        best_cost=best_history[-1],
+        best_history=np.stack(best_history, axis=1),
+        own_history=np.stack(own_history, axis=1),
+        evaluations=settings.particles * len(best_history),
+        discarded=discarded,
+    )
+
+
+def _keep_inside(place: Array, velocity: Array, bounds: str) -> None:
+    """Bring particles back into 0..1, in place: reflected with their velocity, or stopped at the wall."""
+    beyond = (place < 0.0) | (place > 1.0)
+    if not beyond.any():
+        return
+    if bounds == "reflect":
+        np.copyto(place, np.abs(place), where=place < 0.0)
+        np.copyto(place, 2.0 - place, where=place > 1.0)
+        np.negative(velocity, out=velocity, where=beyond)
+    else:
+        np.clip(place, 0.0, 1.0, out=place)
+        np.copyto(velocity, 0.0, where=beyond)
+
+
+def _discard(
+    points: Array,
+    own: Array,
+    place: Array,
+    velocity: Array,
+    low: Array,
+    span: Array,
+    leader: NDArray[np.intp],
+    outside: Outside,
+    rng: np.random.Generator,
+) -> NDArray[np.bool_]:
+    """Which particles Eq. 11 discards (batch, particles); they are set down beside the best of another, in place."""
+    batch, particles, dims = own.shape
+    sweeps = np.arange(batch)
+    known = ~outside((low + span * own)[sweeps, leader][:, None, :])
+    out = outside(points) & known
+    if out.any():
+        other = rng.integers(particles, size=(batch, particles))
+        spread = own.std(axis=1)[:, None, :]
+        fresh = own[sweeps[:, None], other] + spread * rng.standard_normal(own.shape)
+        np.copyto(place, np.clip(fresh, 0.0, 1.0), where=out[..., None])
+        np.copyto(velocity, 0.0, where=out[..., None])
+    return out

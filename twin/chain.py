@@ -11,6 +11,7 @@ import numpy as np
 from twin.angles import Array, channels_of, wrap
 from twin.catalogue import CATALOGUE, base_name, find
 from twin.effect import ActsOn, Effect, Parameters
+from twin.magnet.assembly import Assembly
 from twin.motion import Motion
 from twin.sweep import Sweep
 
@@ -36,6 +37,7 @@ class Chain:
 
     ``values`` holds the parameters of the effects that are present, by instance key; every other effect is at null
     and does nothing. ``sensor_sense`` is s of a = s theta + zero, ``output_sense`` is h of m = h atan2(y, x).
+    ``magnet`` drives the channels by its computed field; without one they are the field's ideal cosine and sine.
     Immutable: the ``with_`` methods return another chain.
     """
 
@@ -43,6 +45,7 @@ class Chain:
     sensor_sense: int = 1
     output_sense: int = 1
     effects: tuple[Effect, ...] = CATALOGUE
+    magnet: Assembly | None = None
 
     # ---- changing -------------------------------------------------------------------------------------------------
 
@@ -99,13 +102,19 @@ class Chain:
             if acts_on == "shaft":
                 after = self.sensor_sense * signal
             elif acts_on == "field":
-                after = channels_of(np.cos(signal[..., :1, :]), np.sin(signal[..., 1:, :]))
+                after = self._driven(signal, motion)
             elif acts_on == "channels":
                 after = np.arctan2(signal[..., 1:, :], signal[..., :1, :])
             else:
                 after = self.output_sense * signal
             yield Step(f"after {acts_on}", None, sense, signal, after)
             signal = after
+
+    def _driven(self, angle: Array, motion: Motion) -> Array:
+        """The two channels that the field at these angles [rad] (..., 2, n) drives."""
+        if self.magnet is None:
+            return channels_of(np.cos(angle[..., :1, :]), np.sin(angle[..., 1:, :]))
+        return self.magnet.channels(angle, motion)
 
     def readings(self, motion: Motion, values: Values | None = None) -> Array:
         """Expected reading [rad], ``(n,)``, or ``(batch, n)`` where parameters are arrays of shape ``(batch,)``."""

@@ -13,6 +13,7 @@ from twin.catalogue import CATALOGUE, find
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.errors import UserError
+from twin.magnet.assembly import assembly_from, assembly_table
 from twin.sweep_file import write_beside
 
 SCHEMA = "halltwin.twin/1"
@@ -33,6 +34,7 @@ def to_dict(chain: Chain) -> dict[str, Any]:
         "schema": SCHEMA,
         "sensor_sense": chain.sensor_sense,
         "output_sense": chain.output_sense,
+        **({} if chain.magnet is None else {"magnet": assembly_table(chain.magnet)}),
         "effects": effects,
     }
 
@@ -45,7 +47,13 @@ def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[
     for key, sense in senses.items():
         if sense not in (1, -1):
             raise TwinError(f"{name}: {key} is {sense!r}; expected 1 or -1")
-    chain = Chain(sensor_sense=senses["sensor_sense"], output_sense=senses["output_sense"], effects=effects)
+    try:
+        magnet = assembly_from(content["magnet"]) if "magnet" in content else None
+    except UserError as error:
+        raise TwinError(f"{name}: [magnet]: {error}") from None
+    chain = Chain(
+        sensor_sense=senses["sensor_sense"], output_sense=senses["output_sense"], effects=effects, magnet=magnet
+    )
     declared = content.get("effects", {})
     if not isinstance(declared, Mapping):
         raise TwinError(f"{name}: effects is {declared!r}; expected tables such as [effects.offset]")

@@ -1,0 +1,29 @@
+"""One way to refuse a figure that is out of range: name, value, allowed range."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from twin.errors import UserError
+
+
+class OutOfRangeError(UserError):
+    """A parameter lies outside its allowed range; the message names it, its value and the range."""
+
+
+def require_within(name: str, value: Any, lower: float, upper: float, unit: str = "", *, whole: bool = False) -> None:
+    """Check that every element of ``value`` lies in ``[lower, upper]`` (NaN does not). Raises OutOfRangeError."""
+    tail = f" {unit}" if unit else ""
+    kind = "a whole number " if whole else ""
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise OutOfRangeError(f"{name} is {value!r}; expected {kind}from {lower:g} to {upper:g}{tail}") from None
+    bad = ~((array >= lower) & (array <= upper))
+    if whole:
+        bad |= array != np.round(array)
+    if np.any(bad):
+        found = np.ravel(array)[np.flatnonzero(np.ravel(bad))[0]]
+        raise OutOfRangeError(f"{name} is {found:g}{tail}; expected {kind}from {lower:g} to {upper:g}{tail}")

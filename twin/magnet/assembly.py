@@ -1,0 +1,91 @@
+"""Assembly: a magnet and its placement as what drives the two channels of a chain."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from twin.angles import Array, channels_of
+from twin.limits import OutOfRangeError
+from twin.magnet.field import Series, series_of
+from twin.magnet.magnet import Magnet
+from twin.magnet.placement import Placement, designs_of
+from twin.motion import Motion
+
+NOMINAL_C = 25.0
+"""Temperature at which the nominal amplitude is 1, the same as that of the drifts [C]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """One magnet in one place. The nominal amplitude 1 is the field on the axis, untilted, at the same air gap."""
+
+    magnet: Magnet = field(default_factory=Magnet)
+    placement: Placement = field(default_factory=Placement)
+
+    def __post_init__(self) -> None:
+        if designs_of(self.magnet, self.placement):
+            raise OutOfRangeError("the magnet of a chain is one design; expected single numbers")
+
+    @cached_property
+    def series(self) -> Series:
+        """The field in the sensor's axes over a turn [mT] at 25 C, stray field included."""
+        return series_of(self.magnet, self.placement, temperature_c=NOMINAL_C)
+
+    @cached_property
+    def nominal_mT(self) -> float:
+        """Field [mT] on the axis, untilted, without stray field, at 25 C."""
+        ideal = Placement(air_gap_mm=self.placement.air_gap_mm)
+        return float(series_of(self.magnet, ideal, temperature_c=NOMINAL_C).coefficients[0, 1])
+
+    def channels(self, angle_rad: Array, motion: Motion) -> Array:
+        """x and y (..., 2, n) of nominal amplitude 1 at the field angles [rad] (..., 2, n), by the magnet's field.
+
+        The magnet's own part follows the temperature of each reading; the stray field does not.
+        """
+        warm = self.magnet.remanence_at(motion.temperature_c) / self.magnet.remanence_at(NOMINAL_C)
+        stray = self.placement.stray_mT @ self.placement.sensor_axes
+        x, y = (
+            (self.series.component(axis, angle_rad[..., axis : axis + 1, :]) - stray[axis]) * warm + stray[axis]
+            for axis in (0, 1)
+        )
+        return channels_of(x, y) / self.nominal_mT
+
+
+def assembly_from(content: Mapping[str, Any]) -> Assembly:
+    """The assembly of a twin file's [magnet] table; its numbers of place stand in [magnet.placement].
+
+    Raises OutOfRangeError for an unknown name or a number out of range.
+    """
+    body = {key: value for key, value in content.items() if key != "placement"}
+    return Assembly(_build(Magnet, body, "magnet"), _build(Placement, content.get("placement", {}), "magnet.placement"))
+
+
+def assembly_table(assembly: Assembly) -> dict[str, Any]:
+    """The [magnet] table of a twin file: what differs from the defaults, and the shape."""
+    table: dict[str, Any] = {"shape": assembly.magnet.shape, **_changed(assembly.magnet, Magnet())}
+    place = _changed(assembly.placement, Placement())
+    return {**table, **({"placement": place} if place else {})}
+
+
+def _build(kind: Any, content: Any, where: str) -> Any:
+    names = [item.name for item in fields(kind)]
+    if not isinstance(content, Mapping):
+        raise OutOfRangeError(f"{where} is {content!r}; expected a table")
+    for key in content:
+        if key not in names:
+            raise OutOfRangeError(f"{where} has no '{key}'; it has {', '.join(names)}")
+    return kind(**content)
+
+
+def _changed(part: Magnet | Placement, default: Magnet | Placement) -> dict[str, Any]:
+    changed = {}
+    for item in fields(part):
+        value = getattr(part, item.name)
+        if value is not None and value != getattr(default, item.name):
+            changed[item.name] = value if isinstance(value, str) else float(np.asarray(value))
+    return changed

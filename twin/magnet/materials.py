@@ -1,0 +1,42 @@
+"""Permanent magnet grades: remanence at 20 C and its reversible temperature coefficient, with where they come from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from twin.limits import OutOfRangeError
+
+REFERENCE_C = 20.0
+"""Temperature at which data sheets state the remanence [C]."""
+
+_ARNOLD = "Arnold Magnetic Technologies, Neodymium Iron Boron Magnet Catalog, grades table (typical Br)"
+_RECOMA = "typical of sintered Sm2Co17; coefficient -0.03 to -0.05 %/K: advancedmagnets.com, temperature coefficients"
+_MODELICA = "typical of its family: Modelica Standard Library 4.0, Magnetic.FluxTubes.Material.HardMagnetic"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grade:
+    """Remanence [T] at 20 C, its temperature coefficient [%/K], and the source of both."""
+
+    remanence_T: float
+    percent_per_K: float
+    source: str
+
+
+GRADES: dict[str, Grade] = {
+    "N35": Grade(remanence_T=1.210, percent_per_K=-0.12, source=_ARNOLD),
+    "N35H": Grade(remanence_T=1.210, percent_per_K=-0.12, source=_ARNOLD),
+    "N42": Grade(remanence_T=1.315, percent_per_K=-0.12, source=_ARNOLD),
+    "N52": Grade(remanence_T=1.450, percent_per_K=-0.12, source=_ARNOLD),
+    "Sm2Co17": Grade(remanence_T=1.02, percent_per_K=-0.03, source=_MODELICA + "; " + _RECOMA),
+    "SmCo5": Grade(remanence_T=0.95, percent_per_K=-0.042, source=_MODELICA),
+    "ferrite": Grade(remanence_T=0.38, percent_per_K=-0.2, source=_MODELICA),
+}
+
+
+def grade(name: str) -> Grade:
+    """The grade with this name. Raises OutOfRangeError with the known names."""
+    try:
+        return GRADES[name]
+    except KeyError:
+        raise OutOfRangeError(f"grade is {name!r}; expected one of {', '.join(GRADES)}") from None

@@ -24,6 +24,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.angles import Array, wrap
 
@@ -170,9 +171,18 @@ class Readings:
         """Readings a sweep."""
         return int(self.cos_shaft.shape[-1])
 
-    def swapped(self) -> Readings:
-        """The same readings with both senses swapped."""
-        return replace(self, sin_shaft=-self.sin_shaft, sin_read=-self.sin_read)
+    def oriented(self, swap: NDArray[np.bool_]) -> Readings:
+        """The readings with both senses swapped in the sweeps where ``swap`` (batch,) says so."""
+        if not swap.any():
+            return self
+        sign = np.where(swap, -1.0, 1.0)[:, None]
+        return replace(self, sin_shaft=sign * self.sin_shaft, sin_read=sign * self.sin_read)
+
+    def sweeps(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Readings:
+        """Some of the sweeps (batch, n)."""
+        weights = None if self.weights is None else self.weights[which]
+        parts = (self.cos_shaft, self.sin_shaft, self.cos_read, self.sin_read)
+        return Readings(*(part[which] for part in parts), weights)
 
     def weighted(self, weights: Array | None) -> Readings:
         """The same readings with other weights (..., n)."""

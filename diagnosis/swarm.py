@@ -178,7 +178,7 @@ def _discard(
     rng: np.random.Generator,
 ) -> NDArray[np.bool_]:
     """Which particles Eq. 11 discards (batch, particles); they are set down beside the best of another, in place."""
-    batch, particles, dims = own.shape
+    batch, particles, _ = own.shape
     sweeps = np.arange(batch)
     known = ~outside((low + span * own)[sweeps, leader][:, None, :])
     out = outside(points) & known

@@ -100,6 +100,8 @@ class Effect:
 
     ``needs``     names of :attr:`Motion.provides` without which it is invisible; ``"a|b"`` means a or b.
     ``shapes``    the values of the shape parameters worth trying on a motion (a grid fine enough to climb from).
+    ``zoomed``    the shape and level parameters that are searched more finely around the grid's best point.
+    ``fitted_shapes`` those that a fit may move smoothly from there.
     ``line``      for sinusoids: the shape parameter that is found by a spectrum.
     ``derived``   parameters -> further figures to report, with their units.
     ``spread``    for the footprint "spread": angle (n,), parameters -> added variance of the angle [rad^2].
@@ -119,6 +121,8 @@ class Effect:
     footprint: Footprint = "mean"
     baseline: bool = False
     shapes: Callable[[Motion], Sequence[Mapping[str, float]]] = field(default=_one_shape)
+    zoomed: tuple[str, ...] = ()
+    fitted_shapes: tuple[str, ...] = ()
     line: Line | None = None
     derived: Callable[[Parameters], Mapping[str, tuple[float, str]]] = field(default=_nothing_derived)
     spread: Callable[[Array, Parameters], Array] | None = None

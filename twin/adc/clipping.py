@@ -38,6 +38,8 @@ CLIPPING = Effect(
     forward=forward,
     needs=frozenset({"one turn"}),
     shapes=shapes,
+    zoomed=("level_percent",),
+    fitted_shapes=("level_percent",),
     source="definition: full scale of the converter below the signal's amplitude",
     signature="four narrow spots, at the axes",
 )

@@ -54,6 +54,8 @@ HYSTERESIS = Effect(
     forward=forward,
     needs=frozenset({"both directions"}),
     shapes=shapes,
+    zoomed=("memory_deg",),
+    fitted_shapes=("memory_deg",),
     source="first-order return-point memory in the angle (Dahl's friction model, 1968, in angular form)",
     signature="-h d, relaxing exponentially after a reversal",
 )

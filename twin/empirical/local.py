@@ -38,6 +38,8 @@ UNNAMED_BUMP = Effect(
     },
     forward=_bump,
     shapes=shapes,
+    zoomed=("centre_deg", "width_deg"),
+    fitted_shapes=("centre_deg", "width_deg"),
     needs=frozenset({"one turn"}),
     source="Gaussian bump",
     signature="an error at one place of the turn",

@@ -73,6 +73,13 @@ def _low_orders(
     return shapes
 
 
+def _speed_shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    # Orders 0 and 2 times the signed speed are latency and xy_skew.
+    plain = _low_orders((1, 3, 4), [{"power": 1.0}])(motion)
+    bent = _low_orders((0, 1, 2, 3, 4), [{"power": -1.0}, {"power": 2.0}, {"power": -2.0}])(motion)
+    return [*plain, *bent]
+
+
 UNNAMED_ORDER = Effect(
     name="unnamed_order",
     stage="empirical",
@@ -103,7 +110,8 @@ UNNAMED_TEMPERATURE = Effect(
     acts_on="angle",
     params=_order_params(64.0),
     forward=_weighted(_temperature),
-    shapes=_low_orders((0, 1, 2, 3, 4, 5, 6, 7, 8)),
+    # Orders 1 and 2 times the temperature are the drifts of offset, gain and phase.
+    shapes=_low_orders((0, 3, 4, 5, 6, 7, 8)),
     needs=frozenset({"temperature_c", "two temperatures"}),
     source="Fourier component times (T - 25 C)",
     signature="a low order that scales with temperature; its amplitude is the one farthest from 25 C",
@@ -118,7 +126,7 @@ UNNAMED_SPEED = Effect(
         "power": Param(unit="1", null=1.0, lower=-2.0, upper=2.0, role="shape", doc="1: w, -1: |w|, 2: w|w|, -2: w^2"),
     },
     forward=_weighted(_speed),
-    shapes=_low_orders((0, 1, 2, 3, 4), [{"power": 1.0}, {"power": -1.0}, {"power": 2.0}, {"power": -2.0}]),
+    shapes=_speed_shapes,
     needs=frozenset({"moving shaft", "two speeds"}),
     source="Fourier component times a power of the speed",
     signature="a low order that scales with speed; its amplitude is the one at the highest speed",

@@ -44,6 +44,8 @@ ZERO_DRIFT = Effect(
     forward=forward,
     needs=frozenset({"time_s"}),
     shapes=shapes,
+    zoomed=("time_constant_s",),
+    fitted_shapes=("time_constant_s",),
     source="first-order relaxation (thermal settling or creep of a mount)",
     signature="order 0, monotone in time",
 )

@@ -1,4 +1,4 @@
-"""drive_ripple: the drive's own ripple in the reference, or the wind-up of the coupling, at the motor's order."""
+"""drive_ripple: the shaft departs from the angle the drive reports (its own ripple, or wind-up), at the motor's order."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ LOWEST_ORDER = 20
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    ripple = np.sin(np.asarray(values["order"]) * signal + radians(values["phase_deg"]))
+    # The ripple follows the angle that the drive is commanded to, which is what it hands on as the reference.
+    ripple = np.sin(np.asarray(values["order"]) * motion.shaft_rad + radians(values["phase_deg"]))
     return signal + radians(values["amplitude_deg"]) * ripple
 
 
@@ -28,7 +29,7 @@ def within(order: Array) -> BoolArray:
 DRIVE_RIPPLE = Effect(
     name="drive_ripple",
     stage="reference",
-    acts_on="reference",
+    acts_on="shaft",
     params={
         "order": Param(
             unit="1/turn",

@@ -38,6 +38,7 @@ INDEX_SLIP = Effect(
     },
     forward=forward,
     shapes=shapes,
+    zoomed=("time_s",),
     needs=frozenset({"time_s"}),
     source="definition: an incremental encoder that loses or gains counts once",
     signature="a step in order 0",

@@ -1,0 +1,100 @@
+"""Evidence: a sweep prepared for fitting; repeats at one angle averaged, rows that are no part of the mean masked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.angles import Array, wrap
+from twin.effect import BoolArray
+from twin.motion import Motion
+from twin.sweep import Sweep
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """Rows that count as independent angles, arrays of shape (n,).
+
+    ``motion`` holds the reference's readings as shaft angles. ``log_radius`` is log |(vx, vy)| where the channels
+    were recorded. ``usable`` masks rows out of the fits of the mean (outliers, repeats of stale frames, held-out
+    blocks); ``scale`` is the noise of a row against the usual one. ``group`` maps each raw row to its row here.
+    """
+
+    motion: Motion
+    measured: Array
+    log_radius: Array | None
+    usable: BoolArray
+    scale: Array
+    group: np.ndarray[tuple[int], np.dtype[np.int64]]
+    repeat_rms: float | None
+
+    def __len__(self) -> int:
+        return int(self.measured.size)
+
+    @property
+    def observables(self) -> int:
+        """1 for the angle alone, 2 with the radius."""
+        return 1 if self.log_radius is None else 2
+
+    def masked(self, usable: BoolArray) -> Evidence:
+        """The same rows with another mask."""
+        return replace(self, usable=usable)
+
+
+def collect(sweep: Sweep) -> Evidence:
+    """Prepare a sweep. Consecutive readings at one angle are one row: ten readings are not ten angles."""
+    motion = sweep.motion()
+    measured = np.radians(sweep.measured_deg)
+    group = _repeats(motion)
+    count = np.bincount(group)
+    repeat_rms = None
+    if count.max() > 1:
+        first = np.searchsorted(group, np.arange(count.size))
+        deviation = wrap(measured - measured[first][group])
+        mean = np.bincount(group, deviation) / count
+        scatter = deviation - mean[group]
+        repeat_rms = float(np.sqrt(np.sum(scatter**2) / max(np.sum(count - 1), 1)))
+        measured = measured[first] + mean
+        motion = _averaged(motion, group, count, first)
+    log_radius = None
+    if sweep.vx is not None and sweep.vy is not None:
+        radius = np.hypot(np.bincount(group, sweep.vx) / count, np.bincount(group, sweep.vy) / count)
+        if np.all(radius > 0.0):
+            log_radius = np.log(radius)
+    n = count.size
+    return Evidence(
+        motion=motion,
+        measured=measured,
+        log_radius=log_radius,
+        usable=np.ones(n, dtype=bool),
+        scale=np.ones(n),
+        group=group,
+        repeat_rms=repeat_rms,
+    )
+
+
+def _repeats(motion: Motion) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+    """For each row the number of its group; groups of one unless the bench stood still between most readings."""
+    step = np.abs(np.diff(motion.shaft_rad))
+    n = len(motion)
+    still = step < 0.2 * np.quantile(step, 0.95)
+    if np.mean(still) < 0.4:
+        return np.arange(n)
+    same = still & (np.diff(motion.turn) == 0) & (np.diff(motion.direction) == 0)
+    return np.concatenate([[0], np.cumsum(~same)])
+
+
+def _averaged(motion: Motion, group: Array, count: Array, first: Array) -> Motion:
+    def mean(values: Array) -> Array:
+        return np.asarray(np.bincount(group, values) / count)
+
+    return replace(
+        motion,
+        shaft_rad=mean(motion.shaft_rad),
+        time_s=mean(motion.time_s),
+        direction=motion.direction[first],
+        speed_rad_s=mean(motion.speed_rad_s),
+        turn=motion.turn[first],
+        temperature_c=mean(motion.temperature_c),
+    )

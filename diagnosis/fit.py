@@ -1,0 +1,275 @@
+"""One fit of the paper's error model: the swarm finds the valley, least squares its floor.
+
+    from diagnosis.fit import fit_baseline
+
+    fit = fit_baseline(reference_rad, measured_rad, rng=np.random.default_rng(0))
+    fit.chain()                     # twin.Chain with the fitted parameters and senses
+    fit.values["offset"]            # {"x_percent": ..., "y_percent": ...}
+    fit.low, fit.high               # 95 % intervals (6,), order and units of error_model.NAMES
+    fit.outliers                    # (n,) rows that robust=True left out
+    fit.residual_rad                # (n,) measured - predicted, wrapped
+
+Angles (n,) in rad, any range, wrapped or not, in any order; 8 rows to millions. ``senses=(s, h)`` fixes who counts
+which way, otherwise both pairs that fit the slope are tried. ``weights`` (n,) are inverse variances up to a factor;
+a row of weight 0 is not used. ``robust=True`` leaves isolated gross errors (jumps of up to 180 deg in up to a few
+per cent of the rows) out of the fit; smooth structure, however large, is never left out.
+
+:func:`fit_equal` does many sweeps of equal length at once, (batch, n) each, :func:`fit_many` a list of any lengths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis import polish, swarm
+from diagnosis.baseline_fit import BaselineFit, Contributions, SearchRange, Senses
+from diagnosis.error_model import LOWER_LIMIT, NAMES, UPPER_LIMIT, Readings
+from diagnosis.valley import Valley, search, without_glitches
+from twin.angles import Array
+
+QUICK = swarm.SwarmSettings(particles=40, iterations=100, stop_settled=True)
+"""Enough to find the valley; the polish does the rest. The paper's own setting is ``SwarmSettings()``."""
+
+_CLEAR_SIGMA2 = 100.0
+"""Swapped senses whose fit is worse by this many squared standard errors are not polished."""
+_BATCH = 128
+
+
+def fit_baseline(
+    reference_rad: Array,
+    measured_rad: Array,
+    *,
+    rng: np.random.Generator,
+    weights: Array | None = None,
+    senses: tuple[int, int] | None = None,
+    robust: bool = False,
+    settings: swarm.SwarmSettings = QUICK,
+) -> BaselineFit:
+    """Fit one sweep, all arrays (n,); see the module's text."""
+    return fit_equal(
+        np.asarray(reference_rad)[None],
+        np.asarray(measured_rad)[None],
+        rng=rng,
+        weights=None if weights is None else np.asarray(weights)[None],
+        senses=senses,
+        robust=robust,
+        settings=settings,
+    )[0]
+
+
+def fit_many(
+    sweeps: Sequence[tuple[Array, Array]],
+    *,
+    rng: np.random.Generator,
+    senses: tuple[int, int] | None = None,
+    robust: bool = False,
+    settings: swarm.SwarmSettings = QUICK,
+) -> list[BaselineFit]:
+    """Fit sweeps (reference, measured) of any lengths; those of equal length together."""
+    by_length: dict[int, list[int]] = {}
+    for index, (reference, _) in enumerate(sweeps):
+        by_length.setdefault(reference.size, []).append(index)
+    found: dict[int, BaselineFit] = {}
+    for indices in by_length.values():
+        fits = fit_equal(
+            np.stack([sweeps[i][0] for i in indices]),
+            np.stack([sweeps[i][1] for i in indices]),
+            rng=rng,
+            senses=senses,
+            robust=robust,
+            settings=settings,
+        )
+        found.update(zip(indices, fits, strict=True))
+    return [found[i] for i in range(len(sweeps))]
+
+
+def fit_equal(
+    reference_rad: Array,
+    measured_rad: Array,
+    *,
+    rng: np.random.Generator,
+    weights: Array | None = None,
+    senses: tuple[int, int] | None = None,
+    robust: bool = False,
+    settings: swarm.SwarmSettings = QUICK,
+) -> list[BaselineFit]:
+    """Fit sweeps of equal length, all arrays (batch, n), with one batched swarm; see the module's text."""
+    fits: list[BaselineFit] = []
+    for start in range(0, reference_rad.shape[0], _BATCH):
+        rows = slice(start, start + _BATCH)
+        part = None if weights is None else weights[rows]
+        fits += _fit_batch(reference_rad[rows], measured_rad[rows], part, senses, robust, settings, rng)
+    return fits
+
+
+def _fit_batch(
+    reference: Array,
+    measured: Array,
+    weights: Array | None,
+    senses: tuple[int, int] | None,
+    robust: bool,
+    settings: swarm.SwarmSettings,
+    rng: np.random.Generator,
+) -> list[BaselineFit]:
+    batch, n = reference.shape
+    sensor, output = _first_senses(reference, measured, weights, senses)
+    plain = Readings.of(
+        reference, measured, sensor_sense=sensor[:, None], output_sense=output[:, None], weights=weights
+    )
+    both = senses is None
+    used = without_glitches(plain, reference, both=both) if robust else plain
+    valley = search(used, both=both, settings=settings, rng=rng)
+
+    # One descent on the quadratic form says which pair of senses is worth a pass over the readings.
+    coarse = polish.descend(polish.on_gram(valley.gram), valley.best, count=n)
+    lanes = [slice(0, batch)] + ([slice(batch, 2 * batch)] if both else [])
+    swap = np.zeros(batch, dtype=bool)
+    costs = [coarse.cost[lane] for lane in lanes]
+    if both:
+        swap = costs[1] < costs[0]
+        noise = np.maximum(np.minimum(*costs) / max(n - 6, 1), 1e-300)
+        close = np.abs(costs[1] - costs[0]) / noise < _CLEAR_SIGMA2
+    start = np.where(swap[:, None], coarse.points[lanes[-1]], coarse.points[lanes[0]])
+    exact = polish.descend(polish.on_readings(used.oriented(swap)), start, count=n)
+    other_points, other_cost = start, exact.cost
+    if both:
+        other_points = np.where(swap[:, None], coarse.points[lanes[0]], coarse.points[lanes[1]])
+        other_cost = np.where(swap, costs[0], costs[1])
+        if close.any():
+            rest = used.sweeps(close).oriented(~swap[close])
+            second = polish.descend(polish.on_readings(rest), other_points[close], count=n)
+            other_points[close], other_cost[close] = second.points, second.cost
+            # The exact residual may prefer the pair that the quadratic form did not.
+            turned = np.flatnonzero(close & (other_cost < exact.cost * (1.0 - 1e-9)))
+            if turned.size:
+                exact, other_points, other_cost = _exchange(exact, second, close, turned, other_points, other_cost)
+                swap = swap.copy()
+                swap[turned] = ~swap[turned]
+    return _results(used, plain, swap, sensor, output, exact, (other_points, other_cost), valley, both)
+
+
+def _first_senses(
+    reference: Array, measured: Array, weights: Array | None, senses: tuple[int, int] | None
+) -> tuple[Array, Array]:
+    """s and h (batch,) of the pair that is tried first: h = +1 where the senses are free."""
+    batch = reference.shape[0]
+    if senses is not None:
+        return np.full(batch, float(senses[0])), np.full(batch, float(senses[1]))
+    w = 1.0 if weights is None else weights
+    follows = [np.abs(np.sum(w * np.exp(1j * (measured - sense * reference)), axis=-1)) for sense in (1, -1)]
+    return np.where(follows[0] >= follows[1], 1.0, -1.0), np.ones(batch)
+
+
+def _exchange(
+    exact: polish.Polished,
+    second: polish.Polished,
+    close: NDArray[np.bool_],
+    turned: NDArray[np.intp],
+    other_points: Array,
+    other_cost: Array,
+) -> tuple[polish.Polished, Array, Array]:
+    """Make the second pair of senses the first one in the lanes ``turned``."""
+    place = np.cumsum(close) - 1
+    points, cost, curvature = exact.points.copy(), exact.cost.copy(), exact.curvature.copy()
+    settled = exact.settled.copy()
+    other_points, other_cost = other_points.copy(), other_cost.copy()
+    other_points[turned], other_cost[turned] = points[turned], cost[turned]
+    take = place[turned]
+    points[turned], cost[turned] = second.points[take], second.cost[take]
+    curvature[turned], settled[turned] = second.curvature[take], second.settled[take]
+    return polish.Polished(points, cost, curvature, exact.passes, settled), other_points, other_cost
+
+
+def _results(
+    used: Readings,
+    plain: Readings,
+    swap: NDArray[np.bool_],
+    sensor: Array,
+    output: Array,
+    exact: polish.Polished,
+    other: tuple[Array, Array],
+    valley: Valley,
+    both: bool,
+) -> list[BaselineFit]:
+    batch, n = exact.points.shape[0], plain.count
+    sign = np.where(swap, -1.0, 1.0)
+    # residual() is h m - atan2(y, x): times h it is measured minus predicted.
+    residual = (output * sign)[:, None] * plain.oriented(swap).residual(exact.points)
+    weights = used.weights
+    counted = np.full((batch, n), True) if weights is None else weights > 0.0
+    outliers = (
+        np.zeros((batch, n), dtype=bool) if plain.weights is None and weights is None else _left_out(plain, counted)
+    )
+    fits = []
+    for k in range(batch):
+        lane = k + batch * int(swap[k]) if both else k
+        rows = int(np.count_nonzero(counted[k]))
+        freedom = max(rows - 6, 1)
+        squares = residual[k] ** 2 if weights is None else weights[k] * residual[k] ** 2
+        sigma = float(np.sqrt(squares.sum() / freedom))
+        rms = float(np.sqrt(np.mean(residual[k][counted[k]] ** 2)))
+        covariance = sigma**2 * _inverse(exact.curvature[k])
+        half = _student(freedom) * np.sqrt(np.diagonal(covariance))
+        point = exact.points[k].copy()
+        best, own = valley.histories[lane]
+        share = float(rows if plain.weights is None else plain.weights[k].sum())
+        excess = max(float(other[1][k] - exact.cost[k]), 0.0) / max(sigma**2, 1e-300)
+        fits.append(
+            BaselineFit(
+                point=point,
+                covariance=covariance,
+                low=point - half,
+                high=point + half,
+                at_bound=(point <= LOWER_LIMIT) | (point >= UPPER_LIMIT),
+                senses=Senses(
+                    sensor=int(sensor[k] * sign[k]),
+                    output=int(output[k] * sign[k]),
+                    other_rms_rad=float(np.sqrt(other[1][k] / share)),
+                    sigma=float(np.sqrt(excess)) if both else 0.0,
+                    other=other[0][k].copy(),
+                ),
+                search=SearchRange(
+                    lower=valley.box.lower[lane].copy(),
+                    upper=valley.box.upper[lane].copy(),
+                    widened=tuple(name for name, wide in zip(NAMES, valley.box.widened[lane], strict=True) if wide),
+                    rounds=int(valley.rounds[lane]),
+                ),
+                contributions=Contributions(
+                    zero_only_rms_rad=float(np.sqrt(valley.zero_only[lane] / share)),
+                    swarm_rms_rad=float(np.sqrt(valley.cost[lane] / share)),
+                    polished_rms_rad=rms,
+                    particles_evaluated=int(valley.evaluations[lane]),
+                    passes=exact.passes,
+                    best_history_rad=np.sqrt(best / share),
+                    own_history_rad=np.sqrt(own / share),
+                ),
+                residual_rad=residual[k],
+                outliers=outliers[k],
+                sigma_rad=sigma,
+                rms_rad=rms,
+                settled=bool(exact.settled[k]),
+            )
+        )
+    return fits
+
+
+def _left_out(plain: Readings, counted: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Rows that the robust option left out: not those that the caller gave no weight."""
+    return ~counted if plain.weights is None else ~counted & (plain.weights > 0.0)
+
+
+def _inverse(curvature: Array) -> Array:
+    """Inverse of (6, 6); combinations that the readings cannot see get an enormous variance instead of a crash."""
+    scale = 1.0 / np.sqrt(np.maximum(np.diagonal(curvature), 1e-300))
+    values, vectors = np.linalg.eigh(curvature * scale[:, None] * scale)
+    return np.asarray((vectors / np.maximum(values, 1e-13)) @ vectors.T * scale[:, None] * scale)
+
+
+def _student(freedom: int) -> float:
+    """Half width of a 95 % interval in standard errors."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(freedom, 0.975))

@@ -1,0 +1,218 @@
+"""The chain linearised: what a small change at any point of it does to the angle and to the radius.
+
+One backward pass gives the sensitivity of both observables to the signal at every point. An effect's column is then
+the change it makes to its own signal times that sensitivity, so that columns of effects which are at null cost no run
+of the chain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from twin.angles import Array, wrap
+from twin.chain import SIGNALS, Chain
+from twin.effect import Effect, Parameters
+from twin.motion import Motion
+
+_STEP = 1e-6
+BLUR_NODES = 15
+
+
+@dataclass(frozen=True, eq=False)
+class Insertion:
+    """A point of the chain: the signal (k, n) there and the sensitivity (O, k, n) of the observables to it."""
+
+    signal: Array
+    sensitivity: Array
+
+
+@dataclass(frozen=True)
+class Term:
+    """One linear coefficient of a candidate: a strength at a phase [deg], or one turn's zero."""
+
+    param: str
+    phase_deg: float | None = None
+    turn: int | None = None
+
+
+class Linear:
+    """A chain at its present parameters on a recorded motion: prediction, and columns of any effect.
+
+    ``angle`` (n,) [rad] is the expected reading. With ``blur`` [rad] the stairs of quantisers are averaged over noise
+    of that size, which is what readings do. ``log_radius`` (n,) is the log of the channels' amplitude.
+    """
+
+    def __init__(self, chain: Chain, recorded: Motion, *, blur: float, observables: int) -> None:
+        self.chain = chain
+        self.motion = chain.shaft(recorded)
+        self.observables = observables
+        self._order = {effect.name: place for place, effect in enumerate(chain.effects)}
+        self._points: list[tuple[float, Insertion]] = []
+        self._run(blur)
+
+    def _run(self, blur: float) -> None:
+        n = len(self.motion)
+        steps = list(self.chain.steps(self.motion))
+        channels = next(step.before for step in steps if step.key == "after channels")
+        self.log_radius = np.log(np.hypot(channels[0], channels[1]))
+        computed = next(step.after for step in steps if step.key == "after channels")
+        self.sensor_angle = computed[0]
+        self.angle = self._blurred(computed, blur) if blur > 0.0 else steps[-1].after[0]
+        # Backward: sensitivity of (angle, log radius) to the signal after each step.
+        sense = np.zeros((self.observables, 1, n))
+        sense[0] = 1.0
+        bounds = {name: _last_place(self.chain, name) for name in SIGNALS}
+        points: list[tuple[float, Insertion]] = []
+        for step in reversed(steps):
+            place = bounds[step.key.removeprefix("after ")] + 0.5 if step.effect is None else self._order[step.effect.name]
+            if step.effect is None and step.key == "after channels":
+                points.append((place, Insertion(step.after, sense)))
+                x, y = step.before
+                square = x * x + y * y
+                here = np.empty((self.observables, 2, n))
+                here[0] = sense[0, 0] * np.stack([-y, x]) / square
+                if self.observables == 2:
+                    here[1] = np.stack([x, y]) / square
+                sense = here
+            elif step.effect is None:
+                points.append((place, Insertion(step.after, sense)))
+                if step.key == "after field":
+                    sense = sense * np.stack([-np.sin(step.before[0]), np.cos(step.before[1])])
+                elif step.key == "after shaft":
+                    sense = self.chain.sensor_sense * sense
+                else:
+                    sense = self.chain.output_sense * sense
+            else:
+                points.append((place, Insertion(step.after, sense)))
+                if step.effect.acts_on != "angle":
+                    sense = _through(step.effect, step.before, self.motion, step.values, sense)
+        points.append((-1.0, Insertion(np.broadcast_to(self.motion.shaft_rad, (2, n)), sense)))
+        self._points = sorted(points, key=lambda item: item[0])
+
+    def _blurred(self, computed: Array, blur: float) -> Array:
+        """Expected reading where stairs follow: the angle's steps averaged over Gaussian noise of RMS ``blur``."""
+        active = list(self.chain.active("angle"))
+        if not any(effect.footprint == "values" for _, effect, _ in active):
+            nodes = np.zeros((1, 1, 1))
+        else:
+            share = (np.arange(BLUR_NODES) + 0.5) / BLUR_NODES
+            nodes = blur * _normal_quantile(share)[:, None, None]
+        signal = computed[None] + nodes
+        for _, effect, values in active:
+            signal = effect.forward(signal, self.motion, values, None)
+        return self.chain.output_sense * (computed[0] + np.mean(wrap(signal[:, 0] - computed[0]), axis=0))
+
+    def at(self, effect: Effect) -> Insertion:
+        """The point behind the effect's own place: the signal it made, or would be given were it not at null."""
+        place = self._order[effect.name]
+        return [point for where, point in self._points if where <= place][-1]
+
+    def before(self, effect: Effect) -> Insertion:
+        """The point ahead of the effect's own place."""
+        place = self._order[effect.name]
+        return [point for where, point in self._points if where < place][-1]
+
+    def change(self, effect: Effect, old: Parameters, new: Parameters, *, batch: int | None = None) -> Array:
+        """Change of the observables, (O, n) or (batch, O, n), as the effect's parameters go from old to new."""
+        if effect.acts_on == "reference":
+            # The reference reads too much by this, so the shaft stands back by it.
+            shaft: Array = self.motion.shaft_rad[None, :]
+            moved = effect.forward(shaft, self.motion, new, None) - effect.forward(shaft, self.motion, old, None)
+            start = self._points[0][1].sensitivity.sum(axis=1)
+            return -start * moved
+        point, ahead = self.at(effect), self.before(effect)
+        moved = effect.forward(ahead.signal, self.motion, new, None) - effect.forward(
+            ahead.signal, self.motion, old, None
+        )
+        if batch is None:
+            return np.asarray(np.einsum("okn,kn->on", point.sensitivity, moved))
+        moved = np.broadcast_to(moved, (batch, *moved.shape[-2:]))
+        return np.asarray(np.einsum("okn,bkn->bon", point.sensitivity, moved))
+
+    def derivative(self, key: str, effect: Effect, name: str, turn: int | None = None) -> Array:
+        """Column (O, n) of one parameter of an effect that is present, in the parameter's own unit."""
+        values = {**effect.null(), **self.chain.values[key]}
+        param = effect.params[name]
+        step = 1e-4 * param.typical
+        moved = dict(values)
+        if turn is not None:
+            zeros = np.array(values[name], dtype=np.float64)
+            zeros[turn] += step
+            moved[name] = zeros
+        else:
+            if name == "order" or name == "frequency_Hz":
+                step = 1e-7 * max(abs(float(values[name])), 1.0)
+            moved[name] = float(values[name]) + step
+        return self.change(effect, values, moved) / step
+
+    def terms(self, effect: Effect) -> tuple[Term, ...]:
+        """The linear coefficients that a candidate has at fixed shape."""
+        if effect.roles("per turn"):
+            name = effect.roles("per turn")[0]
+            return tuple(Term(name, turn=k) for k in range(1, int(self.motion.turn.max(initial=0)) + 1))
+        if effect.roles("level"):
+            return (Term(effect.roles("level")[0]),)
+        phases: tuple[float | None, ...] = (0.0, 90.0) if effect.roles("phase") else (None,)
+        return tuple(Term(name, phase_deg=phase) for name in effect.roles("strength") for phase in phases)
+
+    def columns(self, effect: Effect, shapes: Sequence[Mapping[str, float]]) -> Array:
+        """Columns (len(shapes), terms, O, n) of a candidate at null, one per shape and coefficient.
+
+        A level's column is the whole change it makes, expected with the coefficient 1.
+        """
+        terms = self.terms(effect)
+        count = len(shapes)
+        n = len(self.motion)
+        if effect.roles("per turn"):
+            turns = int(self.motion.turn.max(initial=0)) + 1
+            unit = [self.change(effect, {}, {terms[0].param: np.eye(turns)[t.turn or 0]}) for t in terms]
+            return np.broadcast_to(np.stack(unit), (count, len(terms), self.observables, n))
+        grid: dict[str, Any] = {
+            name: np.array([shape[name] for shape in shapes])[:, None, None] for name in (shapes[0] if shapes else {})
+        }
+        out = np.empty((count, len(terms), self.observables, n))
+        null = {**effect.null(), **grid}
+        for place, term in enumerate(terms):
+            if effect.params[term.param].role == "level":
+                out[:, place] = self.change(effect, effect.null(), null, batch=count)
+                continue
+            step = 1e-3 * effect.params[term.param].typical
+            moved = {**null, term.param: effect.params[term.param].null + step}
+            if term.phase_deg is not None:
+                moved[effect.roles("phase")[0]] = term.phase_deg
+            out[:, place] = self.change(effect, null, moved, batch=count) / step
+        return out
+
+
+def _through(effect: Effect, before: Array, motion: Motion, values: Parameters, sense: Array) -> Array:
+    """Sensitivity (O, 2, n) ahead of a pointwise effect from the one behind it."""
+    plain = effect.forward(before, motion, values, None)
+    out = np.empty((sense.shape[0], before.shape[0], before.shape[1]))
+    for channel in range(before.shape[0]):
+        moved = np.array(before)
+        moved[channel] += _STEP
+        slope = (effect.forward(moved, motion, values, None) - plain) / _STEP
+        # The edge of a stair is no slope: a quantiser passes changes on as they are.
+        slope[channel] = np.where(np.abs(slope[channel]) > 50.0, 1.0, slope[channel])
+        out[:, channel] = np.einsum("okn,kn->on", sense, slope)
+    return out
+
+
+def _last_place(chain: Chain, acts_on: str) -> float:
+    """Place in the chain's order behind the last effect that acts on this signal."""
+    last = -1.0
+    for name in SIGNALS:
+        last = max([last, *(float(k) for k, effect in enumerate(chain.effects) if effect.acts_on == name)])
+        if name == acts_on:
+            break
+    return last
+
+
+def _normal_quantile(share: Array) -> Array:
+    from scipy.special import ndtri
+
+    return np.asarray(ndtri(share))

@@ -1,0 +1,84 @@
+"""Noise as it is: a family of spectra over the sequence of readings, from white to strongly correlated.
+
+In the cosine basis (DCT-II) stationary noise is very nearly independent from coefficient to coefficient, with the
+variance given by its spectrum (the basis is the limit of the Karhunen-Loeve basis of first-order autoregressive
+noise). So whitening is a weight on each coefficient, and every spectrum of the family costs one weighted sum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.evidence import Evidence
+from twin.angles import Array
+
+_CORRELATIONS = (
+    (0.0, 0.0),
+    (0.35, 0.0),
+    (0.6, 0.0),
+    (0.75, 0.0),
+    (0.85, 0.0),
+    (0.92, 0.0),
+    (0.97, 0.0),
+    (0.6, 0.5),
+    (0.85, 0.5),
+    (0.95, 0.5),
+    (0.9, 0.8),
+    (0.98, 0.8),
+)
+"""First-order autoregression from reading to reading, and the share of white noise beside it."""
+_PINK = (0.5, 1.0)
+"""Exponents of 1/f noise."""
+
+
+@dataclass(frozen=True, eq=False)
+class NoiseFamily:
+    """Spectra (families, n) of unit variance over the cosine coefficients, and what to call each."""
+
+    spectra: Array
+    labels: tuple[str, ...]
+    correlation: tuple[tuple[float, float], ...]
+
+    @property
+    def weights(self) -> Array:
+        """Inverse spectra (families, n)."""
+        return np.asarray(1.0 / self.spectra)
+
+    @property
+    def log_det(self) -> Array:
+        """Log determinant (families,) of each member's covariance."""
+        return np.asarray(np.sum(np.log(self.spectra), axis=1))
+
+
+def noise_family(n: int) -> NoiseFamily:
+    """The family for a sequence of n readings."""
+    omega = np.pi * (np.arange(n) + 0.5) / n
+    spectra, labels, correlation = [], [], []
+    for phi, white in _CORRELATIONS:
+        coloured = (1.0 - phi**2) / (1.0 + phi**2 - 2.0 * phi * np.cos(omega))
+        spectra.append((1.0 - white) * coloured + white)
+        labels.append("white" if phi == 0 else f"AR(1) {phi:g}" + (f" + {white:.0%} white" if white else ""))
+        correlation.append((phi, 1.0 - white))
+    for alpha in _PINK:
+        pink = (omega / np.pi) ** -alpha
+        spectra.append(pink / np.mean(pink))
+        labels.append(f"1/f^{alpha:g}")
+        correlation.append((0.5 + 0.4 * alpha, 1.0))
+    table = np.stack(spectra)
+    return NoiseFamily(table / np.mean(table, axis=1, keepdims=True), tuple(labels), tuple(correlation))
+
+
+def to_cosine(evidence: Evidence, values: Array) -> Array:
+    """Values (..., n) over the rows as cosine coefficients (..., n); masked rows count as zero, rows by their scale."""
+    from scipy.fft import dct
+
+    return np.asarray(dct(values * (evidence.usable / evidence.scale), type=2, norm="ortho", axis=-1))
+
+
+def to_rows(coefficients: Array) -> Array:
+    """Back from cosine coefficients (..., n) to rows."""
+    from scipy.fft import idct
+
+    return np.asarray(idct(coefficients, type=2, norm="ortho", axis=-1))

@@ -1,0 +1,291 @@
+"""Screening: how much better each candidate would make the fit, to first order, under every noise of the family.
+
+Columns are projected off the Jacobian of all that is fitted already, so a candidate gains only by what nothing else
+can do. The gain is a likelihood ratio in which both sides choose their own noise: coloured noise that explains the
+residual as well as a candidate does leaves the candidate no gain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from diagnosis.evidence import Evidence
+from diagnosis.joint_fit import Fit, radius_nuisance, root_weights
+from diagnosis.linear import Term
+from diagnosis.noise_model import to_cosine, to_rows
+from diagnosis.spectrum import line_shapes
+from twin.angles import Array
+from twin.effect import Effect
+
+_CHUNK = 4_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """An effect at its best shape, with the parameters that a first-order fit gives it.
+
+    ``gain`` is twice the gain in log likelihood, ``terms`` the number of coefficients, ``looks`` how many independent
+    shapes were tried, ``log_p`` the log of the probability that noise gains as much at any of them.
+    """
+
+    effect: Effect
+    values: Mapping[str, Any]
+    gain: float
+    terms: int
+    looks: float
+    log_p: float
+
+
+@dataclass(frozen=True, eq=False)
+class Base:
+    """What is fitted already, whitened by each family member: residual (N,), orthonormal rows (P, N), likelihood."""
+
+    fit: Fit
+    roots: Array
+    residuals: list[Array]
+    rows: list[Array]
+    likelihood: Array
+    dof: int
+
+    @classmethod
+    def of(cls, fit: Fit) -> Base:
+        """Prepare a fit for screening."""
+        family = fit.setting.family
+        roots, residuals, rows, likelihood = [], [], [], []
+        dof = fit.rows * fit.evidence.observables - len(fit.free) + fit.prior_residual.size
+        for member in range(len(family.labels)):
+            roots.append(root_weights(fit.setting, fit.evidence.observables, member))
+            r, j = fit.whitened(member)
+            scale = np.linalg.norm(j, axis=1, keepdims=True)
+            q, triangle = np.linalg.qr((j / np.where(scale > 0.0, scale, 1.0)).T)
+            kept = np.abs(np.diag(triangle)) > 1e-7
+            q = q[:, kept].T
+            r = r - (r @ q.T) @ q
+            # Restricted likelihood: the baseline's coefficients are integrated out, not maximised.
+            log_det = 2.0 * float(np.sum(np.log(np.abs(np.diag(triangle)[kept])))) + 2.0 * float(
+                np.sum(np.log(scale[scale > 0]))
+            )
+            likelihood.append(-0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + family.log_det[member] + log_det))
+            residuals.append(r)
+            rows.append(q)
+        return cls(fit, np.stack(roots), residuals, rows, np.array(likelihood), dof)
+
+    @property
+    def member(self) -> int:
+        """The family member that fits best."""
+        return int(np.argmax(self.likelihood))
+
+
+def log_probability(gain: Array, terms: int, dof: int) -> Array:
+    """Log of the probability that Gaussian noise gains as much: the F test, with ``gain = -dof log(rss1/rss0)``."""
+    from scipy.special import betainc, betaln
+
+    share = np.exp(-np.maximum(gain, 0.0) / max(dof, 1))
+    a, b = 0.5 * max(dof - terms, 1), 0.5 * terms
+    plain = betainc(a, b, share)
+    with np.errstate(divide="ignore"):
+        tail = a * np.log(np.maximum(share, 1e-300)) + (b - 1.0) * np.log1p(-np.minimum(share, 1 - 1e-16))
+        tail = tail - betaln(a, b) - np.log(a)
+        return np.where(plain > 1e-280, np.log(np.maximum(plain, 1e-300)), tail)
+
+
+def screen(base: Base, effects: Iterable[Effect], *, shapes_of: Mapping[str, Any] | None = None) -> list[Candidate]:
+    """The best shape of each effect that gains at all, strongest first."""
+    found = []
+    for effect in effects:
+        candidate = screen_one(base, effect, shapes=None if shapes_of is None else shapes_of.get(effect.name))
+        if candidate is not None:
+            found.append(candidate)
+    return sorted(found, key=lambda c: c.log_p)
+
+
+def screen_one(
+    base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, float]] | None = None
+) -> Candidate | None:
+    """The effect at the shape that gains most, zoomed in on where its shape is continuous. None: no gain."""
+    fit = base.fit
+    motion = fit.linear.motion
+    looks = 0.0
+    if shapes is None:
+        if effect.line is not None:
+            shapes, looks = line_shapes(base_residual(base), fit, effect)
+        else:
+            shapes = list(effect.shapes(motion))
+    if not shapes:
+        return None
+    looks = max(looks, float(len(shapes)))
+    gains, coefficients = _gains(base, effect, shapes)
+    if not np.any(gains > 0.0):
+        return None
+    best = int(np.argmax(gains))
+    shape, gain, coefficient = shapes[best], float(gains[best]), coefficients[best]
+    for name in _smooth(effect, shape):
+        shape, gain, coefficient = _zoom(base, effect, shapes, shape, name, gain, coefficient)
+    terms = coefficient.size
+    values = {**effect.null(), **shape, **_parameters(effect, fit.linear.terms(effect), coefficient, motion)}
+    log_p = float(log_probability(np.array(gain), terms, base.dof)) + np.log(looks)
+    return Candidate(effect, values, gain, terms, looks, log_p)
+
+
+def base_residual(base: Base) -> Array:
+    """The angle's residual (n,) weighted by the inverse noise spectrum of the best member: for matched filters."""
+    fit = base.fit
+    weighted = fit.cosine_residual[0] * fit.setting.family.weights[base.member]
+    return to_rows(weighted) * (fit.evidence.usable / fit.evidence.scale)
+
+
+def _smooth(effect: Effect, shape: Mapping[str, float]) -> list[str]:
+    return [name for name in shape if not effect.params[name].counts and (name in effect.zoomed or _is_line(effect, name))]
+
+
+def _is_line(effect: Effect, name: str) -> bool:
+    return effect.line is not None and effect.line.param == name
+
+
+def _gains(base: Base, effect: Effect, shapes: Sequence[Mapping[str, float]]) -> tuple[Array, Array]:
+    """Gain (G,) of each shape, and the coefficients (G, T) of its fit."""
+    fit = base.fit
+    n = len(fit.evidence)
+    terms = len(fit.linear.terms(effect))
+    per = max(1, _CHUNK // max(n * terms * fit.evidence.observables, 1))
+    gains, coefficients = [], []
+    for start in range(0, len(shapes), per):
+        columns = fit.linear.columns(effect, shapes[start : start + per])
+        g, c = _gains_of_columns(base, effect, columns)
+        gains.append(g)
+        coefficients.append(c)
+    return np.concatenate(gains), np.concatenate(coefficients)
+
+
+def project_radius(evidence: Evidence, columns: Array) -> Array:
+    """Columns (..., O, n) with the radius' nuisances taken out, as the fit's Jacobian has them."""
+    if evidence.observables == 1:
+        return columns
+    basis = np.linalg.qr(np.stack(radius_nuisance(evidence)).T)[0].T
+    columns = np.array(columns)
+    columns[..., 1, :] -= (columns[..., 1, :] @ basis.T) @ basis
+    return columns
+
+
+def _gains_of_columns(base: Base, effect: Effect, columns: Array) -> tuple[Array, Array]:
+    fit = base.fit
+    count, terms = columns.shape[:2]
+    cosine = to_cosine(fit.evidence, project_radius(fit.evidence, columns))
+    best_gain = np.full(count, -np.inf)
+    best_coefficient = np.zeros((count, terms))
+    top = float(base.likelihood.max())
+    for member, likelihood in enumerate(base.likelihood):
+        white = (cosine * base.roots[member]).reshape(count * terms, -1)
+        q = base.rows[member]
+        r = base.residuals[member]
+        along = white @ q[:, : white.shape[1]].T
+        size = np.einsum("ij,ij->i", white, white).reshape(count, terms)
+        dot = (white @ r[: white.shape[1]]).reshape(count, terms)
+        # The part of q that lies in the priors' rows is orthogonal to the candidate.
+        if terms == 1:
+            norm = size[:, 0] - np.einsum("ij,ij->i", along, along)
+            good = norm > 1e-6 * np.maximum(size[:, 0], 1e-300)
+            safe = np.where(good, norm, 1.0)
+            coefficient = np.where(good, dot[:, 0] / safe, 0.0)[:, None]
+            explained = np.where(good, dot[:, 0] ** 2 / safe, 0.0)
+        else:
+            white3 = white.reshape(count, terms, -1)
+            along3 = along.reshape(count, terms, -1)
+            gram = white3 @ white3.transpose(0, 2, 1) - along3 @ along3.transpose(0, 2, 1)
+            scale = np.sqrt(np.maximum(np.einsum("gtt->gt", white3 @ white3.transpose(0, 2, 1)), 1e-300))
+            unit = gram / (scale[:, :, None] * scale[:, None, :]) + 1e-7 * np.eye(terms)
+            solved = np.linalg.solve(unit, (dot / scale)[..., None])[..., 0]
+            coefficient = solved / scale
+            explained = np.einsum("gt,gt->g", dot, coefficient)
+        explained = np.where(_allowed(effect, fit.linear.terms(effect), coefficient), explained, 0.0)
+        rss = float(r @ r)
+        remaining = np.maximum(rss - explained, 1e-12 * rss)
+        gain = 2.0 * (likelihood - top) - base.dof * np.log(remaining / rss)
+        better = gain > best_gain
+        best_gain = np.where(better, gain, best_gain)
+        best_coefficient = np.where(better[:, None], coefficient, best_coefficient)
+    return best_gain, best_coefficient
+
+
+def _allowed(effect: Effect, terms: tuple[Term, ...], coefficients: Array) -> Array:
+    """Which fits (G,) have physical coefficients: a lag is no lead, a level's change comes whole."""
+    ok = np.ones(coefficients.shape[0], dtype=bool)
+    for place, term in enumerate(terms):
+        param = effect.params[term.param]
+        if param.role == "level":
+            ok &= (coefficients[:, place] > 0.5) & (coefficients[:, place] < 1.6)
+        elif term.phase_deg is None and term.turn is None and param.lower == 0.0:
+            ok &= coefficients[:, place] > 0.0
+    return ok
+
+
+def _zoom(
+    base: Base,
+    effect: Effect,
+    shapes: Sequence[Mapping[str, float]],
+    shape: Mapping[str, float],
+    name: str,
+    gain: float,
+    coefficient: Array,
+) -> tuple[Mapping[str, float], float, Array]:
+    """Climb from the best point of the grid: finer grids between its neighbours, three times."""
+    axis = np.unique([s[name] for s in shapes])
+    place = int(np.searchsorted(axis, shape[name]))
+    low, high = axis[max(place - 1, 0)], axis[min(place + 1, axis.size - 1)]
+    if effect.line is not None:
+        step = line_step(base.fit, effect)
+        low, high = shape[name] - step, shape[name] + step
+    for _ in range(3):
+        fine = [{**shape, name: float(value)} for value in np.linspace(low, high, 9)]
+        if effect.line is not None:
+            inside = effect.line.within(np.array([f[name] for f in fine]))
+            fine = [f for f, good in zip(fine, inside, strict=True) if good]
+        if not fine:
+            break
+        gains, coefficients = _gains(base, effect, fine)
+        best = int(np.argmax(gains))
+        if gains[best] > gain:
+            shape, gain, coefficient = fine[best], float(gains[best]), coefficients[best]
+        width = (high - low) / 8.0
+        low, high = max(low, shape[name] - width), min(high, shape[name] + width)
+    return shape, gain, coefficient
+
+
+def line_step(fit: Fit, effect: Effect) -> float:
+    """Half the resolution of the line's clock on this motion: where a finer search begins."""
+    assert effect.line is not None
+    motion = fit.linear.motion
+    span = np.ptp(motion.shaft_rad) / (2 * np.pi) if effect.line.clock == "shaft" else np.ptp(motion.time_s)
+    return 0.5 / max(float(span), 1e-12)
+
+
+def _parameters(effect: Effect, terms: tuple[Term, ...], coefficient: Array, motion: Any) -> dict[str, Any]:
+    """Parameters of the effect from its linear coefficients."""
+    if effect.roles("per turn"):
+        zeros = np.zeros(len(terms) + 1)
+        zeros[1:] = coefficient
+        return {terms[0].param: zeros - zeros.mean()}
+    if effect.roles("level"):
+        return {}
+    names = effect.roles("strength")
+    if not effect.roles("phase"):
+        return {name: float(c) for name, c in zip(names, coefficient, strict=True)}
+    # One phase for all strengths: the leading direction of the pairs (cos, sin).
+    pairs = coefficient.reshape(len(names), 2)
+    _, _, right = np.linalg.svd(pairs)
+    phase = right[0]
+    found: dict[str, Any] = {name: float(pairs[k] @ phase) for k, name in enumerate(names)}
+    if len(names) == 1 and found[names[0]] < 0.0:
+        found[names[0]], phase = -found[names[0]], -phase
+    found[effect.roles("phase")[0]] = float(np.degrees(np.arctan2(phase[1], phase[0])))
+    return found
+
+
+def with_looks(candidate: Candidate, looks: float, dof: int) -> Candidate:
+    """The candidate judged as one of so many independent looks."""
+    log_p = float(log_probability(np.array(candidate.gain), candidate.terms, dof)) + float(np.log(looks))
+    return replace(candidate, looks=looks, log_p=log_p)

@@ -1,0 +1,270 @@
+"""The search: add the cause that gains most, refit everything exactly, prune, try every swap; until nothing is left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from diagnosis.evidence import Evidence
+from diagnosis.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, tidy
+from diagnosis.screening import Base, Candidate, log_probability, screen, screen_one
+from twin.angles import Array
+from twin.catalogue import base_name, find
+from twin.chain import Chain
+from twin.effect import Effect
+
+ALPHA = 0.003
+"""Family-wise probability of a false alarm above which nothing is added."""
+HANDICAP = 6.0
+"""What a shape without a name must gain (in nats) beyond one with a name."""
+SWAP_MARGIN = 2.0
+"""What a swap must gain (in nats): less is noise."""
+SAME_FIT = 9.0
+"""Difference of twice the log likelihood, three sigma, below which two causes cannot be told apart."""
+MOST_CAUSES = 8
+REPEATABLE = frozenset({"drive_ripple", "magnet_harmonic"})
+
+
+@dataclass(frozen=True, eq=False)
+class Cause:
+    """One found cause: its instance key, what it gains, and the named effects that would do as well."""
+
+    key: str
+    gain: float
+    log_p: float
+    rivals: tuple[str, ...] = ()
+
+    @property
+    def named(self) -> bool:
+        """Whether the catalogue has a name for it."""
+        return not base_name(self.key).startswith("unnamed")
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What the search ends with: the joint fit and its causes, strongest first."""
+
+    fit: Fit
+    causes: tuple[Cause, ...]
+    looked_at: int
+
+
+def likelihood(fit: Fit) -> float:
+    """Restricted log likelihood of a fit at its best noise, the baseline's coefficients integrated out."""
+    family = fit.setting.family
+    base = [k for k, free in enumerate(fit.free) if free in BASELINE]
+    dof = fit.rows * fit.evidence.observables - len(base)
+    best = -np.inf
+    for member in range(len(family.labels)):
+        r, j = fit.whitened(member)
+        _, log_det = np.linalg.slogdet(j[base] @ j[base].T + 1e-300 * np.eye(len(base)))
+        best = max(best, -0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + family.log_det[member] + log_det))
+    return float(best)
+
+
+def refit(chain: Chain, free: Sequence[Free], like: Fit, *, iterations: int = 12) -> Fit:
+    """Fit a chain's free parameters to the evidence of another fit."""
+    fit = solve(evaluate(chain, tuple(free), like.evidence, like.setting), iterations=iterations)
+    return replace_chain(fit, tidy(fit.chain))
+
+
+def replace_chain(fit: Fit, chain: Chain) -> Fit:
+    """The fit with an equivalent chain (phases and signs made tidy)."""
+    return evaluate(chain, fit.free, fit.evidence, fit.setting)
+
+
+def settle(fit: Fit) -> tuple[Fit, Base]:
+    """Let the fit take the noise that fits it best, the radius its own noise, and solve again."""
+    for _ in range(3):
+        base = Base.of(fit)
+        setting = replace(fit.setting, member=base.member, **_radius_setting(fit))
+        same = setting.member == fit.setting.member and np.isclose(
+            setting.radius_weight, fit.setting.radius_weight, rtol=0.05
+        )
+        if same and setting.radius_member == fit.setting.radius_member:
+            return fit, base
+        fit = solve(evaluate(fit.chain, fit.free, fit.evidence, setting))
+    return fit, Base.of(fit)
+
+
+def _radius_setting(fit: Fit) -> dict[str, Any]:
+    """Noise member of the radius and its weight against the angle, each from its own residual."""
+    if fit.evidence.observables == 1:
+        return {}
+    family = fit.setting.family
+    squares = (fit.cosine_residual[1] ** 2) @ family.weights.T
+    members = -0.5 * (fit.rows * np.log(np.maximum(squares, 1e-300)) + family.log_det)
+    member = int(np.argmax(members))
+    angle = float(np.mean(fit.cosine_residual[0] ** 2 * family.weights[fit.setting.member]))
+    radius = float(np.mean(fit.cosine_residual[1] ** 2 * family.weights[member]))
+    # The channels' noise is as large along the radius as across it: the radius never counts for more than that.
+    return {"radius_member": member, "radius_weight": min(angle / max(radius, 1e-300), 1.0)}
+
+
+def add(fit: Fit, candidate: Candidate) -> tuple[Fit, str]:
+    """The joint fit with the candidate added, and the key it got."""
+    name = candidate.effect.name
+    taken = sum(1 for key in fit.chain.values if base_name(key) == name)
+    key = name if taken == 0 else f"{name}#{taken + 1}"
+    chain = fit.chain.with_values({key: dict(candidate.values)})
+    turns = int(fit.evidence.motion.turn.max(initial=0)) + 1
+    return refit(chain, (*fit.free, *free_of(candidate.effect, key, chain, turns)), fit), key
+
+
+def drop(fit: Fit, key: str) -> Fit:
+    """The joint fit without this instance."""
+    return refit(fit.chain.without(key), [f for f in fit.free if f.key != key], fit)
+
+
+def exact(fit: Fit, before: float, candidate: Candidate, base: Base) -> tuple[float, Fit, str]:
+    """Log probability of the candidate's exact gain, its joint fit and its key."""
+    trial, key = add(fit, candidate)
+    gain = 2.0 * (likelihood(trial) - before)
+    log_p = float(log_probability(np.array(gain), candidate.terms, base.dof)) + float(np.log(candidate.looks))
+    return log_p, trial, key
+
+
+def handicap(effect: Effect) -> float:
+    """What an effect without a name has to gain beyond the others."""
+    return HANDICAP if effect.name.startswith("unnamed") else 0.0
+
+
+def search(fit: Fit, effects: Sequence[Effect], *, alpha: float = ALPHA) -> Found:
+    """Find the causes among ``effects`` that the fit's chain lacks."""
+    effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
+    threshold = float(np.log(alpha / max(len(effects), 1)))
+    keys: list[str] = []
+    fit, base = settle(fit)
+    while len(keys) < MOST_CAUSES:
+        step = best_addition(fit, base, effects, keys, threshold)
+        if step is None:
+            break
+        fit, key = step
+        keys.append(key)
+        fit, base = settle(fit)
+        fit, keys = improve(fit, effects, keys, threshold)
+        fit, base = settle(fit)
+    causes = []
+    for key in keys:
+        causes.append(judge(fit, key, effects, keys))
+    causes.sort(key=lambda cause: -cause.gain)
+    return Found(fit, tuple(causes), len(effects))
+
+
+def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
+    """Every effect that may still be added, at its best shape, best first after the handicap."""
+    present = {base_name(key) for key in keys}
+    open_to = [e for e in effects if e.name not in present or e.name in REPEATABLE or e.name.startswith("unnamed")]
+    found = screen(base, open_to)
+    found += multiples(base, effects, keys)
+    return sorted(found, key=lambda c: c.log_p + handicap(c.effect))
+
+
+def multiples(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
+    """A drive's ripple comes with its multiples, also where these alias to other orders."""
+    found = []
+    for effect in effects:
+        if effect.name != "drive_ripple":
+            continue
+        for key in keys:
+            if base_name(key) != effect.name:
+                continue
+            order = float(base.fit.chain.values[key]["order"])
+            candidate = screen_one(base, effect, shapes=[{"order": order * k} for k in (2, 3, 4, 5)])
+            if candidate is not None:
+                found.append(candidate)
+    return found
+
+
+def best_addition(
+    fit: Fit, base: Base, effects: Sequence[Effect], keys: Sequence[str], threshold: float
+) -> tuple[Fit, str] | None:
+    """The joint fit with the best significant candidate, contenders compared by exact fits; None if there is none."""
+    ranked = [c for c in candidates(base, effects, keys) if c.log_p + handicap(c.effect) < threshold]
+    if not ranked:
+        return None
+    before = likelihood(fit)
+    top = ranked[0].log_p + handicap(ranked[0].effect)
+    near = [c for c in ranked if c.log_p + handicap(c.effect) < top + max(8.0, -0.1 * top)][:5]
+    trials = [(exact(fit, before, c, base), c) for c in near]
+    (log_p, trial, key), chosen = min(trials, key=lambda t: t[0][0] + handicap(t[1].effect))
+    if log_p + handicap(chosen.effect) > threshold:
+        return None
+    return trial, key
+
+
+def improve(fit: Fit, effects: Sequence[Effect], keys: list[str], threshold: float) -> tuple[Fit, list[str]]:
+    """Prune what no longer pays, then try every swap; repeat while something changes."""
+    for _ in range(3):
+        changed = False
+        for key in list(keys):
+            if key not in keys or len(keys) < 2:
+                continue
+            without = drop(fit, key)
+            others = [k for k in keys if k != key]
+            base = Base.of(without)
+            effect = find(key, fit.chain.effects)
+            before = likelihood(without)
+            gain = 2.0 * (likelihood(fit) - before)
+            terms = len(without.linear.terms(effect))
+            own = screen_one(base, effect)
+            looks = own.looks if own is not None else 1.0
+            log_p = float(log_probability(np.array(gain), terms, base.dof)) + float(np.log(looks))
+            if log_p + handicap(effect) > threshold:
+                fit, keys, changed = without, others, True
+                continue
+            score = log_p + handicap(effect)
+            for rival in candidates(base, effects, others)[:3]:
+                if rival.effect.name == effect.name or rival.log_p + handicap(rival.effect) > score + 8.0:
+                    continue
+                rival_p, trial, rival_key = exact(without, before, rival, base)
+                if rival_p + handicap(rival.effect) < score - SWAP_MARGIN:
+                    fit, keys, changed = trial, [*others, rival_key], True
+                    break
+        if not changed:
+            break
+    return fit, keys
+
+
+def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:
+    """What a cause gains in the final fit, and which named effects in its place would fit as well."""
+    without = drop(fit, key)
+    base = Base.of(without)
+    before = likelihood(without)
+    gain = 2.0 * (likelihood(fit) - before)
+    effect = find(key, fit.chain.effects)
+    terms = len(without.linear.terms(effect))
+    own = screen_one(base, effect)
+    looks = own.looks if own is not None else 1.0
+    log_p = float(log_probability(np.array(gain), terms, base.dof)) + float(np.log(looks))
+    rivals: list[str] = []
+    if not effect.name.startswith("unnamed"):
+        present = {base_name(k) for k in keys}
+        for other in effects:
+            if other.name == effect.name or other.name in present or other.name.startswith("unnamed"):
+                continue
+            rival = screen_one(base, other)
+            if rival is None or rival.gain < 0.5 * gain - SAME_FIT:
+                continue
+            trial, _ = add(without, rival)
+            if 2.0 * (likelihood(trial) - before) > gain - SAME_FIT:
+                rivals.append(other.name)
+    return Cause(key, gain, log_p, tuple(rivals))
+
+
+def values_of(fit: Fit, key: str) -> Mapping[str, Any]:
+    """Parameters of one instance."""
+    return fit.chain.values[key]
+
+
+def residual_rows(fit: Fit) -> Array:
+    """Angle residual (n,) [rad] over the evidence's rows."""
+    return fit.residual[0]
+
+
+def evidence_of(fit: Fit) -> Evidence:
+    """The evidence a fit was made on."""
+    return fit.evidence

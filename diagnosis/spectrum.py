@@ -1,0 +1,83 @@
+"""Which lines to look at: one spectrum of the weighted residual instead of a grid of columns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from diagnosis.joint_fit import Fit
+from twin.angles import TAU, Array
+from twin.effect import Effect
+
+OVERSAMPLING = 4
+PEAKS = 10
+_LARGEST_GRID = 1 << 21
+
+
+def line_shapes(weighted: Array, fit: Fit, effect: Effect) -> tuple[Sequence[Mapping[str, float]], float]:
+    """The orders or frequencies at which the effect's line matches the residual best, and how many were looked at.
+
+    ``weighted`` (n,) is the residual filtered by the inverse noise covariance. The effect's column at frequency f is
+    Re[A exp(i 2 pi f clock)] with an amplitude A(n,) that does not depend on f, so one transform serves all f.
+    """
+    line = effect.line
+    assert line is not None
+    motion = fit.linear.motion
+    low, high = line.limits(motion)
+    clock = motion.shaft_rad / TAU if line.clock == "shaft" else motion.time_s - 0.5 * (
+        motion.time_s[0] + motion.time_s[-1]
+    )
+    span = float(np.ptp(clock))
+    if span <= 0.0 or high <= low:
+        return [], 0.0
+    if (high - low) * span < 64:
+        # Few enough to try them all, at a quarter of the resolution.
+        grid = np.linspace(low, high, int(np.ceil((high - low) * span * OVERSAMPLING)) + 2)
+        grid = np.unique(np.concatenate([grid, np.arange(np.ceil(low), np.floor(high) + 1)]))
+        grid = grid[line.within(grid)]
+        looks = max(float((high - low) * span), 1.0)
+        return [{line.param: float(f)} for f in grid], looks
+    middle = 0.5 * (low + high)
+    quadrature = fit.linear.columns(effect, [{line.param: middle}])[0][:, 0]
+    turning = np.exp(-1j * TAU * middle * clock)
+    amplitudes = [
+        (quadrature[k] - 1j * quadrature[k + 1]) * turning for k in range(0, len(quadrature) - 1, 2)
+    ]
+    bins = 1 << int(np.ceil(np.log2(max(OVERSAMPLING * 2.0 * high * span, 64.0))))
+    bins = min(bins, _LARGEST_GRID)
+    period = OVERSAMPLING * span
+    place = (clock - clock.min()) / period * bins
+    left = np.floor(place).astype(np.int64)
+    share = place - left
+    power = np.zeros(bins // 2)
+    for amplitude in amplitudes:
+        signal = weighted * np.conj(amplitude)
+        grid_sum = np.zeros(bins, dtype=np.complex128)
+        for index, part in ((left, 1.0 - share), (left + 1, share)):
+            grid_sum += np.bincount(index % bins, (signal * part).real, bins)
+            grid_sum += 1j * np.bincount(index % bins, (signal * part).imag, bins)
+        power += np.abs(np.fft.fft(grid_sum)[: bins // 2]) ** 2
+    frequency = np.arange(bins // 2) / period
+    # Linear interpolation between bins damps high frequencies by sinc^2: undone.
+    power /= np.sinc(np.arange(bins // 2) / bins) ** 4
+    inside = (frequency >= low) & (frequency <= high)
+    whole_only = not bool(line.within(np.array([low + 0.37 / span]))[0]) and not bool(
+        line.within(np.array([np.floor(middle) + 0.5]))[0]
+    )
+    if whole_only:
+        whole = np.arange(np.ceil(low), np.floor(high) + 1)
+        whole = whole[line.within(whole)]
+        rank = np.interp(whole, frequency, power)
+        order = np.argsort(rank)[::-1][: 2 * PEAKS]
+        return [{line.param: float(f)} for f in np.sort(whole[order])], float(whole.size)
+    power = np.where(inside, power, 0.0)
+    peak = np.flatnonzero((power[1:-1] >= power[:-2]) & (power[1:-1] > power[2:])) + 1
+    peak = peak[line.within(frequency[peak])]
+    order = np.argsort(power[peak])[::-1][:PEAKS]
+    chosen = frequency[peak[order]]
+    # A line at a whole order that belongs to the effect is tried as such.
+    whole = np.round(chosen)
+    whole = whole[(np.abs(whole - chosen) < 0.5 / span) & line.within(whole)]
+    grid = np.unique(np.concatenate([chosen, whole]))
+    return [{line.param: float(f)} for f in grid], max(float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)

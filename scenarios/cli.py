@@ -46,6 +46,36 @@ def causes(
     run(markdown=markdown)
 
 
+@app.command()
+def simulate(
+    twin: Annotated[str, typer.Argument(help="Twin TOML, or the name of a preset.")] = "imc-14bit",
+    output: Annotated[Path, typer.Option("-o", "--output", help="Sweep to write: CSV or .csv.gz.")] = Path("sweep.csv"),
+    motion: Annotated[Path | None, typer.Option(help="Simulate on the motion of this recorded sweep.")] = None,
+    turns: Annotated[int, typer.Option(help="Turns in each direction.")] = 1,
+    points: Annotated[int, typer.Option(help="Readings a turn.")] = 360,
+    both_directions: Annotated[bool, typer.Option("--both-directions", help="And back over the same angles.")] = False,
+    speed_rpm: Annotated[list[float] | None, typer.Option(help="Speed; may be repeated. 0: stop and measure.")] = None,
+    temperatures: Annotated[str, typer.Option(help="Temperatures in C, e.g. 25,60,85.")] = "",
+    channels: Annotated[bool, typer.Option(help="Record vx and vy as well.")] = True,
+    trace: Annotated[Path | None, typer.Option(help="Write every intermediate signal as CSV.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw the trace: .png, .svg or .pdf.")] = None,
+    seed: Seed = 0,
+) -> None:
+    """Simulate a sweep from a twin, on a protocol or on a recorded motion."""
+    from scenarios.protocol import Protocol, numbers
+    from scenarios.simulate import run
+
+    protocol = Protocol(
+        turns=turns,
+        points=points,
+        both_directions=both_directions,
+        speeds_rpm=speed_rpm or [0.0],
+        temperatures_c=numbers("temperatures", temperatures),
+        channels=channels,
+    )
+    run(twin, output, recorded=motion, protocol=protocol, seed=seed, trace_path=trace, plot_path=plot)
+
+
 def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
     try:

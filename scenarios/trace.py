@@ -1,0 +1,109 @@
+"""The trace of a run: every intermediate signal with its unit, as a table and as a picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.plotting import save, style
+from twin.angles import TAU, Array, wrap
+from twin.chain import Chain, Step
+from twin.motion import Motion
+from twin.sweep_file import write_columns
+
+CONVERSIONS = {
+    "after shaft": "field angle",
+    "after field": "driven channels",
+    "after channels": "computed angle",
+    "after angle": "reading",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Signal:
+    """One operation's output: ``values`` (1 or 2, n) in ``unit``, and ``moved_deg`` (n,), what it did to the angle."""
+
+    name: str
+    unit: str
+    values: Array
+    moved_deg: Array
+    is_effect: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """All signals of one run in the order of the chain, and the reference's reading [deg] (n,)."""
+
+    motion: Motion
+    signals: tuple[Signal, ...]
+    reference_deg: Array
+    error_deg: Array
+
+
+def trace(chain: Chain, motion: Motion, *, seed: int) -> Trace:
+    """Run the chain as :meth:`Chain.simulate` does with this seed, and keep every signal."""
+    rng = np.random.default_rng(seed)
+    stages = {effect.name: effect.acts_on for effect in chain.effects}
+    signals = [Signal("shaft", "deg", np.degrees(motion.shaft_rad)[None], np.zeros(len(motion)), False)]
+    last: Array = signals[0].values
+    for step in chain.steps(motion, rng):
+        kind = stages[step.effect.name] if step.effect else step.key.removeprefix("after ")
+        is_channels = kind == "channels" if step.effect else kind == "field"
+        values = step.after if is_channels else np.degrees(step.after)
+        name = step.key if step.effect else CONVERSIONS[step.key]
+        signals.append(Signal(name, "1" if is_channels else "deg", values, _moved_deg(step, kind), bool(step.effect)))
+        last = step.after
+    reference = chain.reference(motion, rng)
+    slope = chain.sensor_sense * chain.output_sense
+    error = np.degrees(wrap(last[0] - slope * reference))
+    return Trace(motion, tuple(signals), np.degrees(reference), error)
+
+
+def _moved_deg(step: Step, kind: str) -> Array:
+    """What the operation did to the angle that the two channels stand for [deg] (n,)."""
+    if step.effect is None:
+        return np.zeros(step.after.shape[-1])
+    if kind == "channels":
+        before, after = (np.arctan2(s[1], s[0]) for s in (step.before, step.after))
+        return np.asarray(np.degrees(wrap(after - before)))
+    return np.asarray(np.degrees(wrap(step.after - step.before)).mean(axis=0))
+
+
+def write_trace(path: Path, traced: Trace) -> None:
+    """The trace as CSV, one row a reading; the unit ends each name, ``_1`` being the nominal amplitude."""
+    columns = {"time_s": traced.motion.time_s}
+    for place, signal in enumerate(traced.signals):
+        stem = f"{place:02d}_{signal.name.replace(' ', '_')}"
+        for axis, values in zip(("_x", "_y") if len(signal.values) == 2 else ("",), signal.values, strict=True):
+            columns[f"{stem}{axis}_{signal.unit}"] = values
+    columns["reference_deg"] = traced.reference_deg
+    columns["error_deg"] = traced.error_deg
+    write_columns(path, columns)
+
+
+def plot_trace(path: Path, traced: Trace, *, title: str) -> None:
+    """Three panels: the channels, what each effect does to the angle, and the error that is left."""
+    plt = style(path)
+    figure, axes = plt.subplots(3, 1, figsize=(8.0, 8.5), sharex=True, layout="constrained")
+    turn = traced.motion.shaft_rad
+    single = traced.motion.turns <= 1.0 and np.all(np.diff(turn) > 0)
+    across = turn * 360.0 / TAU if single else np.arange(len(traced.motion))
+    marker = {"linewidth": 0.9}
+    channels = [signal for signal in traced.signals if signal.unit == "1"][-1]
+    for label, values in zip("xy", channels.values, strict=True):
+        axes[0].plot(across, values, label=label, **marker)
+    axes[0].set_ylabel("channel / nominal amplitude")
+    for signal in traced.signals:
+        if signal.is_effect and np.ptp(signal.moved_deg) > 0.0:
+            axes[1].plot(across, signal.moved_deg, label=signal.name, **marker)
+    axes[1].set_ylabel("change of the angle / deg")
+    axes[2].plot(across, traced.error_deg, color="black", label="reading minus reference", **marker)
+    axes[2].set_ylabel("error / deg")
+    axes[2].set_xlabel("shaft angle / deg" if single else "reading")
+    for axis in axes:
+        axis.grid(alpha=0.3)
+        axis.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    figure.suptitle(title)
+    save(figure, path)

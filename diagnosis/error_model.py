@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +47,7 @@ def mirrored(points: Array) -> Array:
 
     With a -> -a the x channel stays and the y channel changes sign, but F is not odd: only q parts the two.
     """
-    return points * np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+    return np.asarray(points * np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0]))
 
 
 def twin_values(point: Array) -> dict[str, dict[str, float]]:
@@ -153,11 +154,11 @@ class Readings:
         reference_rad: Array,
         measured_rad: Array,
         *,
-        sensor_sense: int = 1,
-        output_sense: int = 1,
+        sensor_sense: float | Array = 1.0,
+        output_sense: float | Array = 1.0,
         weights: Array | None = None,
     ) -> Readings:
-        """From angles (..., n) [rad], wrapped or not."""
+        """From angles (..., n) [rad], wrapped or not; senses +1 or -1, broadcast against them."""
         return cls(
             np.cos(reference_rad),
             sensor_sense * np.sin(reference_rad),
@@ -180,9 +181,7 @@ class Readings:
 
     def sweeps(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Readings:
         """Some of the sweeps (batch, n)."""
-        weights = None if self.weights is None else self.weights[which]
-        parts = (self.cos_shaft, self.sin_shaft, self.cos_read, self.sin_read)
-        return Readings(*(part[which] for part in parts), weights)
+        return self._part(which)
 
     def weighted(self, weights: Array | None) -> Readings:
         """The same readings with other weights (..., n)."""
@@ -194,15 +193,19 @@ class Readings:
         size = max(_CHUNK_ROWS // max(sweeps, 1), 256)
         for start in range(0, self.count, size):
             rows = slice(start, min(start + size, self.count))
-            weights = None if self.weights is None else self.weights[..., rows]
-            parts = (self.cos_shaft, self.sin_shaft, self.cos_read, self.sin_read)
-            yield rows, Readings(*(part[..., rows] for part in parts), weights)
+            yield rows, self._part((..., rows))
+
+    def _part(self, where: Any) -> Readings:
+        weights = None if self.weights is None else self.weights[where]
+        return Readings(
+            self.cos_shaft[where], self.sin_shaft[where], self.cos_read[where], self.sin_read[where], weights
+        )
 
     def features(self) -> Array:
         """The ten products (..., n, 10): (1, c, s, cos 2, sin 2) of the shaft times cos, then times sin, of m."""
         c, s = self.cos_shaft, self.sin_shaft
         out = np.empty((*np.broadcast_shapes(c.shape, self.cos_read.shape), 10))
-        shaft = (1.0, c, s, c * c - s * s, 2.0 * c * s)
+        shaft: tuple[float | Array, ...] = (1.0, c, s, c * c - s * s, 2.0 * c * s)
         for k, part in enumerate(shaft):
             out[..., k] = part * self.cos_read
             out[..., 5 + k] = part * self.sin_read

@@ -29,7 +29,6 @@ class Signal:
     unit: str
     values: Array
     moved_deg: Array
-    is_effect: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,14 +45,14 @@ def trace(chain: Chain, motion: Motion, *, seed: int) -> Trace:
     """Run the chain as :meth:`Chain.simulate` does with this seed, and keep every signal."""
     rng = np.random.default_rng(seed)
     stages = {effect.name: effect.acts_on for effect in chain.effects}
-    signals = [Signal("shaft", "deg", np.degrees(motion.shaft_rad)[None], np.zeros(len(motion)), False)]
+    signals = [Signal("shaft", "deg", np.degrees(motion.shaft_rad)[None], np.zeros(len(motion)))]
     last: Array = signals[0].values
     for step in chain.steps(motion, rng):
         kind = stages[step.effect.name] if step.effect else step.key.removeprefix("after ")
         is_channels = kind == "channels" if step.effect else kind == "field"
         values = step.after if is_channels else np.degrees(step.after)
         name = step.key if step.effect else CONVERSIONS[step.key]
-        signals.append(Signal(name, "1" if is_channels else "deg", values, _moved_deg(step, kind), bool(step.effect)))
+        signals.append(Signal(name, "1" if is_channels else "deg", values, _moved_deg(step, kind))))
         last = step.after
     reference = chain.reference(motion, rng)
     slope = chain.sensor_sense * chain.output_sense
@@ -62,13 +61,23 @@ def trace(chain: Chain, motion: Motion, *, seed: int) -> Trace:
 
 
 def _moved_deg(step: Step, kind: str) -> Array:
-    """What the operation did to the angle that the two channels stand for [deg] (n,)."""
-    if step.effect is None:
+    """What the operation did to the angle that the signal stands for [deg] (n,).
+
+    The conversion to channels moves it where a magnet's field is not the ideal one; the other conversions do not.
+    """
+    if step.effect is None and kind != "field":
         return np.zeros(step.after.shape[-1])
+    before = _angle(step.before, kind)
+    after = _angle(step.after, kind if step.effect else "channels")
+    return np.asarray(np.degrees(wrap(after - before)))
+
+
+def _angle(signal: Array, kind: str) -> Array:
     if kind == "channels":
-        before, after = (np.arctan2(s[1], s[0]) for s in (step.before, step.after))
-        return np.asarray(np.degrees(wrap(after - before)))
-    return np.asarray(np.degrees(wrap(step.after - step.before)).mean(axis=0))
+        return np.asarray(np.arctan2(signal[1], signal[0]))
+    if len(signal) == 2:
+        return np.asarray(np.arctan2(np.sin(signal[1]), np.cos(signal[0])))
+    return signal[0]
 
 
 def write_trace(path: Path, traced: Trace) -> None:
@@ -96,8 +105,11 @@ def plot_trace(path: Path, traced: Trace, *, title: str) -> None:
         axes[0].plot(across, values, label=label, **marker)
     axes[0].set_ylabel("channel / nominal amplitude")
     for signal in traced.signals:
-        if signal.is_effect and np.ptp(signal.moved_deg) > 0.0:
-            axes[1].plot(across, signal.moved_deg, label=signal.name, **marker)
+        if np.max(np.abs(signal.moved_deg)) > 1e-9:
+            # The roughest curves go behind the smooth ones.
+            behind = 2.0 - float(np.std(np.diff(signal.moved_deg)))
+            name = "magnet" if signal.name == CONVERSIONS["after field"] else signal.name
+            axes[1].plot(across, signal.moved_deg, label=name, zorder=behind, **marker)
     axes[1].set_ylabel("change of the angle / deg")
     axes[2].plot(across, traced.error_deg, color="black", label="reading minus reference", **marker)
     axes[2].set_ylabel("error / deg")

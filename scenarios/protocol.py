@@ -56,7 +56,9 @@ class Protocol:
                     )
                     clock += interval * steps.size + STOP_S
         unknown = {"speed_rad_s": not any(self.speeds_rpm), "temperature_c": not self.temperatures_c}
-        columns = {name: None if unknown.get(name) else np.concatenate([leg[name] for leg in legs]) for name in legs[0]}
+        columns: dict[str, Any] = {
+            name: None if unknown.get(name) else np.concatenate([leg[name] for leg in legs]) for name in legs[0]
+        }
         return Motion.from_angle(**columns, has_channels=self.channels)
 
 

@@ -52,7 +52,7 @@ def trace(chain: Chain, motion: Motion, *, seed: int) -> Trace:
         is_channels = kind == "channels" if step.effect else kind == "field"
         values = step.after if is_channels else np.degrees(step.after)
         name = step.key if step.effect else CONVERSIONS[step.key]
-        signals.append(Signal(name, "1" if is_channels else "deg", values, _moved_deg(step, kind))))
+        signals.append(Signal(name, "1" if is_channels else "deg", values, _moved_deg(step, kind)))
         last = step.after
     reference = chain.reference(motion, rng)
     slope = chain.sensor_sense * chain.output_sense

@@ -77,7 +77,7 @@ def _angle(signal: Array, kind: str) -> Array:
         return np.asarray(np.arctan2(signal[1], signal[0]))
     if len(signal) == 2:
         return np.asarray(np.arctan2(np.sin(signal[1]), np.cos(signal[0])))
-    return signal[0]
+    return np.asarray(signal[0])
 
 
 def write_trace(path: Path, traced: Trace) -> None:
@@ -101,6 +101,7 @@ def plot_trace(path: Path, traced: Trace, *, title: str) -> None:
     across = turn * 360.0 / TAU if single else np.arange(len(traced.motion))
     marker = {"linewidth": 0.9}
     channels = [signal for signal in traced.signals if signal.unit == "1"][-1]
+    axes[1].set_prop_cycle(color=plt.get_cmap("tab20").colors)
     for label, values in zip("xy", channels.values, strict=True):
         axes[0].plot(across, values, label=label, **marker)
     axes[0].set_ylabel("channel / nominal amplitude")

@@ -237,8 +237,7 @@ def _zoom(
     place = int(np.searchsorted(axis, shape[name]))
     low, high = axis[max(place - 1, 0)], axis[min(place + 1, axis.size - 1)]
     if effect.line is not None:
-        step = line_step(base.fit, effect)
-        low, high = shape[name] - step, shape[name] + step
+        low, high = line_neighbours(base.fit, effect, shape[name])
     for _ in range(3):
         fine = [{**shape, name: float(value)} for value in np.linspace(low, high, 9)]
         if effect.line is not None:
@@ -255,12 +254,18 @@ def _zoom(
     return shape, gain, coefficient
 
 
-def line_step(fit: Fit, effect: Effect) -> float:
-    """Half the resolution of the line's clock on this motion: where a finer search begins."""
+def line_neighbours(fit: Fit, effect: Effect, value: float) -> tuple[float, float]:
+    """Half the resolution of the line's clock to either side: where a finer search begins."""
     assert effect.line is not None
     motion = fit.linear.motion
+    if effect.line.clock == "channels":
+        # The clock is the value, the frequency 1/(2 step): resolved to the inverse of the range of values.
+        reach = 2.0 * float(np.max(np.abs(fit.linear.at(effect).signal)))
+        frequency = 100.0 / (2.0 * value)
+        return 50.0 / (frequency + 0.5 / reach), 50.0 / max(frequency - 0.5 / reach, 1.0)
     span = np.ptp(motion.shaft_rad) / (2 * np.pi) if effect.line.clock == "shaft" else np.ptp(motion.time_s)
-    return 0.5 / max(float(span), 1e-12)
+    step = 0.5 / max(float(span), 1e-12)
+    return value - step, value + step
 
 
 def _parameters(effect: Effect, terms: tuple[Term, ...], coefficient: Array, motion: Any) -> dict[str, Any]:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from diagnosis.evidence import Evidence
 from diagnosis.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, tidy
 from diagnosis.screening import Base, Candidate, log_probability, screen, screen_one
-from twin.angles import Array
 from twin.catalogue import base_name, find
 from twin.chain import Chain
 from twin.effect import Effect
@@ -45,10 +43,10 @@ class Cause:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What the search ends with: the joint fit and its causes, strongest first."""
+    """What the search ends with: the joint fit, the keys of its causes, and how many effects were looked at."""
 
     fit: Fit
-    causes: tuple[Cause, ...]
+    keys: tuple[str, ...]
     looked_at: int
 
 
@@ -129,15 +127,24 @@ def exact(fit: Fit, before: float, candidate: Candidate, base: Base) -> tuple[fl
 
 def handicap(effect: Effect) -> float:
     """What an effect without a name has to gain beyond the others."""
+    if effect.name == "unnamed_tone":
+        # On a shaft that steps evenly a tone in time is an order too: the order is the plainer description.
+        return HANDICAP + 2.0
     return HANDICAP if effect.name.startswith("unnamed") else 0.0
 
 
-def search(fit: Fit, effects: Sequence[Effect], *, alpha: float = ALPHA) -> Found:
-    """Find the causes among ``effects`` that the fit's chain lacks."""
+def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alpha: float = ALPHA) -> Found:
+    """Find the causes among ``effects`` that the fit's chain lacks; ``keys`` are those found before, open to revision.
+
+    The causes come without a judgement of their rivals: see :func:`judge`.
+    """
     effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
     threshold = float(np.log(alpha / max(len(effects), 1)))
-    keys: list[str] = []
+    keys = list(keys)
     fit, base = settle(fit)
+    if keys:
+        fit, keys = improve(fit, effects, keys, threshold)
+        fit, base = settle(fit)
     while len(keys) < MOST_CAUSES:
         step = best_addition(fit, base, effects, keys, threshold)
         if step is None:
@@ -147,11 +154,7 @@ def search(fit: Fit, effects: Sequence[Effect], *, alpha: float = ALPHA) -> Foun
         fit, base = settle(fit)
         fit, keys = improve(fit, effects, keys, threshold)
         fit, base = settle(fit)
-    causes = []
-    for key in keys:
-        causes.append(judge(fit, key, effects, keys))
-    causes.sort(key=lambda cause: -cause.gain)
-    return Found(fit, tuple(causes), len(effects))
+    return Found(fit, tuple(keys), len(effects))
 
 
 def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
@@ -231,6 +234,7 @@ def improve(fit: Fit, effects: Sequence[Effect], keys: list[str], threshold: flo
 
 def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:
     """What a cause gains in the final fit, and which named effects in its place would fit as well."""
+    effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
     without = drop(fit, key)
     base = Base.of(without)
     before = likelihood(without)
@@ -253,18 +257,3 @@ def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) ->
             if 2.0 * (likelihood(trial) - before) > gain - SAME_FIT:
                 rivals.append(other.name)
     return Cause(key, gain, log_p, tuple(rivals))
-
-
-def values_of(fit: Fit, key: str) -> Mapping[str, Any]:
-    """Parameters of one instance."""
-    return fit.chain.values[key]
-
-
-def residual_rows(fit: Fit) -> Array:
-    """Angle residual (n,) [rad] over the evidence's rows."""
-    return fit.residual[0]
-
-
-def evidence_of(fit: Fit) -> Evidence:
-    """The evidence a fit was made on."""
-    return fit.evidence

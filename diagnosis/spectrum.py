@@ -25,6 +25,8 @@ def line_shapes(weighted: Array, fit: Fit, effect: Effect) -> tuple[Sequence[Map
     assert line is not None
     motion = fit.linear.motion
     low, high = line.limits(motion)
+    if line.clock == "channels":
+        return _weights_of_a_bit(weighted, fit, effect, low, high)
     clock = motion.shaft_rad / TAU if line.clock == "shaft" else motion.time_s - 0.5 * (
         motion.time_s[0] + motion.time_s[-1]
     )
@@ -81,3 +83,35 @@ def line_shapes(weighted: Array, fit: Fit, effect: Effect) -> tuple[Sequence[Map
     whole = whole[(np.abs(whole - chosen) < 0.5 / span) & line.within(whole)]
     grid = np.unique(np.concatenate([chosen, whole]))
     return [{line.param: float(f)} for f in grid], max(float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
+
+
+def _weights_of_a_bit(
+    weighted: Array, fit: Fit, effect: Effect, low: float, high: float
+) -> tuple[Sequence[Mapping[str, float]], float]:
+    """Weights [%] at which a square wave in the channels' value, anchored at zero, matches the residual best.
+
+    Its fundamental is sin(pi x / step), of period two steps: one transform over the value serves all weights.
+    """
+    assert effect.line is not None
+    point = fit.linear.at(effect)
+    reach = 1.02 * float(np.max(np.abs(point.signal)))
+    highest = 100.0 / (2.0 * low)
+    bins = min(1 << int(np.ceil(np.log2(OVERSAMPLING * 2.0 * reach * 2.0 * highest))), _LARGEST_GRID)
+    period = OVERSAMPLING * 2.0 * reach
+    grid = np.zeros(bins)
+    for channel in range(2):
+        place = point.signal[channel] / period * bins
+        left = np.floor(place).astype(np.int64)
+        signal = weighted * point.sensitivity[0, channel]
+        grid += np.bincount(left % bins, signal * (1.0 - (place - left)), bins)
+        grid += np.bincount((left + 1) % bins, signal * (place - left), bins)
+    frequency = np.arange(bins // 2) / period
+    inside = (frequency > 100.0 / (2.0 * high)) & (frequency < highest)
+    # sum g sin(2 pi f x) is minus the imaginary part; the larger the step, the larger its amplitude.
+    match = -np.fft.fft(grid)[: bins // 2].imag
+    match = np.where(inside, match, -np.inf)
+    peak = np.flatnonzero((match[1:-1] >= match[:-2]) & (match[1:-1] > match[2:])) + 1
+    order = np.argsort(match[peak])[::-1][: 2 * PEAKS]
+    steps = 100.0 / (2.0 * frequency[peak[order]])
+    looks = max(float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
+    return [{effect.line.param: float(step)} for step in np.sort(steps)], looks

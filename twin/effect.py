@@ -74,14 +74,14 @@ class Param:
 
 @dataclass(frozen=True, kw_only=True)
 class Line:
-    """A sinusoid in the shaft angle (orders) or in time (Hz): screened by one spectrum instead of a grid.
+    """A periodic shape in the shaft angle (orders), in time (Hz) or in the channels' value (a bit's weight, %).
 
-    ``limits`` maps a motion to the lowest and highest order or frequency worth looking at; ``within`` says of an
+    It is screened by one spectrum instead of a grid. ``limits`` maps a motion to the lowest and highest order or frequency worth looking at; ``within`` says of an
     array of them which belong to the effect.
     """
 
     param: str
-    clock: Literal["shaft", "time"]
+    clock: Literal["shaft", "time", "channels"]
     limits: Callable[[Motion], tuple[float, float]]
     within: Callable[[Array], BoolArray]
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from twin.angles import Array
-from twin.effect import Effect, Param, Parameters
+from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
 BITS = 14
@@ -30,6 +30,11 @@ def derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
     return {"bit": (float(np.floor(np.log2(step * 2.0 ** (BITS - 1)))) if step > 0 else 0.0, "bit")}
 
 
+def within(step_percent: Array) -> BoolArray:
+    """Which weights (any shape) a bit below the highest two can have."""
+    return np.asarray((step_percent > 0.0) & (step_percent < 30.0))
+
+
 ADC_STUCK_BIT = Effect(
     name="adc_stuck_bit",
     stage="adc",
@@ -41,6 +46,8 @@ ADC_STUCK_BIT = Effect(
     forward=forward,
     needs=frozenset({"one turn"}),
     derived=derived,
+    zoomed=("step_percent",),
+    line=Line(param="step_percent", clock="channels", limits=lambda motion: (0.04, 4.0), within=within),
     source="offset binary code with one bit held; its mean goes into the offset",
     signature="0 or one step per channel: a square pattern in code",
 )

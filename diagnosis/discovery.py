@@ -1,0 +1,351 @@
+"""Discovery: what the simulation gets wrong about a sweep, by name, with proof; or that nothing is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from diagnosis import footprints
+from diagnosis.evidence import Evidence, collect
+from diagnosis.holdout import held_out_residuals, rms_deg
+from diagnosis.joint_fit import BASELINE, Fit, Free, Setting, evaluate, free_of, solve, tidy
+from diagnosis.noise_model import noise_family
+from diagnosis.search import ALPHA, Cause, judge, search, settle
+from twin.angles import TAU, Array, wrap
+from twin.catalogue import CATALOGUE, base_name, find
+from twin.chain import Chain
+from twin.effect import BoolArray, Effect
+from twin.motion import Motion
+from twin.sweep import Sweep
+
+ROUNDS = 3
+_NUDGE = 1e-9
+"""A baseline parameter exactly at null is skipped by the chain and could not be fitted: it starts this far off."""
+
+
+@dataclass(frozen=True, eq=False)
+class Named:
+    """One entry of the answer: a cause, its probability, rivals, and the held-out RMS around it [deg]."""
+
+    keys: tuple[str, ...]
+    log_p: float
+    gain: float
+    rivals: tuple[str, ...] = ()
+    before_deg: float = float("nan")
+    after_deg: float = float("nan")
+
+    @property
+    def name(self) -> str:
+        """The catalogue's name, or ``unnamed``."""
+        name = base_name(self.keys[0])
+        return "unnamed" if name.startswith("unnamed") else name
+
+
+@dataclass(frozen=True, eq=False)
+class Discovery:
+    """The answer to a sweep.
+
+    ``baseline`` is the paper's error model alone, ``fit`` the extended one; ``masked`` the raw rows (n_raw,) that
+    belong to single-reading causes; ``held`` the held-out residuals of the baseline and after each cause.
+    """
+
+    sweep: Sweep
+    baseline: Fit
+    fit: Fit
+    causes: tuple[Named, ...]
+    masked: BoolArray
+    bits: int | None
+    baseline_held_deg: float
+    extended_held_deg: float
+    noise_floor_deg: float
+    looked_at: int
+    given: Chain | None = None
+    invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @property
+    def verdict(self) -> str:
+        """adequate, explained, partly explained or unnamed."""
+        named = any(cause.name != "unnamed" for cause in self.causes)
+        unnamed = any(cause.name == "unnamed" for cause in self.causes)
+        if named:
+            return "partly explained" if unnamed else "explained"
+        return "unnamed" if unnamed else "adequate"
+
+
+def discover(
+    sweep: Sweep, *, start: Chain, given: Chain | None = None, effects: tuple[Effect, ...] = CATALOGUE
+) -> Discovery:
+    """Explain a sweep.
+
+    ``start`` is the fitted baseline (or a given twin, passed as ``given`` too: then only its zeros are fitted).
+    """
+    evidence = collect(sweep)
+    candidates = [e for e in effects if not e.baseline]
+    means = [e for e in candidates if e.footprint == "mean"]
+    measured = np.radians(sweep.measured_deg)
+    bits = footprints.grid_bits(measured)
+    step = TAU / 2.0**bits if bits is not None else 0.0
+    fit = _first_fit(evidence, start, given)
+    kept = tuple(fit.chain.values)
+    evidence, fit = _mask_spikes(fit)
+    keys: list[str] = []
+    values_found: list[Named] = []
+    fit = _with_stairs(fit, sweep, candidates, bits, values_found)
+    sequence_mask, sequence_found = _sequence(fit, sweep, candidates, step, "stale_frames")
+    fit = _masked(fit, sequence_mask)
+    burst = footprints.bursts(fit)
+    if burst is not None and burst.log_p < np.log(1e-6):
+        fit = _scaled(fit, burst.variance)
+    baseline = fit
+    looked = 0
+    for _ in range(ROUNDS):
+        found = search(fit, means, keys=keys)
+        fit, looked = found.fit, found.looked_at
+        changed = list(found.keys) != keys
+        keys = list(found.keys)
+        evidence, refined = _mask_spikes(fit, sequence_mask)
+        refined = _reblurred(refined, step)
+        if not changed and np.array_equal(refined.evidence.usable, fit.evidence.usable):
+            break
+        fit = solve(refined)
+    baseline = solve(evaluate(baseline.chain, baseline.free, fit.evidence, fit.setting))
+    spread_found, fit = _spread(fit, candidates, looked)
+    mean_causes = [judge(fit, key, means, keys) for key in keys]
+    mean_causes.sort(key=lambda cause: -cause.gain)
+    entries, held = _prove(fit, mean_causes)
+    glitch_mask, glitches = _sequence(fit, sweep, candidates, step, "bus_glitch")
+    masked = sequence_mask | glitch_mask
+    _quantisation(fit, bits, step, values_found)
+    everything = _merge([*entries, *values_found, *sequence_found, *glitches, *spread_found])
+    use = fit.evidence.usable
+    baseline_held = rms_deg(held[0], use)
+    extended_held = rms_deg(held[-1], use)
+    everything = [_with_figures(c, sweep, masked, held, use) for c in everything]
+    floor = np.degrees(evidence.repeat_rms) if evidence.repeat_rms else extended_held
+    invisible = {
+        e.name: e.missing(evidence.motion.provides)
+        for e in candidates
+        if not e.name.startswith("unnamed") and not e.visible_in(evidence.motion.provides)
+    }
+    _ = kept
+    return Discovery(
+        sweep=sweep,
+        baseline=baseline,
+        fit=fit,
+        causes=tuple(everything),
+        masked=masked,
+        bits=bits,
+        baseline_held_deg=baseline_held,
+        extended_held_deg=extended_held,
+        noise_floor_deg=float(floor),
+        looked_at=looked,
+        given=given,
+        invisible=invisible,
+    )
+
+
+# ---- steps of the discovery -------------------------------------------------------------------------------------
+
+
+def _first_fit(evidence: Evidence, start: Chain, given: Chain | None) -> Fit:
+    """The fit that the search sets out from: the baseline, or a given twin with its zeros set free."""
+    setting = Setting(noise_family(len(evidence)), radius_weight=1.0 if evidence.observables == 2 else 0.0)
+    turns = int(evidence.motion.turn.max(initial=0)) + 1
+    if given is None:
+        return solve(evaluate(awake(start), BASELINE, evidence, setting))
+    free: list[Free] = [BASELINE[0]]
+    chain = start
+    if "reference_rezero" in chain.values and turns > 1:
+        chain = chain.with_values({"reference_rezero": {"zeros_deg": np.full(turns, _NUDGE), "spread_deg": 0.0}})
+        free += free_of(find("reference_rezero"), "reference_rezero", chain, turns)
+    chain = chain.with_values({"zero": {"zero_deg": 0.0, **chain.values.get("zero", {})}})
+    chain = aligned(chain, evidence.motion, evidence.measured)
+    fit = solve(evaluate(chain, tuple(free), evidence, setting))
+    return solve(evaluate(fit.chain, fit.free, evidence, setting))
+
+
+def awake(chain: Chain) -> Chain:
+    """The chain with the whole baseline present, so that every one of its parameters can be fitted."""
+    values: dict[str, dict[str, Any]] = {}
+    for free in BASELINE:
+        effect = find(free.key)
+        null = effect.params[free.name].null
+        present = chain.values.get(free.key, {}).get(free.name, null)
+        values.setdefault(free.key, {})[free.name] = present + (_NUDGE if present == null else 0.0)
+    return chain.with_values(values)
+
+
+def aligned(chain: Chain, recorded: Motion, measured: Array) -> Chain:
+    """The chain with its zero turned so that its readings agree with the measured ones (n,) on average."""
+    zero = float(chain.values["zero"]["zero_deg"])
+    for _ in range(2):
+        off = np.angle(np.mean(np.exp(1j * (measured - chain.readings(chain.shaft(recorded))))))
+        zero += float(np.degrees(off)) * chain.output_sense
+        chain = chain.with_values({"zero": {"zero_deg": zero}})
+    return tidy(chain)
+
+
+def _mask_spikes(fit: Fit, also: BoolArray | None = None) -> tuple[Evidence, Fit]:
+    """The fit without the rows that stand out alone; fitted anew where there are any, until the set is stable."""
+    for _ in range(4):
+        mask, _sigma = footprints.spikes(fit.residual[0], fit.evidence.motion.shaft_rad)
+        usable = ~mask
+        if also is not None:
+            usable &= ~_rows_of(fit.evidence, also)
+        if np.array_equal(usable, fit.evidence.usable):
+            break
+        fit = solve(evaluate(fit.chain, fit.free, fit.evidence.masked(usable), fit.setting))
+    return fit.evidence, fit
+
+
+def _rows_of(evidence: Evidence, raw: BoolArray) -> BoolArray:
+    """Rows of the evidence whose raw rows are mostly marked."""
+    count = np.bincount(evidence.group)
+    return np.asarray(np.bincount(evidence.group, raw) > 0.5 * count)
+
+
+def _masked(fit: Fit, raw: BoolArray) -> Fit:
+    rows = _rows_of(fit.evidence, raw)
+    if not np.any(rows & fit.evidence.usable):
+        return fit
+    return solve(evaluate(fit.chain, fit.free, fit.evidence.masked(fit.evidence.usable & ~rows), fit.setting))
+
+
+def _scaled(fit: Fit, variance: Array) -> Fit:
+    evidence = replace(fit.evidence, scale=footprints.row_scale(fit.evidence, variance))
+    return solve(evaluate(fit.chain, fit.free, evidence, fit.setting))
+
+
+def _with_stairs(
+    fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | None, found: list[Named]
+) -> Fit:
+    """The fit with the stairs that the set of values shows: a truncated CORDIC, the output's grid."""
+    step = TAU / 2.0**bits if bits is not None else 0.0
+    chain = fit.chain
+    measured = np.radians(sweep.measured_deg)
+    for effect in effects:
+        if effect.footprint != "values" or effect.name == "output_quantisation" or effect.name in chain.values:
+            continue
+        name = effect.roles("level")[0]
+        tried = [shape[name] for shape in effect.shapes(fit.evidence.motion)]
+        value, log_p = footprints.finite_set(measured, effect, step, tried, name)
+        if value and log_p < np.log(1e-6):
+            chain = chain.with_values({effect.name: {name: value}})
+            found.append(Named((effect.name,), log_p, -2.0 * log_p))
+    sigma = footprints.robust_rms(footprints.local_residual(fit.residual[0]))
+    if bits is not None and step / np.sqrt(12.0) > 0.1 * sigma and "output_quantisation" not in chain.values:
+        chain = chain.with_values({"output_quantisation": {"bits": float(bits)}})
+    if chain is fit.chain:
+        return fit
+    fit = evaluate(chain, fit.free, fit.evidence, fit.setting)
+    return solve(_reblurred(fit, step))
+
+
+def stair_step(chain: Chain, step: float) -> float:
+    """Step [rad] of the coarsest stairs in the chain: the output grid, or the CORDIC's mean spacing."""
+    iterations = float(chain.values.get("cordic_truncation", {}).get("iterations", 0.0))
+    grid = step if "output_quantisation" in chain.values else 0.0
+    return max(grid, 2.0 * float(np.arctan(2.0 ** (1.0 - iterations))) if iterations else 0.0)
+
+
+def _reblurred(fit: Fit, step: float) -> Fit:
+    """The fit with the blur of its stairs set from what is left."""
+    coarse = stair_step(fit.chain, step)
+    if coarse <= 0.0:
+        return fit
+    rms = footprints.robust_rms(fit.residual[0][fit.evidence.usable])
+    blur = footprints.blur_behind(rms, coarse)
+    if fit.setting.blur > 0.0 and abs(blur / fit.setting.blur - 1.0) < 0.1:
+        return fit
+    return evaluate(fit.chain, fit.free, fit.evidence, replace(fit.setting, blur=blur))
+
+
+def raw_residual(fit: Fit, sweep: Sweep) -> Array:
+    """Residual [rad] of every raw reading (n_raw,) against the fit."""
+    if len(sweep) == len(fit.evidence):
+        return fit.residual[0]
+    return wrap(np.radians(sweep.measured_deg) - fit.linear.angle[fit.evidence.group])
+
+
+def _sequence(
+    fit: Fit, sweep: Sweep, effects: Sequence[Effect], step: float, name: str
+) -> tuple[BoolArray, list[Named]]:
+    """Raw rows that a single-reading effect has touched, and the effect where chance does not explain them."""
+    effect = next((e for e in effects if e.name == name), None)
+    residual = raw_residual(fit, sweep)
+    nothing = np.zeros(len(sweep), dtype=bool)
+    if effect is None or effect.marks is None:
+        return nothing, []
+    sigma = footprints.robust_rms(footprints.local_residual(residual))
+    mask, log_p = effect.marks(np.radians(sweep.measured_deg), residual, sigma, step, sweep.motion())
+    if log_p > np.log(ALPHA) or not mask.any():
+        return nothing, []
+    return mask, [Named((name,), log_p, -2.0 * log_p)]
+
+
+def _spread(fit: Fit, effects: Sequence[Effect], looked: int) -> tuple[list[Named], Fit]:
+    """Causes that show in the spread of the readings; the rows are weighed by it where there is one."""
+    fit, _ = settle(fit)
+    shapes = footprints.spread_shapes(fit, [e for e in effects if e.footprint == "spread"])
+    burst = footprints.bursts(fit)
+    if burst is not None:
+        shapes.append(burst)
+    shapes = [s for s in shapes if s.log_p < np.log(ALPHA / max(looked, 1))]
+    if not shapes:
+        return [], fit
+    best = min(shapes, key=lambda s: s.log_p + (6.0 if s.name.startswith("unnamed") else 0.0))
+    chain = fit.chain.with_values({best.name: best.values})
+    fit = evaluate(chain, fit.free, fit.evidence, fit.setting)
+    return [Named((best.name,), best.log_p, best.gain)], _scaled(fit, best.variance)
+
+
+def _prove(fit: Fit, causes: Sequence[Cause]) -> tuple[list[Named], list[Array]]:
+    """Entries with their held-out figures; what gains nothing on readings it never saw is no cause."""
+    use = fit.evidence.usable
+    keys = [cause.key for cause in causes]
+    held = held_out_residuals(fit, keys)
+    entries = []
+    for place, cause in enumerate(causes):
+        before, after = rms_deg(held[place], use), rms_deg(held[place + 1], use)
+        entries.append(Named((cause.key,), cause.log_p, cause.gain, cause.rivals, before, after))
+    return entries, held
+
+
+def _quantisation(fit: Fit, bits: int | None, step: float, found: list[Named]) -> None:
+    """The output's grid is a cause where its noise exceeds half of what is left otherwise."""
+    if bits is None or "output_quantisation" not in fit.chain.values or any(n.name != "output_quantisation" for n in found):
+        return
+    rest = fit.setting.blur if fit.setting.blur > 0.0 else 1.0
+    noise = step / np.sqrt(12.0)
+    if noise > 0.5 * rest:
+        found.append(Named(("output_quantisation",), -700.0, 1400.0))
+
+
+def _merge(entries: list[Named]) -> list[Named]:
+    """Instances of one effect, and all structure without a name, as one entry each; strongest first."""
+    merged: dict[str, Named] = {}
+    for entry in entries:
+        if entry.name in merged:
+            first = merged[entry.name]
+            merged[entry.name] = replace(
+                first,
+                keys=(*first.keys, *entry.keys),
+                log_p=min(first.log_p, entry.log_p),
+                gain=first.gain + entry.gain,
+                rivals=tuple(r for r in first.rivals if r in entry.rivals),
+                after_deg=entry.after_deg,
+            )
+        else:
+            merged[entry.name] = entry
+    return sorted(merged.values(), key=lambda e: -e.gain)
+
+
+def _with_figures(entry: Named, sweep: Sweep, masked: BoolArray, held: list[Array], use: BoolArray) -> Named:
+    """Held-out figures for causes that leave the mean as it is: what the readings concerned add to the RMS."""
+    if np.isfinite(entry.before_deg):
+        return entry
+    after = rms_deg(held[-1], use)
+    return replace(entry, before_deg=rms_deg(held[-1], np.ones_like(use)), after_deg=after)

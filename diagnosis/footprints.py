@@ -1,0 +1,223 @@
+"""Footprints beside the mean: spikes, the grid of values, the finite set of a CORDIC, repeats, the spread."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.evidence import Evidence
+from diagnosis.joint_fit import Fit, root_weights
+from diagnosis.noise_model import to_rows
+from twin.angles import TAU, Array
+from twin.effect import BoolArray, Effect
+
+SPIKE_SIGMA = 7.0
+LONGEST_SPIKE = 4
+
+
+def robust_rms(values: Array) -> float:
+    """RMS of Gaussian values from their median deviation, blind to outliers."""
+    return float(1.4826 * np.median(np.abs(values - np.median(values)))) if values.size else 0.0
+
+
+def local_residual(residual: Array) -> Array:
+    """Residual (n,) against the median of its neighbours: what single readings do on their own."""
+    if residual.size < 12:
+        return np.asarray(residual - np.median(residual))
+    padded = np.pad(residual, 4, mode="reflect")
+    return np.asarray(residual - np.median(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1))
+
+
+def spikes(residual: Array, motion_angle: Array) -> tuple[BoolArray, float]:
+    """Rows (n,) that stand far out of their neighbours, and the noise they stand out of.
+
+    Five or more neighbours off together are structure, not spikes; so is what comes again at the same angle.
+    """
+    away = local_residual(residual)
+    sigma = robust_rms(away)
+    few = residual.size < 60
+    mask = np.abs(away) > (14.0 if few else SPIKE_SIGMA) * max(sigma, 1e-9)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        if last - first > LONGEST_SPIKE:
+            mask[first:last] = False
+    if mask.any():
+        # The same place of the turn, off the same way in other turns too: a narrow shape, no spike.
+        place = np.round(np.degrees(motion_angle % TAU) / 2.0).astype(int) % 180
+        for spot in np.unique(place[mask]):
+            here = np.isin(place, [(spot - 1) % 180, spot, (spot + 1) % 180])
+            if here.sum() > 2 * mask[here].sum():
+                continue
+            if mask[here].sum() >= 3 and abs(np.sum(np.sign(away[here & mask]))) == mask[here].sum():
+                mask[here] = False
+    return mask, sigma
+
+
+def grid_bits(measured: Array) -> int | None:
+    """The smallest word length (6 to 20 bits) on whose grid all readings (n,) [rad] lie, as far as their digits tell."""
+    for bits in range(6, 21):
+        step = TAU / 2.0**bits
+        off = np.abs(measured / step - np.round(measured / step))
+        # Six decimals of a degree, and room for the last digit.
+        if np.max(off) < max(0.02, 2e-8 / step) and 2e-8 / step < 0.2:
+            return bits
+    return None
+
+
+def finite_set(measured: Array, effect: Effect, step: float, shapes: Sequence[float], name: str) -> tuple[float, float]:
+    """Which parameter's set of attainable angles holds the readings: (value, log of the chance of that); (0, 0): none.
+
+    ``step`` is the output grid [rad] that the set is rounded to; chance is the share of grid cells in the set, to the
+    power of the readings.
+    """
+    resolution = step if step > 0.0 else np.radians(2e-4)
+    cells = round(TAU / resolution)
+    words = np.round(measured / resolution).astype(np.int64) % cells
+    best = (0.0, 0.0)
+    for value in shapes:
+        assert effect.attainable is not None
+        allowed = np.unique(np.round(effect.attainable({name: value}) / resolution).astype(np.int64) % cells)
+        share = allowed.size / cells
+        if share > 0.9:
+            continue
+        inside = np.isin(words, allowed)
+        missed = int(np.count_nonzero(~inside))
+        if missed > 0.04 * words.size:
+            continue
+        distinct = np.unique(words).size
+        log_p = (distinct - missed) * np.log(share) + missed * 4.0
+        if log_p < best[1]:
+            best = (float(value), float(log_p))
+    return best
+
+
+def blur_behind(rms: float, step: float) -> float:
+    """RMS of the noise ahead of a quantiser, from the RMS of readings about their blurred expectation [rad]."""
+    if step <= 0.0 or rms <= 0.0:
+        return rms
+    ratio = np.geomspace(0.02, 3.0, 60)
+    phases = (np.arange(64) + 0.5) / 64
+    nodes = np.sort(np.random.default_rng(0).standard_normal(400))
+    words = np.round(phases[None, :, None] + ratio[:, None, None] * nodes)
+    spread = np.sqrt(np.mean(np.var(words, axis=-1), axis=-1))
+    if rms / step > spread[-1]:
+        return float(np.sqrt(max(rms**2 - step**2 / 12.0, 0.0)))
+    return float(np.interp(rms / step, spread, ratio) * step)
+
+
+@dataclass(frozen=True, eq=False)
+class SpreadFinding:
+    """A shape of the noise's variance over the rows: effect, parameters, twice the gain in log likelihood."""
+
+    name: str
+    values: dict[str, float]
+    gain: float
+    log_p: float
+    variance: Array
+
+
+def white_rows(fit: Fit) -> Array:
+    """Residual (n,) over the rows, whitened, in units of its own robust RMS; masked rows are zero."""
+    root = root_weights(fit.setting, fit.evidence.observables)[0]
+    rows = to_rows(fit.cosine_residual[0] * root)
+    sigma = float(np.sqrt(np.mean(rows[fit.evidence.usable] ** 2)))
+    return np.where(fit.evidence.usable, rows / max(sigma, 1e-300), 0.0)
+
+
+def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
+    """Which declared shapes of the variance gain over constant variance, each at its best strength."""
+    white = white_rows(fit)
+    use = fit.evidence.usable
+    square = np.clip(white[use] ** 2, 0.0, 36.0)
+    angle = fit.linear.sensor_angle
+    sigma2 = float(np.mean(fit.residual[0][use] ** 2))
+    found = []
+    for effect in effects:
+        if effect.spread is None:
+            continue
+        name = effect.roles("random")[0]
+        shape = effect.spread(angle, {name: effect.params[name].typical})[use]
+        if np.ptp(shape) < 1e-3 * np.mean(shape):
+            continue
+        gain, ratio = _variance_gain(square, shape / np.mean(shape))
+        if ratio <= 0.0:
+            continue
+        # ratio is the share of the variance: mean added variance over the constant part.
+        added = sigma2 * ratio / (1.0 + ratio)
+        value = effect.params[name].typical * np.sqrt(added / np.mean(shape))
+        full = effect.spread(angle, {name: value}) + sigma2 / (1.0 + ratio)
+        found.append(SpreadFinding(effect.name, {name: float(value)}, gain, _half_chi_square(gain), full))
+    return found
+
+
+def _variance_gain(square: Array, shape: Array) -> tuple[float, float]:
+    """Twice the gain of variance ``1 + ratio shape`` over constant variance for squares (n,), and the best ratio."""
+    n = square.size
+    flat = n * np.log(np.mean(square))
+    best, where = 0.0, 0.0
+    for ratio in np.geomspace(0.02, 200.0, 80):
+        profile = 1.0 + ratio * shape
+        gain = flat - (n * np.log(np.mean(square / profile)) + np.sum(np.log(profile)))
+        if gain > best:
+            best, where = float(gain), float(ratio)
+    return best, where
+
+
+def _half_chi_square(gain: float) -> float:
+    """Log probability of the gain at the edge of the parameter's range: half a chi-square of one degree."""
+    from scipy.special import log_ndtr
+
+    return float(log_ndtr(-np.sqrt(max(gain, 0.0))))
+
+
+def bursts(fit: Fit) -> SpreadFinding | None:
+    """The stretch of rows with the most outstanding variance, if its noise is at least half as large again."""
+    white = white_rows(fit)
+    use = fit.evidence.usable
+    square = np.where(use, np.clip(white**2, 0.0, 36.0), 0.0)
+    n = square.size
+    total, count = float(np.sum(square)), int(use.sum())
+    sums = np.concatenate([[0.0], np.cumsum(square)])
+    counts = np.concatenate([[0], np.cumsum(use)])
+    best: tuple[float, int, int, float] | None = None
+    looks = 0
+    length = 10
+    while length <= n // 2:
+        starts = np.arange(0, n - length + 1, max(length // 6, 1))
+        looks += max(n // length, 1) * 2
+        inside = sums[starts + length] - sums[starts]
+        k = np.maximum(counts[starts + length] - counts[starts], 1)
+        outside = np.maximum(total - inside, 1e-12)
+        rest = np.maximum(count - k, 1)
+        gain = count * np.log(total / count) - k * np.log(np.maximum(inside, 1e-12) / k) - rest * np.log(outside / rest)
+        gain = np.where(inside / k > outside / rest, gain, 0.0)
+        place = int(np.argmax(gain))
+        if best is None or gain[place] > best[0]:
+            best = (float(gain[place]), int(starts[place]), int(starts[place] + length - 1),
+                    float((inside / k)[place] / (outside / rest)[place]))
+        length = int(length * 1.3) + 1
+    if best is None or best[3] < 2.25:
+        return None
+    sigma = float(np.sqrt(np.mean(fit.residual[0][use] ** 2)))
+    row = np.arange(n)
+    inside_rows = (row >= best[1]) & (row <= best[2])
+    share = np.where(inside_rows, best[3], 1.0)
+    base = sigma / np.sqrt(np.mean(share[use]))
+    return SpreadFinding(
+        "unnamed_burst",
+        {
+            "first_row": float(best[1]),
+            "last_row": float(best[2]),
+            "rms_deg": float(np.degrees(base * np.sqrt(best[3] - 1.0))),
+        },
+        best[0],
+        _half_chi_square(best[0]) + float(np.log(max(looks, 1))),
+        base**2 * share,
+    )
+
+
+def row_scale(evidence: Evidence, variance: Array) -> Array:
+    """Noise of each row against the usual one, from a variance (n,)."""
+    return np.sqrt(variance / np.median(variance)) if variance.size == len(evidence) else np.ones(len(evidence))

@@ -1,0 +1,61 @@
+"""``halltwin explain``: what the simulation gets wrong about a measured sweep."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.discovery import Discovery, discover
+from diagnosis.fit import fit_baseline
+from scenarios.answer import to_json
+from twin.files import read_twin, write_twin
+from twin.sweep import Sweep
+from twin.sweep_file import write_beside
+
+
+def explain(sweep: Sweep, *, twin: Path | None = None, seed: int = 0) -> Discovery:
+    """Explain a sweep against the paper's error model, or against a given twin."""
+    if twin is not None:
+        given = read_twin(twin)
+        return discover(sweep, start=given, given=given)
+    fit = fit_baseline(
+        np.radians(sweep.reference_deg),
+        np.radians(sweep.measured_deg),
+        rng=np.random.default_rng(seed),
+        robust=True,
+    )
+    return discover(sweep, start=fit.chain())
+
+
+def explain_file(path: str) -> dict[str, Any]:
+    """The JSON answer to one sweep file."""
+    return to_json(explain(Sweep.read(path)))
+
+
+def run(
+    path: Path,
+    *,
+    twin: Path | None,
+    json_path: Path | None,
+    report: Path | None,
+    extended: Path | None,
+    seed: int,
+) -> None:
+    """The command: print the answer, write what was asked for."""
+    from scenarios.console import show
+
+    sweep = Sweep.read(path)
+    found = explain(sweep, twin=twin, seed=seed)
+    answer = to_json(found)
+    show(answer)
+    if json_path is not None:
+        write_beside(json_path, (json.dumps(answer, indent=1, allow_nan=False) + "\n").encode())
+    if extended is not None:
+        write_twin(extended, found.fit.chain)
+    if report is not None:
+        from scenarios.report import write_report
+
+        write_report(report, found, answer)

@@ -32,8 +32,10 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     if iterations.size == 1:
         count = int(iterations.ravel()[0])
         return signal if count == 0 else signal + wrap(vectoring(signal, count) - signal)
-    rows = [vectoring(part, int(count)) for part, count in zip(signal, iterations.ravel(), strict=True)]
-    return np.stack(rows)
+    counts = np.ravel(iterations)
+    parts = np.broadcast_to(signal, (counts.size, *signal.shape[-2:]))
+    single = ({"iterations": float(count)} for count in counts)
+    return np.stack([forward(part, motion, one, rng) for part, one in zip(parts, single, strict=True)])
 
 
 def attainable(values: Parameters) -> Array:

@@ -29,7 +29,7 @@ def play(shaft: Array, motion: Motion, half_width: Array) -> Array:
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     # The play follows the nominal shaft angle: what the other effects add to it is far below its width.
     shaft = motion.shaft_rad
-    return signal + play(shaft, motion, np.abs(radians(values["half_width_deg"]))) - shaft
+    return signal + (play(shaft, motion, np.abs(radians(values["half_width_deg"]))) - shaft)
 
 
 BACKLASH = Effect(

@@ -19,15 +19,14 @@ class Senses:
     """Who counts which way: s of a = s theta + zero, h of m = h atan2(y, x).
 
     Their product is plain to see; which of the two pairs with that product it is shows only through the quadratic
-    term. ``other_rms_rad`` is what the swapped pair reaches, ``sigma`` how much worse it is in standard errors
-    (0 where the pair was given and the other not tried), ``other`` its parameters (6,).
+    term. ``other`` holds the parameters (6,) of the swapped pair, ``sigma`` says how much worse it fits, in standard
+    errors. Where the pair was given, the other one is not tried: None and infinity.
     """
 
     sensor: int
     output: int
-    other_rms_rad: float
     sigma: float
-    other: Array
+    other: Array | None
 
     @property
     def matters(self) -> bool:
@@ -56,6 +55,8 @@ class Contributions:
     swarm_rms_rad: float
     polished_rms_rad: float
     particles_evaluated: int
+    particles_discarded: int
+    """By Eq. 11, where the band is given."""
     passes: int
     best_history_rad: Array
     """RMS of the swarm's best after each iteration of the last round."""

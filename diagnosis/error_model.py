@@ -179,8 +179,8 @@ class Readings:
         sign = np.where(swap, -1.0, 1.0)[:, None]
         return replace(self, sin_shaft=sign * self.sin_shaft, sin_read=sign * self.sin_read)
 
-    def sweeps(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Readings:
-        """Some of the sweeps (batch, n)."""
+    def sweeps(self, which: Any) -> Readings:
+        """Some of the readings: a mask, indices or a tuple of them, as an array (batch, n) takes it."""
         return self._part(which)
 
     def weighted(self, weights: Array | None) -> Readings:

@@ -12,7 +12,8 @@
 Angles (n,) in rad, any range, wrapped or not, in any order; 8 rows to millions. ``senses=(s, h)`` fixes who counts
 which way, otherwise both pairs that fit the slope are tried. ``weights`` (n,) are inverse variances up to a factor;
 a row of weight 0 is not used. ``robust=True`` leaves isolated gross errors (jumps of up to 180 deg in up to a few
-per cent of the rows) out of the fit; smooth structure, however large, is never left out.
+per cent of the rows) out of the fit; smooth structure, however large, is never left out. ``band_rad`` is Delta E of
+Eq. 7 (:func:`diagnosis.band.delta_e_rad`) and turns on the discard rule of Eq. 11.
 
 :func:`fit_equal` does many sweeps of equal length at once, (batch, n) each, :func:`fit_many` a list of any lengths.
 """
@@ -47,6 +48,7 @@ def fit_baseline(
     senses: tuple[int, int] | None = None,
     robust: bool = False,
     settings: swarm.SwarmSettings = QUICK,
+    band_rad: float | None = None,
 ) -> BaselineFit:
     """Fit one sweep, all arrays (n,); see the module's text."""
     return fit_equal(
@@ -57,6 +59,7 @@ def fit_baseline(
         senses=senses,
         robust=robust,
         settings=settings,
+        band_rad=band_rad,
     )[0]
 
 
@@ -67,6 +70,7 @@ def fit_many(
     senses: tuple[int, int] | None = None,
     robust: bool = False,
     settings: swarm.SwarmSettings = QUICK,
+    band_rad: float | None = None,
 ) -> list[BaselineFit]:
     """Fit sweeps (reference, measured) of any lengths; those of equal length together."""
     by_length: dict[int, list[int]] = {}
@@ -81,6 +85,7 @@ def fit_many(
             senses=senses,
             robust=robust,
             settings=settings,
+            band_rad=band_rad,
         )
         found.update(zip(indices, fits, strict=True))
     return [found[i] for i in range(len(sweeps))]
@@ -95,13 +100,14 @@ def fit_equal(
     senses: tuple[int, int] | None = None,
     robust: bool = False,
     settings: swarm.SwarmSettings = QUICK,
+    band_rad: float | None = None,
 ) -> list[BaselineFit]:
     """Fit sweeps of equal length, all arrays (batch, n), with one batched swarm; see the module's text."""
     fits: list[BaselineFit] = []
     for start in range(0, reference_rad.shape[0], _BATCH):
         rows = slice(start, start + _BATCH)
         part = None if weights is None else weights[rows]
-        fits += _fit_batch(reference_rad[rows], measured_rad[rows], part, senses, robust, settings, rng)
+        fits += _fit_batch(reference_rad[rows], measured_rad[rows], part, senses, robust, settings, band_rad, rng)
     return fits
 
 
@@ -112,6 +118,7 @@ def _fit_batch(
     senses: tuple[int, int] | None,
     robust: bool,
     settings: swarm.SwarmSettings,
+    band_rad: float | None,
     rng: np.random.Generator,
 ) -> list[BaselineFit]:
     batch, n = reference.shape
@@ -121,7 +128,7 @@ def _fit_batch(
     )
     both = senses is None
     used = without_glitches(plain, reference, both=both) if robust else plain
-    valley = search(used, both=both, settings=settings, rng=rng)
+    valley = search(used, both=both, settings=settings, rng=rng, band_rad=band_rad)
 
     # One descent on the quadratic form says which pair of senses is worth a pass over the readings.
     coarse = polish.descend(polish.on_gram(valley.gram), valley.best, count=n)
@@ -227,9 +234,8 @@ def _results(
                 senses=Senses(
                     sensor=int(sensor[k] * sign[k]),
                     output=int(output[k] * sign[k]),
-                    other_rms_rad=float(np.sqrt(other[1][k] / share)),
-                    sigma=float(np.sqrt(excess)) if both else 0.0,
-                    other=other[0][k].copy(),
+                    sigma=float(np.sqrt(excess)) if both else np.inf,
+                    other=other[0][k].copy() if both else None,
                 ),
                 search=SearchRange(
                     lower=valley.box.lower[lane].copy(),
@@ -242,6 +248,7 @@ def _results(
                     swarm_rms_rad=float(np.sqrt(valley.cost[lane] / share)),
                     polished_rms_rad=rms,
                     particles_evaluated=int(valley.evaluations[lane]),
+                    particles_discarded=int(valley.discarded[lane]),
                     passes=exact.passes,
                     best_history_rad=np.sqrt(best / share),
                     own_history_rad=np.sqrt(own / share),

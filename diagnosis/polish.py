@@ -15,7 +15,7 @@ from twin.angles import Array
 Normal = Callable[[Array], tuple[Array, Array, Array]]
 """Points (batch, 6) -> curvature J^T W J (batch, 6, 6), descent J^T W e (batch, 6), sum of squares (batch,)."""
 
-_LONGEST = 60
+_LONGEST = 200
 _SETTLED = 1e-10
 """A step is the last one where it is shorter than 1e-5 standard errors, squared here."""
 _ROUNDING = 1e-28
@@ -69,15 +69,19 @@ def on_readings(readings: Readings) -> Normal:
     return sums
 
 
-def descend(normal: Normal, start: Array, *, count: int) -> Polished:
-    """Descend from ``start`` (batch, 6) within the twin's limits; ``count`` is the number of readings a sweep."""
+def descend(normal: Normal, start: Array, *, count: int, fixed: NDArray[np.bool_] | None = None) -> Polished:
+    """Descend from ``start`` (batch, 6) within the twin's limits; ``count`` is the number of readings a sweep.
+
+    Parameters marked in ``fixed`` (6,) stay where they start.
+    """
     points = np.clip(start, LOWER_LIMIT, UPPER_LIMIT)
     curvature, descent, total = normal(points)
     damping = np.full(total.shape, 1e-6)
     settled = total <= _ROUNDING * count
     passes = 1
     while passes < _LONGEST and not settled.all():
-        step = _solve(curvature, descent, damping, _held(points, descent))
+        held = _held(points, descent)
+        step = _solve(curvature, descent, damping, held if fixed is None else held | fixed)
         trial = np.clip(points + step, LOWER_LIMIT, UPPER_LIMIT)
         expected = np.einsum("bi,bij,bj->b", step, curvature, step)
         settled |= expected <= _SETTLED * total / max(count - 6, 1)

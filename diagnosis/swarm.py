@@ -10,7 +10,8 @@ Repaired, because it is not printed or cannot work as printed:
 - The objective is a sum of squares: the printed signed sum (Eq. 6) lets errors cancel.
 - r1 and r2 are drawn for every coordinate, so that the swarm can turn.
 - Eq. 11 is applied once a particle inside the band is known (before that it would discard everybody). A discarded
-  particle starts again beside the best of a randomly chosen other one, which is what makes the rule pay.
+  particle's position counts for nothing, and the particle flies on. Setting it down elsewhere instead was tried and
+  makes the swarm shrink onto the first particle inside the band: half of the searches then failed.
 - Eq. 11 is looked up at a few sentinel readings spread over the turn: a particle outside the band there is outside it
   for certain, and the cost stays independent of the number of readings.
 
@@ -130,7 +131,8 @@ def run(
         points = low + span * place
         now = objective(points)
         if outside is not None:
-            out = _discard(points, own, place, velocity, low, span, leader, outside, rng)
+            known = ~outside((low + span * own)[sweeps, leader][:, None, :])
+            out = outside(points) & known
             discarded += out.sum(axis=1)
             now[out] = np.inf
         better = now < own_cost
@@ -164,28 +166,3 @@ def _keep_inside(place: Array, velocity: Array, bounds: str) -> None:
     else:
         np.clip(place, 0.0, 1.0, out=place)
         np.copyto(velocity, 0.0, where=beyond)
-
-
-def _discard(
-    points: Array,
-    own: Array,
-    place: Array,
-    velocity: Array,
-    low: Array,
-    span: Array,
-    leader: NDArray[np.intp],
-    outside: Outside,
-    rng: np.random.Generator,
-) -> NDArray[np.bool_]:
-    """Which particles Eq. 11 discards (batch, particles); they are set down beside the best of another, in place."""
-    batch, particles, _ = own.shape
-    sweeps = np.arange(batch)
-    known = ~outside((low + span * own)[sweeps, leader][:, None, :])
-    out = outside(points) & known
-    if out.any():
-        other = rng.integers(particles, size=(batch, particles))
-        spread = own.std(axis=1)[:, None, :]
-        fresh = own[sweeps[:, None], other] + spread * rng.standard_normal(own.shape)
-        np.copyto(place, np.clip(fresh, 0.0, 1.0), where=out[..., None])
-        np.copyto(velocity, 0.0, where=out[..., None])
-    return out

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import error_model, polish, swarm
+from diagnosis.band import outside
 from diagnosis.error_model import ZERO, Readings
 from diagnosis.glitches import isolated
 from diagnosis.search_range import Box, at_wall, first_box, widened
@@ -30,12 +31,23 @@ class Valley:
         """Cost (lanes,) of an ideal sensor turned by the mean error."""
         self.evaluations: NDArray[np.int64] = np.zeros(lanes, dtype=np.int64)
         self.rounds: NDArray[np.int64] = np.zeros(lanes, dtype=np.int64)
+        self.discarded: NDArray[np.int64] = np.zeros(lanes, dtype=np.int64)
         self.histories: list[tuple[Array, Array]] = [(np.zeros(0), np.zeros(0))] * lanes
         """Of the last round: the best of all and the mean of the own bests after each iteration."""
 
 
-def search(readings: Readings, *, both: bool, settings: swarm.SwarmSettings, rng: np.random.Generator) -> Valley:
-    """Swarm each lane in Table 2's range, and again in a wider one as long as the best stands at a wall."""
+def search(
+    readings: Readings,
+    *,
+    both: bool,
+    settings: swarm.SwarmSettings,
+    rng: np.random.Generator,
+    band_rad: float | None = None,
+) -> Valley:
+    """Swarm each lane in Table 2's range, and again in a wider one as long as the best stands at a wall.
+
+    ``band_rad`` is the Delta E of the discard rule (Eq. 11); None leaves the rule out.
+    """
     start = _ideal(readings, both=both)
     batch = start.shape[0] // 2 if both else start.shape[0]
     valley = Valley(first_box(start[:, ZERO]), _grams(readings, None, both=both))
@@ -50,7 +62,9 @@ def search(readings: Readings, *, both: bool, settings: swarm.SwarmSettings, rng
             upper,
             rng=rng,
             settings=settings,
+            outside=None if band_rad is None else outside(_lanes(readings, active, both=both), band_rad),
         )
+        valley.discarded[active] += result.discarded
         valley.best[active] = result.best
         valley.cost[active] = result.best_cost
         valley.evaluations[active] += result.evaluations
@@ -103,6 +117,11 @@ def _better(points: Array, cost: Array, *, both: bool) -> tuple[Array, NDArray[n
     first, second = np.split(points, 2)
     swap = cost[first.shape[0] :] < cost[: first.shape[0]]
     return np.where(swap[:, None], error_model.mirrored(second), first), swap
+
+
+def _lanes(readings: Readings, active: NDArray[np.intp], *, both: bool) -> Readings:
+    batch = readings.cos_shaft.shape[0]
+    return readings.sweeps(active % batch).oriented(active >= batch) if both else readings.sweeps(active)
 
 
 def _grams(readings: Readings, around: Array | None, *, both: bool) -> Array:

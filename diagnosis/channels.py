@@ -109,7 +109,7 @@ def added(fit: BaselineFit, vx: Array, vy: Array) -> Added:
     order_1 = float(np.degrees(np.hypot(gap[VX], gap[VY])))
     order_2 = float(np.degrees(abs(counter_rotating(fit.point) - counter_rotating(own))))
     said = [
-        f"vx, vy: the output follows atan2(vy, vx) with h = {fit.senses.output:+d}, which rules the mirror solution out",
+        f"vx, vy: the output follows atan2(vy, vx) with h = {fit.senses.output:+d}, which settles the mirror solution",
         f"vx, vy: amplitudes {curve.values[2]:.5g} and {curve.values[3]:.5g}, offsets {curve.values[0]:.4g} and "
         f"{curve.values[1]:.4g} in the unit of the channels",
     ]

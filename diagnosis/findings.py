@@ -14,6 +14,7 @@ from diagnosis.error_model import Readings
 from diagnosis.fit import QUICK, fit_baseline, fit_equal
 from diagnosis.identifiability import Identifiability, identifiability
 from diagnosis.mechanical import Mechanical, mechanical
+from diagnosis.repeats import between_angles
 from twin.angles import Array, radians
 from twin.sweep import Sweep
 
@@ -29,11 +30,14 @@ class Findings:
     identifiability: Identifiability
     mechanical: Mechanical
     added: Added | None
+    repeated: str | None
+    """What repeated readings did to the intervals, in words."""
 
     @property
     def sentences(self) -> tuple[str, ...]:
         """What can and cannot be known, and what the channels added."""
-        return self.identifiability.sentences + (() if self.added is None else self.added.sentences)
+        channels_say = () if self.added is None else self.added.sentences
+        return self.identifiability.sentences + channels_say + (() if self.repeated is None else (self.repeated,))
 
     @property
     def glitch_rows(self) -> tuple[int, ...]:
@@ -100,8 +104,9 @@ def _follows(reference: Array, measured: Array, sense: int) -> float:
 def _findings(sweep: Sweep, fit: BaselineFit) -> Findings:
     has_channels = sweep.vx is not None and sweep.vy is not None
     added = channels.added(fit, sweep.vx, sweep.vy) if sweep.vx is not None and sweep.vy is not None else None
+    fit, repeated = between_angles(fit, sweep.reference_deg)
     words = identifiability(fit, radians(sweep.reference_deg), radians(sweep.measured_deg), has_channels=has_channels)
-    return Findings(sweep, fit, words, mechanical(fit.point), added)
+    return Findings(sweep, fit, words, mechanical(fit.point), added, repeated)
 
 
 def curve_deg(fit: BaselineFit, shaft_deg: Array) -> Array:

@@ -152,7 +152,10 @@ def _profile(fit: BaselineFit, gram: Array, index: int) -> Profile:
     count = fit.residual_rad.size
     found = polish.descend(polish.on_gram(lanes), start, count=count, fixed=fixed)
     middle = _PROFILE_POINTS // 2
-    rise = (found.cost - found.cost[middle]) / max(fit.sigma_rad**2, 1e-300)
+    # The covariance may count angles instead of readings: its variance of a reading sets the scale.
+    curvature, _, _ = polish.on_gram(gram[None])(fit.point[None])
+    variance = float(np.mean(np.diagonal(fit.covariance @ curvature[0])))
+    rise = (found.cost - found.cost[middle]) / max(variance, 1e-300)
     limit = float(stdtrit(max(fit.degrees_of_freedom, 1), 0.975)) ** 2
     low = _crossing(start[middle::-1, index], rise[middle::-1], limit)
     high = _crossing(start[middle:, index], rise[middle:], limit)

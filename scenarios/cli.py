@@ -76,6 +76,20 @@ def simulate(
     run(twin, output, recorded=motion, protocol=protocol, seed=seed, trace_path=trace, plot_path=plot)
 
 
+@app.command()
+def diagnose(
+    sweeps: Annotated[list[str], typer.Argument(help="Sweep files, globs or folders.")],
+    json: Annotated[Path | None, typer.Option(help="Write the answer as JSON.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw points and fitted curve: .png, .svg or .pdf.")] = None,
+    convergence: Annotated[Path | None, typer.Option(help="Draw the swarm's convergence.")] = None,
+    seed: Seed = 0,
+) -> None:
+    """Quantify the paper's error factors of one or many sweeps: values, intervals, what cannot be known."""
+    from scenarios.diagnose import run
+
+    run(sweeps, json_path=json, plot=plot, convergence=convergence, seed=seed)
+
+
 def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
     try:

@@ -32,7 +32,9 @@ MT_PER_T = 1e3
 TOLERANCE = 3e-10
 """Relative to the smallest |B| of the turn."""
 FEWEST_NODES = 16
-MOST_NODES = 128
+MOST_NODES = 64
+"""Where magpylib passes to its series about the axis (rho < 0.05 radii) its field steps by some 1e-9 of |B|: what is
+left beyond so many nodes is that step, which stays in the bound."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +142,7 @@ def series_by_group(
             kept = _rows(part[0], done, done), _rows(part[1], done, done)
             solved = Series(series.coefficients[done], series.bound[done])
             yield rows, _in_sensor(solved, *kept, temperature_c=temperature_c)
-            waiting = waiting & ~rows
+            waiting &= ~rows
         nodes *= 2
 
 

@@ -1,0 +1,212 @@
+"""The magnet stage against magpylib, against published figures, and against its own conventions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.twin.geometries import largest_difference, random_designs
+from twin.chain import Chain
+from twin.errors import UserError
+from twin.files import from_dict, to_dict
+from twin.limits import OutOfRangeError
+from twin.magnet.assembly import Assembly
+from twin.magnet.body_field import cylinder_components
+from twin.magnet.field import field_mT, series_by_group
+from twin.magnet.magnet import Magnet
+from twin.magnet.materials import GRADES
+from twin.magnet.placement import Placement
+from twin.motion import Motion
+
+ANGLES = np.linspace(0.0, 2.0 * np.pi, 7)[:-1] + 0.1234
+TURN = Motion.from_angle(np.arange(720) * np.pi / 360.0)
+
+
+def harmonics_deg(chain: Chain) -> np.ndarray:
+    """Amplitudes of orders 0 to 8 of the angle error [deg]."""
+    return np.degrees(np.abs(np.fft.rfft(chain.error(TURN)))[:9] * 2.0 / len(TURN))
+
+
+def placed(**placement: float) -> Chain:
+    return Chain(magnet=Assembly(Magnet(), Placement(**placement)))
+
+
+# The benchmark tests.benchmarks.field runs the same comparison over 1,000 geometries.
+@pytest.mark.parametrize(
+    ("shape", "shaft", "tilt", "limit"),
+    [
+        ("cylinder", False, False, 1e-9),
+        # With both off the axis an interpolant may pass by the axis where magpylib's own series is 6e-9 off.
+        ("cylinder", True, False, 1e-8),
+        ("cylinder", True, True, 1e-6),
+        ("ring", False, False, 1e-9),
+        ("ring", True, True, 1e-6),
+        ("block", False, False, 1e-9),
+        ("block", True, True, 1e-6),
+    ],
+)
+def test_agrees_with_magpylib_point_by_point(shape: str, shaft: bool, tilt: bool, limit: float) -> None:
+    magnet, placement = random_designs(np.random.default_rng(11), 25, shape=shape, shaft=shaft, tilt=tilt)
+    assert largest_difference(magnet, placement, field_mT(magnet, placement, ANGLES), ANGLES) <= limit
+
+
+def test_the_interpolant_stays_within_its_bound() -> None:
+    magnet, placement = random_designs(np.random.default_rng(5), 200)
+    coarse = {}
+    for rows, series in series_by_group(magnet, placement, tolerance=1e-4):
+        for index, bound in zip(np.flatnonzero(rows), series.bound, strict=True):
+            coarse[int(index)] = float(bound)
+    fine = field_mT(magnet, placement, ANGLES)
+    rough = field_mT(magnet, placement, ANGLES, tolerance=1e-4)
+    bounds = np.array([coarse[index] for index in range(200)])
+    # A turn by the sensor's tilt mixes three components; magpylib's own series below 0.05 radii adds some 1e-9.
+    assert np.all(np.max(np.abs(fine - rough), axis=(1, 2)) <= np.sqrt(3.0) * bounds + 1e-8 * np.abs(fine).max())
+
+
+def test_designs_in_one_call_equal_designs_one_by_one() -> None:
+    magnet, placement = random_designs(np.random.default_rng(7), 3)
+    single = [
+        field_mT(
+            Magnet(**{k: v[i] if isinstance(v, np.ndarray) else v for k, v in vars(magnet).items()}),
+            Placement(**{k: v[i] if isinstance(v, np.ndarray) else v for k, v in vars(placement).items()}),
+            ANGLES,
+        )
+        for i in range(3)
+    ]
+    np.testing.assert_allclose(field_mT(magnet, placement, ANGLES), single, rtol=1e-12, atol=1e-9)
+
+
+# ---- conventions ---------------------------------------------------------------------------------------------------
+
+
+def test_field_points_along_x_at_zero_and_turns_right_handed() -> None:
+    field = field_mT(Magnet(), Placement(), np.array([0.0, 0.5 * np.pi]))
+    assert field[0, 0] > 0.0
+    np.testing.assert_allclose(field[:, 0] / field[0, 0], [1.0, 0.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(field[:, 1] / field[0, 0], [0.0, 1.0, 0.0], atol=1e-12)
+
+
+def test_stray_field_adds_in_the_stator_and_tilts_with_the_sensor() -> None:
+    plain, with_stray = (
+        field_mT(Magnet(), Placement(sensor_tilt_y_deg=30.0, stray_x_mT=stray), ANGLES) for stray in (0.0, 2.0)
+    )
+    # A sensor tilted by +30 deg about y has its x axis towards -z, its z axis towards +x.
+    expected = 2.0 * np.array([np.cos(np.pi / 6), 0.0, np.sin(np.pi / 6)])
+    np.testing.assert_allclose(with_stray - plain, np.broadcast_to(expected[:, None], plain.shape), atol=1e-9)
+
+
+def test_an_aligned_magnet_leaves_the_readings_unchanged() -> None:
+    chain = Chain().with_effect("offset", x_percent=0.5).with_effect("zero", zero_deg=20.0)
+    chain = chain.with_effect("phase", beta_deg=0.3)
+    driven = Chain(chain.values, magnet=Assembly())
+    np.testing.assert_allclose(driven.readings(TURN), chain.readings(TURN), atol=1e-14)
+
+
+def test_magnet_off_the_shaft_gives_a_constant_sensor_off_the_axis_a_second_harmonic() -> None:
+    off_shaft, off_axis = harmonics_deg(placed(magnet_x_mm=0.5)), harmonics_deg(placed(sensor_x_mm=0.5))
+    assert np.max(off_shaft[1:]) < 1e-9
+    assert off_axis[2] > 0.2
+    assert np.max(off_axis[1::2]) < 1e-9
+    assert off_axis[4] < 0.01 * off_axis[2]
+
+
+def test_off_axis_error_goes_with_the_square_of_the_displacement() -> None:
+    sizes = [harmonics_deg(placed(sensor_x_mm=shift))[2] for shift in (0.1, 0.2, 0.4)]
+    # The fourth-order term at 0.4 mm of a 3 mm radius is (0.13)^2 of the second: about 2 %.
+    assert sizes[1] / sizes[0] == pytest.approx(4.0, rel=0.01)
+    assert sizes[2] / sizes[1] == pytest.approx(4.0, rel=0.04)
+
+
+def test_the_effect_is_the_field_of_the_default_magnet() -> None:
+    effect = Chain().with_effect("magnet_misalignment", off_axis_mm=0.5, tilt_deg=4.0)
+    np.testing.assert_allclose(
+        effect.error(TURN), placed(sensor_x_mm=0.5, sensor_tilt_y_deg=4.0).error(TURN), atol=1e-12
+    )
+
+
+def test_a_weaker_hot_magnet_meets_the_same_offset() -> None:
+    hot = Motion.from_angle(TURN.shaft_rad, temperature_c=np.full(len(TURN), 125.0))
+    chain = Chain(magnet=Assembly()).with_effect("offset", x_percent=0.5)
+    # N35H: 1 - 0.0012 (125 - 20) over 1 - 0.0012 (25 - 20).
+    loss = (1 - 0.0012 * 105) / (1 - 0.0012 * 5)
+    ratio = np.max(np.abs(chain.error(hot))) / np.max(np.abs(chain.error(TURN)))
+    assert ratio == pytest.approx(1.0 / loss, rel=1e-3)
+
+
+# ---- published figures ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("remanence_T", "published_mm"), [(1.21, 4.5), (1.49, 5.0)])
+def test_ti_side_of_shaft_range(remanence_T: float, published_mm: float) -> None:
+    """Texas Instruments SBAA463A, section 1.2: a diametral NdFeB cylinder of 3.125 mm radius and thickness gives
+
+    45 mT (90 % of 50 mT) beside its rim at 4.5 mm for N35 and 5 mm for N55. Remanences: typical, Arnold's catalog.
+    Read off a plot to half a millimetre: 0.25 mm; the spread of Br within a grade (+-3 %) is another 0.08 mm.
+    """
+    from scipy.optimize import brentq
+
+    def excess(distance_mm: float) -> float:
+        f, _, _ = cylinder_components(3.125, 3.125, np.array([3.125 + distance_mm]), np.array([0.0]))
+        return float(1e3 * remanence_T * np.abs(f[0]) - 45.0)
+
+    assert brentq(excess, 1.0, 10.0) == pytest.approx(published_mm, abs=0.3)
+
+
+@pytest.mark.parametrize(
+    ("remanence_T", "radius_mm", "lowest_mT", "highest_mT"),
+    [(1.20, 1.0, 20.0, 80.0), (1.21, 1.1, 35.0, 70.0)],
+    ids=["AS5030 data sheet 1.8, section 4.4", "AS5047P mounting guide (JCS), from its data sheet"],
+)
+def test_ams_recommended_magnet(remanence_T: float, radius_mm: float, lowest_mT: float, highest_mT: float) -> None:
+    """6 mm x 2.5 mm NdFeB 35H, 0.5 to 1.8 mm from the package: the vertical field on the Hall circle is in the range.
+
+    The chip lies some 0.3 mm below the package's surface (typical assumption), and Br spreads by +-3 %.
+    """
+    for gap in (0.5, 1.0, 1.8):
+        _, _, h = cylinder_components(3.0, 2.5, np.array([radius_mm]), np.array([1.25 + 0.3 + gap]))
+        assert 0.97 * lowest_mT <= 1e3 * remanence_T * abs(h[0]) <= 1.03 * highest_mT
+
+
+@pytest.mark.parametrize("name", GRADES)
+def test_grades_name_their_source_and_lose_field_when_hot(name: str) -> None:
+    assert len(GRADES[name].source) > 10
+    magnet = Magnet(grade=name)
+    assert magnet.remanence_at(120.0) < magnet.remanence_at(20.0) == GRADES[name].remanence_T
+
+
+# ---- refusals ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ({"placement": {"air_gap_mm": -1.0}}, "air_gap_mm is -1 mm; expected from 0.001 to 200 mm"),
+        ({"placement": {"sensor_tilt_x_deg": 200.0}}, "sensor_tilt_x_deg is 200 deg; expected from -60 to 60 deg"),
+        ({"placement": {"sensor_x_mm": float("nan")}}, "sensor_x_mm is nan mm; expected from -100 to 100 mm"),
+        ({"height_mm": 0.0}, "height_mm is 0 mm; expected from 0.1 to 200 mm"),
+        ({"remanence_T": 5.0}, "remanence_T is 5 T; expected from 0.001 to 2 T"),
+        ({"grade": "N99"}, "grade is 'N99'; expected one of N35"),
+        ({"shape": "sphere"}, "shape is 'sphere'; expected one of cylinder, ring, block"),
+        ({"colour": 1}, "magnet has no 'colour'"),
+        ({"diameter_mm": "wide"}, "diameter_mm is 'wide'; expected from 0.1 to 200 mm"),
+    ],
+)
+def test_refuses_by_name_value_and_range(table: dict[str, object], message: str) -> None:
+    with pytest.raises(UserError) as refused:
+        from_dict({"schema": "halltwin.twin/1", "magnet": table})
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_refuses_a_magnet_that_reaches_the_sensor() -> None:
+    with pytest.raises(OutOfRangeError, match=r"air_gap_mm is 0.1 mm.*inside the magnet"):
+        field_mT(Magnet(), Placement(air_gap_mm=0.1, magnet_tilt_x_deg=20.0, sensor_y_mm=2.9), ANGLES)
+
+
+def test_a_twin_file_keeps_its_magnet() -> None:
+    content = {
+        "schema": "halltwin.twin/1",
+        "magnet": {"shape": "ring", "bore_mm": 1.5, "placement": {"sensor_x_mm": 0.2}},
+    }
+    chain = from_dict(content)
+    assert to_dict(from_dict(to_dict(chain)))["magnet"] == content["magnet"]

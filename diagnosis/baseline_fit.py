@@ -87,13 +87,10 @@ class BaselineFit:
     """Standard deviation of a reading of weight 1, from the residual and its degrees of freedom."""
     rms_rad: float
     """Over the rows that are no outliers."""
+    degrees_of_freedom: int
+    """Of sigma_rad: used rows less the six parameters."""
     settled: bool
     """Whether the polish came to rest."""
-
-    @property
-    def degrees_of_freedom(self) -> int:
-        """Used rows less the six parameters."""
-        return int(np.count_nonzero(~self.outliers)) - 6
 
     @cached_property
     def values(self) -> dict[str, dict[str, float]]:

@@ -257,6 +257,7 @@ def _results(
                 outliers=outliers[k],
                 sigma_rad=sigma,
                 rms_rad=rms,
+                degrees_of_freedom=freedom,
                 settled=bool(exact.settled[k]),
             )
         )

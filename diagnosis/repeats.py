@@ -33,9 +33,11 @@ def between_angles(fit: BaselineFit, reference_deg: Array) -> tuple[BaselineFit,
     if between <= fit.sigma_rad:
         return fit, None
     covariance = fit.covariance * (between / fit.sigma_rad) ** 2
-    half = float(stdtrit(angles - _PARAMETERS, 0.975)) * np.sqrt(np.diagonal(covariance))
+    freedom = angles - _PARAMETERS
+    half = float(stdtrit(freedom, 0.975)) * np.sqrt(np.diagonal(covariance))
     words = (
         f"{angles} different angles, {np.mean(count):.0f} readings each: the intervals count angles, not readings "
         f"({between / fit.sigma_rad:.1f} times wider)"
     )
-    return replace(fit, covariance=covariance, low=fit.point - half, high=fit.point + half), words
+    wider = replace(fit, covariance=covariance, low=fit.point - half, high=fit.point + half, degrees_of_freedom=freedom)
+    return wider, words

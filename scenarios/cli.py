@@ -90,6 +90,27 @@ def diagnose(
     run(sweeps, json_path=json, plot=plot, convergence=convergence, seed=seed)
 
 
+@app.command()
+def spinning(
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the picture and its data.")],
+    seed: Seed = 0,
+) -> None:
+    """Show the spinning current phase by phase: the offset before and after, the noise with its 1/f corner moved."""
+    from scenarios.spinning import run
+
+    run(output, seed=seed)
+
+
+@app.command()
+def paper(
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for table and figures.")],
+) -> None:
+    """Regenerate Table 1 and Figures 3 to 9 of the paper from the twin."""
+    from scenarios.paper import run
+
+    run(output)
+
+
 def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
     try:

@@ -74,6 +74,6 @@ def _draw(
     axes[2].set(xlabel="frequency / Hz", ylabel="noise / (nT / sqrt(Hz))", title="Noise of the output")
     for axis in axes:
         axis.grid(alpha=0.3)
-        axis.legend(fontsize=8, loc="center left", bbox_to_anchor=(0.02, 0.6))
+        axis.legend(fontsize=8, loc="best")
     figure.suptitle(f"Spinning current, {PHASES} phases of {1e6 * plate.phase_s:g} us")
     save(figure, folder / "spinning.png", folder / "spinning.svg")

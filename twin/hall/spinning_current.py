@@ -153,7 +153,7 @@ def density(values: Array, rate_Hz: float, segments: int = 64) -> tuple[Array, A
     blocks = np.stack([values[start : start + length] for start in starts])
     blocks = (blocks - blocks.mean(axis=-1, keepdims=True)) * window
     power = np.mean(np.abs(np.fft.rfft(blocks, axis=-1)) ** 2, axis=0) * 2.0 / (rate_Hz * np.sum(window**2))
-    frequency: Array = np.fft.rfftfreq(length, 1.0 / rate_Hz)
+    frequency = np.asarray(np.fft.rfftfreq(length, 1.0 / rate_Hz), dtype=np.float64)
     # The lowest two lines carry the window's leakage of the mean.
     return frequency[2:-1], np.asarray(power[2:-1], dtype=np.float64)
 

@@ -107,8 +107,9 @@ def table() -> list[Row]:
             printed=0.072,
             computed=fluctuation_deg(1.0, both=False),
             unit="deg",
-            remark=f"on one channel; both channels give {fluctuation_deg(1.0, both=True):.4f} deg; Eq. 3 alone does not "
-            f"reproduce the printed figure (one channel of 0.8 V amplitude gives {fluctuation_deg(1.25, both=False):.4f})",
+            remark="on one channel; "
+            f"both channels give {fluctuation_deg(1.0, both=True):.4f} deg; Eq. 3 alone does not reproduce the printed "
+            f"figure (one channel of 0.8 V amplitude gives {fluctuation_deg(1.25, both=False):.4f} deg)",
         ),
     ]
     eight, fourteen = (float(np.max(np.abs(cordic_error(count, 100_000)[1]))) for count in (8, 14))

@@ -89,8 +89,7 @@ def discover(
     bits = footprints.grid_bits(measured)
     step = TAU / 2.0**bits if bits is not None else 0.0
     fit = _first_fit(evidence, start, given)
-    kept = tuple(fit.chain.values)
-    evidence, fit = _mask_spikes(fit)
+    evidence, fit = _mask_spikes(fit, step)
     keys: list[str] = []
     values_found: list[Named] = []
     fit = _with_stairs(fit, sweep, candidates, bits, values_found)
@@ -106,7 +105,7 @@ def discover(
         fit, looked = found.fit, found.looked_at
         changed = list(found.keys) != keys
         keys = list(found.keys)
-        evidence, refined = _mask_spikes(fit, sequence_mask)
+        evidence, refined = _mask_spikes(fit, step, sequence_mask)
         refined = _reblurred(refined, step)
         if not changed and np.array_equal(refined.evidence.usable, fit.evidence.usable):
             break
@@ -130,7 +129,6 @@ def discover(
         for e in candidates
         if not e.name.startswith("unnamed") and not e.visible_in(evidence.motion.provides)
     }
-    _ = kept
     return Discovery(
         sweep=sweep,
         baseline=baseline,
@@ -188,10 +186,10 @@ def aligned(chain: Chain, recorded: Motion, measured: Array) -> Chain:
     return tidy(chain)
 
 
-def _mask_spikes(fit: Fit, also: BoolArray | None = None) -> tuple[Evidence, Fit]:
+def _mask_spikes(fit: Fit, step: float, also: BoolArray | None = None) -> tuple[Evidence, Fit]:
     """The fit without the rows that stand out alone; fitted anew where there are any, until the set is stable."""
     for _ in range(4):
-        mask, _sigma = footprints.spikes(fit.residual[0], fit.evidence.motion.shaft_rad)
+        mask, _sigma = footprints.spikes(fit.residual[0], fit.evidence.motion.shaft_rad, max(step, stair_step(fit.chain, step)))
         usable = ~mask
         if also is not None:
             usable &= ~_rows_of(fit.evidence, also)
@@ -240,7 +238,11 @@ def _with_stairs(
         chain = chain.with_values({"output_quantisation": {"bits": float(bits)}})
     if chain is fit.chain:
         return fit
-    fit = evaluate(chain, fit.free, fit.evidence, fit.setting)
+    # Before the stairs are modelled they add step/sqrt(12) to what the noise leaves.
+    coarse = stair_step(chain, step)
+    rest = float(np.mean(fit.residual[0][fit.evidence.usable] ** 2)) - coarse**2 / 12.0
+    blur = float(np.sqrt(max(rest, (0.05 * coarse) ** 2)))
+    fit = solve(evaluate(chain, fit.free, fit.evidence, replace(fit.setting, blur=blur)))
     return solve(_reblurred(fit, step))
 
 
@@ -256,7 +258,7 @@ def _reblurred(fit: Fit, step: float) -> Fit:
     coarse = stair_step(fit.chain, step)
     if coarse <= 0.0:
         return fit
-    rms = footprints.robust_rms(fit.residual[0][fit.evidence.usable])
+    rms = float(np.sqrt(np.mean(fit.residual[0][fit.evidence.usable] ** 2)))
     blur = footprints.blur_behind(rms, coarse)
     if fit.setting.blur > 0.0 and abs(blur / fit.setting.blur - 1.0) < 0.1:
         return fit

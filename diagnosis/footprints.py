@@ -30,15 +30,16 @@ def local_residual(residual: Array) -> Array:
     return np.asarray(residual - np.median(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1))
 
 
-def spikes(residual: Array, motion_angle: Array) -> tuple[BoolArray, float]:
+def spikes(residual: Array, motion_angle: Array, step: float) -> tuple[BoolArray, float]:
     """Rows (n,) that stand far out of their neighbours, and the noise they stand out of.
 
+    Readings on a grid of ``step`` [rad] jump by a whole step where noise moves them by much less.
     Five or more neighbours off together are structure, not spikes; so is what comes again at the same angle.
     """
     away = local_residual(residual)
     sigma = robust_rms(away)
     few = residual.size < 60
-    mask = np.abs(away) > (14.0 if few else SPIKE_SIGMA) * max(sigma, 1e-9)
+    mask = np.abs(away) > (14.0 if few else SPIKE_SIGMA) * max(sigma, 1e-9) + step
     edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         if last - first > LONGEST_SPIKE:
@@ -134,6 +135,7 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
     angle = fit.linear.sensor_angle
     sigma2 = float(np.mean(fit.residual[0][use] ** 2))
     found = []
+    expected = _expected_variance(fit, square)
     for effect in effects:
         if effect.spread is None:
             continue
@@ -141,7 +143,7 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
         shape = effect.spread(angle, {name: effect.params[name].typical})[use]
         if np.ptp(shape) < 1e-3 * np.mean(shape):
             continue
-        gain, ratio = _variance_gain(square, shape / np.mean(shape))
+        gain, ratio = _variance_gain(square, shape / np.mean(shape), expected)
         if ratio <= 0.0:
             continue
         # ratio is the share of the variance: mean added variance over the constant part.
@@ -152,13 +154,27 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
     return found
 
 
-def _variance_gain(square: Array, shape: Array) -> tuple[float, float]:
-    """Twice the gain of variance ``1 + ratio shape`` over constant variance for squares (n,), and the best ratio."""
+def _expected_variance(fit: Fit, square: Array) -> Array:
+    """Relative variance of the rows in use that the output's stairs alone lead one to expect, mean 1.
+
+    Between two steps of a coarse grid readings scatter more than on a step; how much of that is seen depends on how
+    fast the noise ahead of the grid is, so the data choose.
+    """
+    if fit.linear.stair_variance is None:
+        return np.ones(square.size)
+    stairs = fit.linear.stair_variance[fit.evidence.usable]
+    stairs = stairs / np.mean(stairs)
+    profiles = [1.0 - share + share * stairs for share in np.linspace(0.0, 0.95, 12)]
+    return min(profiles, key=lambda v: square.size * np.log(np.mean(square / v)) + np.sum(np.log(v)))
+
+
+def _variance_gain(square: Array, shape: Array, expected: Array) -> tuple[float, float]:
+    """Twice the gain of variance ``expected + ratio shape`` over ``expected`` for squares (n,), and the best ratio."""
     n = square.size
-    flat = n * np.log(np.mean(square))
+    flat = n * np.log(np.mean(square / expected)) + np.sum(np.log(expected))
     best, where = 0.0, 0.0
     for ratio in np.geomspace(0.02, 200.0, 80):
-        profile = 1.0 + ratio * shape
+        profile = expected + ratio * shape
         gain = flat - (n * np.log(np.mean(square / profile)) + np.sum(np.log(profile)))
         if gain > best:
             best, where = float(gain), float(ratio)

@@ -43,7 +43,8 @@ class Linear:
     """A chain at its present parameters on a recorded motion: prediction, and columns of any effect.
 
     ``angle`` (n,) [rad] is the expected reading. With ``blur`` [rad] the stairs of quantisers are averaged over noise
-    of that size, which is what readings do. ``log_radius`` (n,) is the log of the channels' amplitude.
+    of that size, which is what readings do; ``stair_variance`` (n,) [rad^2] is then the variance of a reading, which
+    depends on where it lies between two steps. ``log_radius`` (n,) is the log of the channels' amplitude.
     """
 
     def __init__(self, chain: Chain, recorded: Motion, *, blur: float, observables: int) -> None:
@@ -52,6 +53,7 @@ class Linear:
         self.observables = observables
         self._order = {effect.name: place for place, effect in enumerate(chain.effects)}
         self._points: list[tuple[float, Insertion]] = []
+        self.stair_variance: Array | None = None
         self._run(blur)
 
     def _run(self, blur: float) -> None:
@@ -104,7 +106,10 @@ class Linear:
         signal = computed[None] + nodes
         for _, effect, values in active:
             signal = effect.forward(signal, self.motion, values, None)
-        return self.chain.output_sense * (computed[0] + np.mean(wrap(signal[:, 0] - computed[0]), axis=0))
+        away = wrap(signal[:, 0] - computed[0])
+        if nodes.size > 1:
+            self.stair_variance = np.var(away, axis=0)
+        return self.chain.output_sense * (computed[0] + np.mean(away, axis=0))
 
     def at(self, effect: Effect) -> Insertion:
         """The point behind the effect's own place: the signal it made, or would be given were it not at null."""

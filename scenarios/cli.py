@@ -111,6 +111,27 @@ def paper(
     run(output)
 
 
+@app.command()
+def compensate(
+    source: Annotated[Path, typer.Argument(help="Measured sweep, or twin TOML.")],
+    header: Annotated[Path | None, typer.Option(help="Write a C header with fixed-point code.")] = None,
+    table: Annotated[Path | None, typer.Option(help="Write a table as CSV.")] = None,
+    points: Annotated[int, typer.Option(help="Length of the table.")] = 64,
+    toml: Annotated[Path | None, typer.Option(help="Write the coefficients as TOML.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw the error before and after: .png, .svg or .pdf.")] = None,
+    check: Annotated[list[str] | None, typer.Option(help="Sweep, glob or folder to test on; may be repeated.")] = None,
+    temperature: Annotated[float, typer.Option(help="Temperature in C that a twin is corrected for.")] = 25.0,
+    tolerance: Annotated[float, typer.Option(help="Largest error in deg from orders left out.")] = 1e-3,
+    prefix: Annotated[str, typer.Option(help="Prefix of the C names.")] = "halltwin",
+    seed: Seed = 0,
+) -> None:
+    """Turn a sweep or a twin into a continuous correction, and measure it on readings it never saw."""
+    from scenarios.compensate import Outputs, run
+
+    outputs = Outputs(header=header, table=table, points=points, toml=toml, plot=plot, prefix=prefix)
+    run(source, outputs=outputs, check=check or (), temperature_c=temperature, tolerance_deg=tolerance, seed=seed)
+
+
 def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
     try:

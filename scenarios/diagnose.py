@@ -124,7 +124,7 @@ def many_sweeps(found: Sequence[Findings]) -> list[str]:
 def to_dict(found: Findings) -> dict[str, Any]:
     """One sweep's answer as plain values; an infinite limit is null."""
     fit = found.fit
-    parameters = {
+    parameters: dict[str, dict[str, Any]] = {
         name: {
             "value": _finite(scale * fit.point[k]),
             "low": _finite(scale * fit.low[k]),

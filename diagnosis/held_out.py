@@ -1,0 +1,96 @@
+"""How well a correction does on readings it never saw."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.angles import Array, wrap
+
+BLOCKS = 10
+FOLDS = 5
+
+
+@dataclass(frozen=True, eq=False)
+class BeforeAfter:
+    """Errors [rad] (n,) without and with the correction; both against the zero found in calibration."""
+
+    before_rad: Array
+    after_rad: Array
+
+    @property
+    def rms_deg(self) -> tuple[float, float]:
+        """RMS before and after."""
+        return _rms_deg(self.before_rad), _rms_deg(self.after_rad)
+
+    @property
+    def peak_deg(self) -> tuple[float, float]:
+        """Largest error before and after."""
+        return tuple(float(np.degrees(np.max(np.abs(part)))) for part in (self.before_rad, self.after_rad))  # type: ignore[return-value]
+
+    def per_turn(self, turn: Array) -> BeforeAfter:
+        """The same with each turn's own zero taken out: where the reference finds its zero anew."""
+        return BeforeAfter(_without_zeros(self.before_rad, turn), _without_zeros(self.after_rad, turn))
+
+
+def folds(rows: int) -> Iterator[NDArray[np.bool_]]:
+    """Masks (rows,) of the held-out readings: blocks of consecutive rows, several a fold, each row once."""
+    count = min(FOLDS, rows // 4)
+    block = np.arange(rows) * BLOCKS // rows
+    for fold in range(count):
+        yield block % count == fold
+
+
+def cross_validated(
+    reference_rad: Array, measured_rad: Array, correct: Callable[[Array, Array], Callable[[Array], Array]]
+) -> BeforeAfter:
+    """Calibrate on the rows outside each fold and hold the correction against those inside.
+
+    ``correct`` takes reference and measured readings and returns a function from readings to shaft angles.
+    """
+    before, after = np.zeros(reference_rad.size), np.zeros(reference_rad.size)
+    for mask in folds(reference_rad.size):
+        one = against(
+            reference_rad[mask],
+            measured_rad[mask],
+            correct(reference_rad[~mask], measured_rad[~mask]),
+            calibrated_on=(reference_rad[~mask], measured_rad[~mask]),
+        )
+        before[mask], after[mask] = one.before_rad, one.after_rad
+    return BeforeAfter(before, after)
+
+
+def against(
+    reference_rad: Array,
+    measured_rad: Array,
+    shaft: Callable[[Array], Array],
+    *,
+    calibrated_on: tuple[Array, Array] | None = None,
+) -> BeforeAfter:
+    """Errors of a finished correction on other readings (n,).
+
+    The zero of the uncorrected error comes from the readings that calibrated, or else from these.
+    """
+    reference, measured = (reference_rad, measured_rad) if calibrated_on is None else calibrated_on
+    slope = 1.0 if _follows(reference, measured, 1.0) >= _follows(reference, measured, -1.0) else -1.0
+    zero = np.angle(np.mean(np.exp(1j * (slope * measured - reference))))
+    return BeforeAfter(wrap(slope * measured_rad - zero - reference_rad), wrap(shaft(measured_rad) - reference_rad))
+
+
+def _follows(reference: Array, measured: Array, sense: float) -> float:
+    return float(np.abs(np.mean(np.exp(1j * (measured - sense * reference)))))
+
+
+def _without_zeros(error: Array, turn: Array) -> Array:
+    out = error.copy()
+    for value in np.unique(turn):
+        rows = turn == value
+        out[rows] = wrap(out[rows] - np.angle(np.mean(np.exp(1j * out[rows]))))
+    return out
+
+
+def _rms_deg(error: Array) -> float:
+    return float(np.degrees(np.sqrt(np.mean(error**2))))

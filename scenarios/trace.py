@@ -10,6 +10,9 @@ import numpy as np
 from scenarios.plotting import save, style
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain, Step
+from twin.concentrator.disk import Disk, vertical_mT
+from twin.hall.spinning_current import Plate, residual_offset_mT
+from twin.magnet.stray_field import FIELD_MT
 from twin.motion import Motion
 from twin.sweep_file import write_columns
 
@@ -53,11 +56,29 @@ def trace(chain: Chain, motion: Motion, *, seed: int) -> Trace:
         values = step.after if is_channels else np.degrees(step.after)
         name = step.key if step.effect else CONVERSIONS[step.key]
         signals.append(Signal(name, "1" if is_channels else "deg", values, _moved_deg(step, kind)))
+        if step.key == "after field":
+            signals.extend(_inside_the_sensor(chain, step.after))
         last = step.after
     reference = chain.reference(motion, rng)
     slope = chain.sensor_sense * chain.output_sense
     error = np.degrees(wrap(last[0] - slope * reference))
     return Trace(motion, tuple(signals), np.degrees(reference), error)
+
+
+def _inside_the_sensor(chain: Chain, channels: Array) -> list[Signal]:
+    """The driven channels in the units of the hardware: field in the plane, under the disk, and the Hall voltage.
+
+    Disk and plate are the typical ones; the field is the magnet's, or 50 mT where no magnet is described.
+    """
+    nominal = FIELD_MT if chain.magnet is None else chain.magnet.nominal_mT
+    in_plane = nominal * channels
+    vertical = vertical_mT(in_plane, Disk())
+    still = np.zeros(channels.shape[-1])
+    return [
+        Signal("field in the plane", "mT", in_plane, still),
+        Signal("vertical field", "mT", vertical, still),
+        Signal("Hall voltage", "uV", Plate().sensitivity_uV_per_mT * vertical, still),
+    ]
 
 
 def _moved_deg(step: Step, kind: str) -> Array:
@@ -89,7 +110,9 @@ def write_trace(path: Path, traced: Trace) -> None:
             columns[f"{stem}{axis}_{signal.unit}"] = values
     columns["reference_deg"] = traced.reference_deg
     columns["error_deg"] = traced.error_deg
-    write_columns(path, columns)
+    before, after = residual_offset_mT(Plate())
+    note = f"offset of the typical Hall plate: {before:.4g} mT before spinning current, {after:.4g} mT after it"
+    write_columns(path, columns, comments=(note,))
 
 
 def plot_trace(path: Path, traced: Trace, *, title: str) -> None:

@@ -60,7 +60,7 @@ def diagnose(
     """
     rng = rng or np.random.default_rng(DEFAULT_SEED)
     reference, measured = radians(sweep.reference_deg), radians(sweep.measured_deg)
-    senses = _senses_from_channels(sweep, reference, measured)
+    senses = senses_from_channels(sweep, reference, measured)
     fit = fit_baseline(reference, measured, rng=rng, senses=senses, robust=robust, settings=settings, band_rad=band_rad)
     return _findings(sweep, fit)
 
@@ -73,7 +73,7 @@ def diagnose_many(
     groups: dict[tuple[int, tuple[int, int] | None], list[int]] = {}
     angles = [(radians(sweep.reference_deg), radians(sweep.measured_deg)) for sweep in sweeps]
     for index, sweep in enumerate(sweeps):
-        senses = _senses_from_channels(sweep, *angles[index])
+        senses = senses_from_channels(sweep, *angles[index])
         groups.setdefault((len(sweep), senses), []).append(index)
     found: dict[int, Findings] = {}
     for (_, senses), indices in groups.items():
@@ -88,7 +88,7 @@ def diagnose_many(
     return [found[i] for i in range(len(sweeps))]
 
 
-def _senses_from_channels(sweep: Sweep, reference: Array, measured: Array) -> tuple[int, int] | None:
+def senses_from_channels(sweep: Sweep, reference: Array, measured: Array) -> tuple[int, int] | None:
     """With raw channels h is plain to see, and s follows from the slope; without them both are left to the fit."""
     if sweep.vx is None or sweep.vy is None:
         return None

@@ -132,6 +132,20 @@ def compensate(
     run(source, outputs=outputs, check=check or (), temperature_c=temperature, tolerance_deg=tolerance, seed=seed)
 
 
+@app.command()
+def monitor(
+    sweeps: Annotated[list[str], typer.Argument(help="Sweep files, globs or folders in order, or one with turns.")],
+    run_length: Annotated[float, typer.Option(help="Sweeps between false alarms, on average.")] = 500.0,
+    json: Annotated[Path | None, typer.Option(help="Write the series and the charts as JSON.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw the charts: .png, .svg or .pdf.")] = None,
+    seed: Seed = 0,
+) -> None:
+    """Chart the error factors over a series of sweeps and say which one drifts, and since when."""
+    from scenarios.monitor import run
+
+    run(sweeps, run_length=run_length, json_path=json, plot=plot, seed=seed)
+
+
 def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
     try:

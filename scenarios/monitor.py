@@ -24,12 +24,12 @@ SCHEMA = "halltwin.monitor/1"
 FEWEST_SWEEPS = 5
 RUN_LENGTH = 500.0
 _FACTORS = (
-    ("Vx_over_Ax", "%", 100.0),
-    ("Vy_over_Ay", "%", 100.0),
-    ("gain_ratio", "1", 1.0),
-    ("beta_deg", "deg", 180.0 / np.pi),
-    ("quad", "%", 100.0),
-    ("zero_deg", "deg", 180.0 / np.pi),
+    ("Vx_over_Ax_percent", 100.0),
+    ("Vy_over_Ay_percent", 100.0),
+    ("gain_ratio", 1.0),
+    ("beta_deg", 180.0 / np.pi),
+    ("quad_percent", 100.0),
+    ("zero_deg", 180.0 / np.pi),
 )
 
 
@@ -114,7 +114,7 @@ def monitor(sweeps: Sequence[Sweep], *, run_length: float = RUN_LENGTH, seed: in
     points = np.array([fit.point for fit in fits])
     points[:, -1] = np.unwrap(points[:, -1])
     left = np.log([max(fit.rms_rad, 1e-12) for fit in fits])
-    columns: list[tuple[str, Array]] = [(name, scale * points[:, k]) for k, (name, _, scale) in enumerate(_FACTORS)]
+    columns: list[tuple[str, Array]] = [(name, scale * points[:, k]) for k, (name, scale) in enumerate(_FACTORS)]
     columns.append(("log_residual_rms", np.asarray(left)))
     limit = limit_for(run_length * len(columns))
     charts = tuple(chart(name, values, limit=limit) for name, values in columns)

@@ -146,6 +146,18 @@ def monitor(
     run(sweeps, run_length=run_length, json_path=json, plot=plot, seed=seed)
 
 
+@app.command()
+def hardware(
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the picture and its data.")],
+    twin: Annotated[str, typer.Argument(help="Twin TOML or preset, for its magnet.")] = "imc-14bit",
+    seed: Seed = 0,
+) -> None:
+    """Run one turn through magnet, concentrator, spun plates, converter, CORDIC and link, in the hardware's units."""
+    from scenarios.hardware import run_command
+
+    run_command(twin, output, seed=seed)
+
+
 def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
     try:

@@ -40,7 +40,8 @@ class Plate:
     ``amplifier_offset_uV``       of the amplifier, the same in all phases
     ``white_nV``                  thermal noise of plate and amplifier, per root Hz (one-sided)
     ``corner_Hz``                 where the 1/f noise equals the white noise
-    ``settling_s``                time constant after each switching, from which spikes remain
+    ``settling_s``                time constant after each switching
+    ``blanking``                  share of each phase, from its start, that sample and hold leave out
     """
 
     sensitivity_uV_per_mT: float = 100.0
@@ -52,6 +53,7 @@ class Plate:
     white_nV: float = 20.0
     corner_Hz: float = 10e3
     settling_s: float = 0.2e-6
+    blanking: float = 0.5
     phase_s: float = 5e-6
     samples: int = 8
 
@@ -64,8 +66,9 @@ class Plate:
         require_within("white_nV", self.white_nV, 0.0, 1e6, "nV")
         require_within("corner_Hz", self.corner_Hz, 0.0, 1e9, "Hz")
         require_within("settling_s", self.settling_s, 0.0, 1.0, "s")
+        require_within("blanking", self.blanking, 0.0, 0.9)
         require_within("phase_s", self.phase_s, 1e-9, 1.0, "s")
-        require_within("samples", self.samples, 1, 1024, whole=True)
+        require_within("samples", self.samples, 2, 1024, whole=True)
 
     @property
     def cycle_Hz(self) -> float:
@@ -106,6 +109,7 @@ def spin(field_mT: Array, plate: Plate, rng: np.random.Generator | None = None, 
     before = np.roll(steady.ravel(), 1).reshape(steady.shape)
     before[0, 0] = steady[0, 0]
     elapsed = (np.arange(plate.samples) + 0.5) / plate.samples * plate.phase_s
+    held = elapsed >= plate.blanking * plate.phase_s
     decay = np.exp(-elapsed / plate.settling_s) if plate.settling_s > 0.0 else np.zeros(plate.samples)
     at_plate = steady[..., None] + (before - steady)[..., None] * decay
     rate = plate.samples / plate.phase_s
@@ -119,9 +123,9 @@ def spin(field_mT: Array, plate: Plate, rng: np.random.Generator | None = None, 
         plate_uV=at_plate,
         amplified_uV=amplified,
         demodulated_uV=demodulated,
-        output_mT=demodulated.mean(axis=(1, 2)) / sensitivity,
+        output_mT=demodulated[..., held].mean(axis=(1, 2)) / sensitivity,
         unspun_mT=field_mT
-        + (offset[0] + thermal[0] + plate.amplifier_offset_uV + noise.mean(axis=(1, 2))) / sensitivity,
+        + (offset[0] + thermal[0] + plate.amplifier_offset_uV + noise[..., held].mean(axis=(1, 2))) / sensitivity,
     )
 
 

@@ -12,6 +12,7 @@ from diagnosis import footprints
 from diagnosis.evidence import Evidence, collect
 from diagnosis.holdout import held_out_residuals, rms_deg
 from diagnosis.joint_fit import BASELINE, Fit, Free, Setting, evaluate, free_of, solve, tidy
+from diagnosis.linear import Linear
 from diagnosis.noise_model import noise_family
 from diagnosis.search import ALPHA, Cause, judge, search, settle
 from twin.angles import TAU, Array, wrap
@@ -22,13 +23,18 @@ from twin.motion import Motion
 from twin.sweep import Sweep
 
 ROUNDS = 3
+BURST_LOG_P = float(np.log(1e-6))
+"""A stretch of noise must be this improbable: its test takes the noise to be Gaussian, which is true only nearly."""
 _NUDGE = 1e-9
 """A baseline parameter exactly at null is skipped by the chain and could not be fitted: it starts this far off."""
 
 
 @dataclass(frozen=True, eq=False)
 class Named:
-    """One entry of the answer: a cause, its probability, rivals, and the held-out RMS around it [deg]."""
+    """One entry of the answer: a cause, its probability, rivals, and the held-out RMS around it [deg].
+
+    ``rows`` are the raw rows (from 0) that a cause of single readings has touched.
+    """
 
     keys: tuple[str, ...]
     log_p: float
@@ -36,6 +42,7 @@ class Named:
     rivals: tuple[str, ...] = ()
     before_deg: float = float("nan")
     after_deg: float = float("nan")
+    rows: tuple[int, ...] = ()
 
     @property
     def name(self) -> str:
@@ -93,10 +100,10 @@ def discover(
     keys: list[str] = []
     values_found: list[Named] = []
     fit = _with_stairs(fit, sweep, candidates, bits, values_found)
-    sequence_mask, sequence_found = _sequence(fit, sweep, candidates, step, "stale_frames")
+    sequence_mask, sequence_found = _sequence(fit, sweep, candidates, step, "stale_frames", np.zeros(len(sweep), dtype=bool))
     fit = _masked(fit, sequence_mask)
     burst = footprints.bursts(fit)
-    if burst is not None and burst.log_p < np.log(1e-6):
+    if burst is not None and burst.log_p < BURST_LOG_P:
         fit = _scaled(fit, burst.variance)
     baseline = fit
     looked = 0
@@ -110,19 +117,20 @@ def discover(
         if not changed and np.array_equal(refined.evidence.usable, fit.evidence.usable):
             break
         fit = solve(refined)
-    baseline = solve(evaluate(baseline.chain, baseline.free, fit.evidence, fit.setting))
+    stairs = [named.keys[0] for named in values_found]
+    baseline = solve(evaluate(baseline.chain.without(*stairs), baseline.free, fit.evidence, fit.setting))
     spread_found, fit = _spread(fit, candidates, looked)
     mean_causes = [judge(fit, key, means, keys) for key in keys]
     mean_causes.sort(key=lambda cause: -cause.gain)
     entries, held = _prove(fit, mean_causes)
-    glitch_mask, glitches = _sequence(fit, sweep, candidates, step, "bus_glitch")
+    glitch_mask, glitches = _sequence(fit, sweep, candidates, step, "bus_glitch", sequence_mask)
     masked = sequence_mask | glitch_mask
     _quantisation(fit, bits, step, values_found)
     everything = _merge([*entries, *values_found, *sequence_found, *glitches, *spread_found])
     use = fit.evidence.usable
     baseline_held = rms_deg(held[0], use)
     extended_held = rms_deg(held[-1], use)
-    everything = [_with_figures(c, sweep, masked, held, use) for c in everything]
+    everything = [_with_figures(c, fit, held, use) for c in everything]
     floor = np.degrees(evidence.repeat_rms) if evidence.repeat_rms else extended_held
     invisible = {
         e.name: e.missing(evidence.motion.provides)
@@ -273,11 +281,14 @@ def raw_residual(fit: Fit, sweep: Sweep) -> Array:
 
 
 def _sequence(
-    fit: Fit, sweep: Sweep, effects: Sequence[Effect], step: float, name: str
+    fit: Fit, sweep: Sweep, effects: Sequence[Effect], step: float, name: str, spoken_for: BoolArray
 ) -> tuple[BoolArray, list[Named]]:
-    """Raw rows that a single-reading effect has touched, and the effect where chance does not explain them."""
+    """Raw rows that a single-reading effect has touched, and the effect where chance does not explain them.
+
+    Rows ``spoken_for`` (n_raw,) belong to another effect already.
+    """
     effect = next((e for e in effects if e.name == name), None)
-    residual = raw_residual(fit, sweep)
+    residual = np.where(spoken_for, 0.0, raw_residual(fit, sweep))
     nothing = np.zeros(len(sweep), dtype=bool)
     if effect is None or effect.marks is None:
         return nothing, []
@@ -285,7 +296,7 @@ def _sequence(
     mask, log_p = effect.marks(np.radians(sweep.measured_deg), residual, sigma, step, sweep.motion())
     if log_p > np.log(ALPHA) or not mask.any():
         return nothing, []
-    return mask, [Named((name,), log_p, -2.0 * log_p)]
+    return mask, [Named((name,), log_p, -2.0 * log_p, rows=tuple(int(row) for row in np.flatnonzero(mask)))]
 
 
 def _spread(fit: Fit, effects: Sequence[Effect], looked: int) -> tuple[list[Named], Fit]:
@@ -293,7 +304,7 @@ def _spread(fit: Fit, effects: Sequence[Effect], looked: int) -> tuple[list[Name
     fit, _ = settle(fit)
     shapes = footprints.spread_shapes(fit, [e for e in effects if e.footprint == "spread"])
     burst = footprints.bursts(fit)
-    if burst is not None:
+    if burst is not None and burst.log_p < BURST_LOG_P:
         shapes.append(burst)
     shapes = [s for s in shapes if s.log_p < np.log(ALPHA / max(looked, 1))]
     if not shapes:
@@ -345,9 +356,17 @@ def _merge(entries: list[Named]) -> list[Named]:
     return sorted(merged.values(), key=lambda e: -e.gain)
 
 
-def _with_figures(entry: Named, sweep: Sweep, masked: BoolArray, held: list[Array], use: BoolArray) -> Named:
-    """Held-out figures for causes that leave the mean as it is: what the readings concerned add to the RMS."""
+def _with_figures(entry: Named, fit: Fit, held: list[Array], use: BoolArray) -> Named:
+    """RMS before and after for causes that no fit of the mean carries."""
     if np.isfinite(entry.before_deg):
         return entry
     after = rms_deg(held[-1], use)
-    return replace(entry, before_deg=rms_deg(held[-1], np.ones_like(use)), after_deg=after)
+    if entry.rows:
+        return replace(entry, before_deg=rms_deg(held[-1], np.ones_like(use)), after_deg=after)
+    effect = find(entry.keys[0], fit.chain.effects)
+    if effect.footprint == "values":
+        # Without the stairs the readings stand off the smooth angle ahead of them.
+        smooth = fit.chain.without(entry.keys[0])
+        plain = Linear(smooth, fit.evidence.motion, blur=fit.setting.blur, observables=1)
+        return replace(entry, before_deg=rms_deg(wrap(fit.evidence.measured - plain.angle), use), after_deg=after)
+    return replace(entry, before_deg=after, after_deg=after)

@@ -120,15 +120,25 @@ class SpreadFinding:
 
 
 def white_rows(fit: Fit) -> Array:
-    """Residual (n,) over the rows, whitened, in units of its own robust RMS; masked rows are zero."""
+    """Residual (n,) over the rows, whitened, in units of its own RMS; masked rows are zero.
+
+    What the rows' scale has taken out of them is put back: this is what the spread is judged on.
+    """
     root = root_weights(fit.setting, fit.evidence.observables)[0]
-    rows = to_rows(fit.cosine_residual[0] * root)
+    rows = to_rows(fit.cosine_residual[0] * root) * fit.evidence.scale
     sigma = float(np.sqrt(np.mean(rows[fit.evidence.usable] ** 2)))
     return np.where(fit.evidence.usable, rows / max(sigma, 1e-300), 0.0)
 
 
 def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
     """Which declared shapes of the variance gain over constant variance, each at its best strength."""
+    stairs = fit.linear.stair_variance
+    if stairs is not None and float(np.mean(stairs)) > 3.0 * fit.setting.blur**2:
+        # The stairs make most of the spread: how much a reading scatters depends on its place between two steps.
+        return []
+    if any(effect.line and effect.line.clock == "channels" for _, effect, _ in fit.chain.active("channels")):
+        # So does a bit's weight in the channels.
+        return []
     white = white_rows(fit)
     use = fit.evidence.usable
     square = np.clip(white[use] ** 2, 0.0, 36.0)

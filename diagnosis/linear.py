@@ -90,7 +90,8 @@ class Linear:
                     sense = self.chain.output_sense * sense
             else:
                 points.append((place, Insertion(step.after, sense)))
-                if step.effect.acts_on != "angle":
+                # A quantiser's edges are no slopes: it passes changes on as they are.
+                if step.effect.acts_on != "angle" and not _is_staircase(step.effect):
                     sense = _through(step.effect, step.before, self.motion, step.values, sense)
         points.append((-1.0, Insertion(np.broadcast_to(self.motion.shaft_rad, (2, n)), sense)))
         self._points = sorted(points, key=lambda item: item[0])
@@ -201,10 +202,12 @@ def _through(effect: Effect, before: Array, motion: Motion, values: Parameters, 
         moved = np.array(before)
         moved[channel] += _STEP
         slope = (effect.forward(moved, motion, values, None) - plain) / _STEP
-        # The edge of a stair is no slope: a quantiser passes changes on as they are.
-        slope[channel] = np.where(np.abs(slope[channel]) > 50.0, 1.0, slope[channel])
         out[:, channel] = np.einsum("okn,kn->on", sense, slope)
     return out
+
+
+def _is_staircase(effect: Effect) -> bool:
+    return effect.line is not None and effect.line.clock == "channels"
 
 
 def _last_place(chain: Chain, acts_on: str) -> float:

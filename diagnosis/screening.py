@@ -112,7 +112,7 @@ def screen_one(
     looks = 0.0
     if shapes is None:
         if effect.line is not None:
-            shapes, looks = line_shapes(base_residual(base), fit, effect)
+            shapes, looks = line_shapes(matched(base), fit, effect)
         else:
             shapes = list(effect.shapes(motion))
     if not shapes:
@@ -131,11 +131,14 @@ def screen_one(
     return Candidate(effect, values, gain, terms, looks, log_p)
 
 
-def base_residual(base: Base) -> Array:
-    """The angle's residual (n,) weighted by the inverse noise spectrum of the best member: for matched filters."""
+def matched(base: Base) -> list[Array]:
+    """The angle's residual (n,) weighted by the inverse noise spectrum: of white noise, and of the best member."""
     fit = base.fit
-    weighted = fit.cosine_residual[0] * fit.setting.family.weights[base.member]
-    return to_rows(weighted) * (fit.evidence.usable / fit.evidence.scale)
+    rows = []
+    for member in dict.fromkeys((0, base.member)):
+        weighted = fit.cosine_residual[0] * fit.setting.family.weights[member]
+        rows.append(to_rows(weighted) * (fit.evidence.usable / fit.evidence.scale))
+    return rows
 
 
 def _smooth(effect: Effect, shape: Mapping[str, float]) -> list[str]:

@@ -15,10 +15,10 @@ PEAKS = 10
 _LARGEST_GRID = 1 << 21
 
 
-def line_shapes(weighted: Array, fit: Fit, effect: Effect) -> tuple[Sequence[Mapping[str, float]], float]:
+def line_shapes(matched: Sequence[Array], fit: Fit, effect: Effect) -> tuple[Sequence[Mapping[str, float]], float]:
     """The orders or frequencies at which the effect's line matches the residual best, and how many were looked at.
 
-    ``weighted`` (n,) is the residual filtered by the inverse noise covariance. The effect's column at frequency f is
+    ``matched`` holds residuals (n,) filtered by the inverse covariance of the noises in question. The effect's column at frequency f is
     Re[A exp(i 2 pi f clock)] with an amplitude A(n,) that does not depend on f, so one transform serves all f.
     """
     line = effect.line
@@ -26,7 +26,7 @@ def line_shapes(weighted: Array, fit: Fit, effect: Effect) -> tuple[Sequence[Map
     motion = fit.linear.motion
     low, high = line.limits(motion)
     if line.clock == "channels":
-        return _weights_of_a_bit(weighted, fit, effect, low, high)
+        return _weights_of_a_bit(matched[0], fit, effect, low, high)
     clock = motion.shaft_rad / TAU if line.clock == "shaft" else motion.time_s - 0.5 * (
         motion.time_s[0] + motion.time_s[-1]
     )
@@ -52,18 +52,22 @@ def line_shapes(weighted: Array, fit: Fit, effect: Effect) -> tuple[Sequence[Map
     place = (clock - clock.min()) / period * bins
     left = np.floor(place).astype(np.int64)
     share = place - left
-    power = np.zeros(bins // 2)
-    for amplitude in amplitudes:
-        signal = weighted * np.conj(amplitude)
-        grid_sum = np.zeros(bins, dtype=np.complex128)
-        for index, part in ((left, 1.0 - share), (left + 1, share)):
-            grid_sum += np.bincount(index % bins, (signal * part).real, bins)
-            grid_sum += 1j * np.bincount(index % bins, (signal * part).imag, bins)
-        power += np.abs(np.fft.fft(grid_sum)[: bins // 2]) ** 2
     frequency = np.arange(bins // 2) / period
-    # Linear interpolation between bins damps high frequencies by sinc^2: undone.
-    power /= np.sinc(np.arange(bins // 2) / bins) ** 4
     inside = (frequency >= low) & (frequency <= high)
+    powers = []
+    for weighted in matched:
+        power = np.zeros(bins // 2)
+        for amplitude in amplitudes:
+            signal = weighted * np.conj(amplitude)
+            grid_sum = np.zeros(bins, dtype=np.complex128)
+            for index, part in ((left, 1.0 - share), (left + 1, share)):
+                grid_sum += np.bincount(index % bins, (signal * part).real, bins)
+                grid_sum += 1j * np.bincount(index % bins, (signal * part).imag, bins)
+            power += np.abs(np.fft.fft(grid_sum)[: bins // 2]) ** 2
+        # Linear interpolation between bins damps high frequencies by sinc^2: undone.
+        powers.append(power / np.sinc(np.arange(bins // 2) / bins) ** 4 / _level(power, OVERSAMPLING))
+    # A line stands out of the noise about it, whatever the noise's colour.
+    power = np.max(powers, axis=0)
     whole_only = not bool(line.within(np.array([low + 0.37 / span]))[0]) and not bool(
         line.within(np.array([np.floor(middle) + 0.5]))[0]
     )
@@ -85,12 +89,23 @@ def line_shapes(weighted: Array, fit: Fit, effect: Effect) -> tuple[Sequence[Map
     return [{line.param: float(f)} for f in grid], max(float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
 
 
+def _level(power: Array, oversampling: int) -> Array:
+    """Level of the noise (n,) around each bin: the median over the neighbourhood, wider at higher frequencies."""
+    edges = np.unique(np.concatenate([[0], np.geomspace(8 * oversampling, max(power.size, 16), 24)]).astype(int))
+    edges = np.unique(np.clip(edges, 0, power.size))
+    centres, levels = [], []
+    for first, last in zip(edges[:-1], edges[1:], strict=True):
+        centres.append(0.5 * (first + last))
+        levels.append(max(float(np.median(power[first:last])), 1e-300))
+    return np.asarray(np.exp(np.interp(np.arange(power.size), centres, np.log(levels))))
+
+
 def _weights_of_a_bit(
     weighted: Array, fit: Fit, effect: Effect, low: float, high: float
 ) -> tuple[Sequence[Mapping[str, float]], float]:
-    """Weights [%] at which a square wave in the channels' value, anchored at zero, matches the residual best.
+    """Weights [%] at which a square wave in the channels' value, matches the residual best.
 
-    Its fundamental is sin(pi x / step), of period two steps: one transform over the value serves all weights.
+    Its fundamental has a period of two steps: one transform over the value serves all weights, its sign the level.
     """
     assert effect.line is not None
     point = fit.linear.at(effect)
@@ -107,11 +122,18 @@ def _weights_of_a_bit(
         grid += np.bincount((left + 1) % bins, signal * (place - left), bins)
     frequency = np.arange(bins // 2) / period
     inside = (frequency > 100.0 / (2.0 * high)) & (frequency < highest)
-    # sum g sin(2 pi f x) is minus the imaginary part; the larger the step, the larger its amplitude.
-    match = -np.fft.fft(grid)[: bins // 2].imag
-    match = np.where(inside, match, -np.inf)
-    peak = np.flatnonzero((match[1:-1] >= match[:-2]) & (match[1:-1] > match[2:])) + 1
-    order = np.argsort(match[peak])[::-1][: 2 * PEAKS]
-    steps = 100.0 / (2.0 * frequency[peak[order]])
-    looks = max(float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
-    return [{effect.line.param: float(step)} for step in np.sort(steps)], looks
+    # Held at 0 the bit leaves +cos(pi x / step) once its mean is in the offset; held at 1, the opposite.
+    match = np.where(inside, np.fft.fft(grid)[: bins // 2].real, 0.0)
+    size = np.abs(match)
+    peak = np.flatnonzero((size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:])) + 1
+    chosen = peak[np.argsort(size[peak])[::-1][: 2 * PEAKS]]
+    looks = max(2.0 * float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
+    # Noise ahead of the bit of a fifth of its weight to begin with: the fit finds its own.
+    return [
+        {
+            effect.line.param: float(50.0 / frequency[k]),
+            "level": 0.0 if match[k] > 0.0 else 1.0,
+            "blur_percent": 0.2 * float(50.0 / frequency[k]),
+        }
+        for k in chosen
+    ], looks

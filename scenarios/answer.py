@@ -123,7 +123,7 @@ def _cause(found: Discovery, cause: Named) -> dict[str, Any]:
         "to_tell_apart": advice(cause),
     }
     if cause.name == "bus_glitch":
-        answer["rows"] = [int(row) + 1 for row in np.flatnonzero(found.masked)]
+        answer["rows"] = [row + 1 for row in cause.rows]
     return answer
 
 
@@ -145,10 +145,10 @@ def parameters(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
         for name, (value, unit) in effect.derived(values).items():
             answer[name + suffix] = {"value": value, "low": value, "high": value, "unit": unit}
     if cause.name == "bus_glitch":
-        count = float(np.count_nonzero(found.masked))
+        count = float(len(cause.rows))
         answer["count"] = {"value": count, "low": count, "high": count, "unit": "1"}
     if cause.name == "stale_frames":
-        share = 100.0 * float(np.mean(found.masked))
+        share = 100.0 * len(cause.rows) / len(found.sweep)
         half = 100.0 * _T95 * float(np.sqrt(max(share / 100 * (1 - share / 100) / len(found.sweep), 0.0)))
         answer["fraction_percent"] = {"value": share, "low": max(share - half, 0.0), "high": share + half, "unit": "%"}
     return answer

@@ -10,18 +10,29 @@ from twin.angles import Array
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
+HARMONICS = 6
 BITS = 14
 """Word length that the bit's number is counted in (the paper's converter)."""
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    # The bit below the sign has weight ``step``; mid-scale is a multiple of two steps for all but the highest two
-    # bits, so the bit's value depends on the signal and the step alone, not on full scale.
+    # Mid-scale is a multiple of two steps for all but the highest two bits, so the bit's value depends on the signal
+    # and the step alone, not on full scale. A bit held at its level shifts the mean by half a step one way or the
+    # other; that shift belongs to the offset, so the bit is read from the signal with it taken back.
     step = 0.01 * np.abs(np.asarray(values["step_percent"], dtype=np.float64))
     safe = np.where(step > 0.0, step, 1.0)
-    bit = np.floor(signal / safe) % 2.0
-    stuck = np.asarray(values.get("level", 0.0))
-    return signal + np.where(step > 0.0, step * (stuck - bit), 0.0)
+    level = np.asarray(values.get("level", 0.0))
+    blur = 0.01 * np.asarray(values.get("blur_percent", 0.0))
+    if rng is not None or np.all(blur == 0.0):
+        held = 0.5 - np.floor(signal / safe + (0.5 - level)) % 2.0
+    else:
+        # In expectation, noise ahead of the converter smooths the square wave: each harmonic by its own Gaussian.
+        held = np.zeros(np.broadcast_shapes(signal.shape, np.shape(step)))
+        for k in range(1, 2 * HARMONICS, 2):
+            sign = (1.0 - 2.0 * level) * (-1.0) ** (k // 2)
+            damping = np.exp(-0.5 * (np.pi * k * blur / safe) ** 2)
+            held = held + sign * (2.0 / (np.pi * k)) * damping * np.cos(np.pi * k * signal / safe)
+    return signal + np.where(step > 0.0, step * held, 0.0)
 
 
 def derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
@@ -42,11 +53,15 @@ ADC_STUCK_BIT = Effect(
     params={
         "step_percent": Param(unit="%", null=0.0, lower=0.0, upper=30.0, doc="weight of the bit", role="level"),
         "level": Param(unit="1", null=0.0, lower=0.0, upper=1.0, doc="stuck at", role="shape", counts=True),
+        "blur_percent": Param(
+            unit="%", null=0.0, lower=0.0, upper=1.0, doc="noise ahead of the bit", role="shape", typical=0.03
+        ),
     },
     forward=forward,
     needs=frozenset({"one turn"}),
     derived=derived,
     zoomed=("step_percent",),
+    fitted_shapes=("step_percent", "blur_percent"),
     line=Line(param="step_percent", clock="channels", limits=lambda motion: (0.04, 4.0), within=within),
     source="offset binary code with one bit held; its mean goes into the offset",
     signature="0 or one step per channel: a square pattern in code",

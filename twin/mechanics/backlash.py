@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from twin.angles import Array, radians
@@ -9,19 +11,24 @@ from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
 
-def play(shaft: Array, motion: Motion, half_width: Array) -> Array:
-    """Output (..., n) [rad] of a play operator of total width ``2 * half_width`` driven by ``shaft``.
+def play(shaft: Array, half_width: Array, *, way: float) -> Array:
+    """Output (..., n) [rad] of a play operator of total width ``2 * half_width`` driven by ``shaft`` (n,).
 
-    It starts engaged in the direction of the first row. Within a stretch of one direction the play is a running
-    maximum (or minimum), so only the stretches are looped over.
+    It starts engaged in the direction ``way``. Each output is the one before, clipped to the dead zone around the
+    shaft: over a stretch in which the shaft only rises (falls) that is a running maximum (minimum) of its lower
+    (upper) edge, so only the stretches are looped over.
     """
     out = np.empty(np.broadcast_shapes(shaft.shape, np.shape(half_width)))
-    position = None
-    for first, last, way in motion.segments:
-        engaged = shaft[..., first:last] - way * half_width
-        pick = np.maximum if way > 0 else np.minimum
-        engaged = pick.accumulate(engaged, axis=-1)
-        out[..., first:last] = engaged if position is None else pick(engaged, position)
+    rising = np.diff(shaft) >= 0.0
+    cuts = [0, *(np.flatnonzero(rising[1:] != rising[:-1]) + 2).tolist(), shaft.size]
+    position: Array = shaft[:1] - way * half_width
+    for first, last in itertools.pairwise(cuts):
+        if last <= first:
+            continue
+        up = bool(rising[max(first - 1, 0)]) if rising.size else True
+        edge = shaft[first:last] - half_width if up else shaft[first:last] + half_width
+        pick = np.maximum if up else np.minimum
+        out[..., first:last] = pick(pick.accumulate(edge, axis=-1), position)
         position = out[..., last - 1 : last]
     return out
 
@@ -29,7 +36,8 @@ def play(shaft: Array, motion: Motion, half_width: Array) -> Array:
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     # The play follows the nominal shaft angle: what the other effects add to it is far below its width.
     shaft = motion.shaft_rad
-    return signal + (play(shaft, motion, np.abs(radians(values["half_width_deg"]))) - shaft)
+    half_width = np.atleast_1d(np.abs(radians(values["half_width_deg"])))
+    return signal + (play(shaft, half_width, way=float(motion.direction[0])) - shaft)
 
 
 BACKLASH = Effect(

@@ -57,6 +57,7 @@ def simulate(
     speed_rpm: Annotated[list[float] | None, typer.Option(help="Speed; may be repeated. 0: stop and measure.")] = None,
     temperatures: Annotated[str, typer.Option(help="Temperatures in C, e.g. 25,60,85.")] = "",
     channels: Annotated[bool, typer.Option(help="Record vx and vy as well.")] = True,
+    reference_lines: Annotated[int | None, typer.Option(help="Lines of the reference encoder (4 counts each).")] = None,
     trace: Annotated[Path | None, typer.Option(help="Write every intermediate signal as CSV.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the trace: .png, .svg or .pdf.")] = None,
     seed: Seed = 0,
@@ -73,7 +74,16 @@ def simulate(
         temperatures_c=numbers("temperatures", temperatures),
         channels=channels,
     )
-    run(twin, output, recorded=motion, protocol=protocol, seed=seed, trace_path=trace, plot_path=plot)
+    run(
+        twin,
+        output,
+        recorded=motion,
+        protocol=protocol,
+        seed=seed,
+        reference_lines=reference_lines,
+        trace_path=trace,
+        plot_path=plot,
+    )
 
 
 @app.command()

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from scenarios.protocol import Protocol
 from twin.presets import read_twin_or_preset
+from twin.reference.encoder import Encoder
 from twin.sweep import Sweep
 
 
@@ -16,14 +20,22 @@ def run(
     recorded: Path | None,
     protocol: Protocol,
     seed: int,
+    reference_lines: int | None = None,
     trace_path: Path | None = None,
     plot_path: Path | None = None,
 ) -> None:
-    """Simulate on the protocol, or on the motion of a recorded sweep, and write what was asked for."""
+    """Simulate on the protocol, or on the motion of a recorded sweep, and write what was asked for.
+
+    ``reference_lines``: the reference counts the lines of an incremental encoder; None: it reads exactly.
+    """
     chain = read_twin_or_preset(twin)
     # A recorded motion holds the reference's readings: the shaft is where its errors are undone.
     motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded).motion())
-    chain.simulate(motion, seed=seed).write(output)
+    sweep = chain.simulate(motion, seed=seed)
+    if reference_lines is not None:
+        counted = Encoder(lines=reference_lines).read(np.radians(sweep.reference_deg))
+        sweep = replace(sweep, reference_deg=np.degrees(counted))
+    sweep.write(output)
     print(f"wrote {output} ({len(motion)} readings)")
     if trace_path is None and plot_path is None:
         return

@@ -86,10 +86,10 @@ def _clipping(motion: Motion, p: Params) -> Array:
 
 
 def _stuck(motion: Motion, p: Params) -> Array:
-    step = 0.01 * p["step_percent"]
-    x, y = (
-        step * (p["level"] - np.floor(c / step) % 2.0) for c in (np.cos(motion.shaft_rad), np.sin(motion.shaft_rad))
-    )
+    """The bit's deviation from its mean, which belongs to the offset: the code is read with that mean taken back."""
+    step, mean = 0.01 * p["step_percent"], 0.01 * p["step_percent"] * (p["level"] - 0.5)
+    channels = (np.cos(motion.shaft_rad), np.sin(motion.shaft_rad))
+    x, y = (step * (p["level"] - np.floor((c - mean) / step) % 2.0) - mean for c in channels)
     return shift(motion, x, y)
 
 

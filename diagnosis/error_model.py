@@ -82,27 +82,35 @@ def from_twin_values(values: Mapping[str, Mapping[str, float]]) -> Array:
 
 def coefficients(points: Array) -> Array:
     """Points (..., 6) to coefficients (..., 10), in the order of :meth:`Readings.features`."""
-    vx, vy, gain, beta, quad, zero = np.moveaxis(points, -1, 0)
-    shifted = zero + beta
-    cz, sz, cb, sb = np.cos(zero), np.sin(zero), np.cos(shifted), np.sin(shifted)
+    vx, vy, gain, beta, quad, zero = _unpacked(points)
     half = 0.5 * quad
     out = np.empty((*points.shape[:-1], 10))
+    # Both sines and cosines are needed twice: this is the inner loop of the swarm.
+    angles = np.stack([zero + beta, zero])
+    (sb, sz), (cb, cz) = np.sin(angles), np.cos(angles)
     out[..., 0] = gain * (vy + half)
-    out[..., 1] = gain * sb
-    out[..., 2] = gain * cb
-    out[..., 3] = -gain * half * (2.0 * cb * cb - 1.0)
-    out[..., 4] = gain * quad * sb * cb
-    out[..., 5] = -vx - half
-    out[..., 6] = -cz
+    rise = gain * sb
+    run = gain * cb
+    out[..., 1] = rise
+    out[..., 2] = run
+    out[..., 3] = half * (gain - 2.0 * run * cb)
+    out[..., 4] = quad * rise * cb
+    np.subtract(-vx, half, out=out[..., 5])
+    np.negative(cz, out=out[..., 6])
     out[..., 7] = sz
-    out[..., 8] = -half * (2.0 * cz * cz - 1.0)
+    out[..., 8] = half - quad * cz * cz
     out[..., 9] = quad * sz * cz
     return out
 
 
+def _unpacked(points: Array) -> tuple[Array, Array, Array, Array, Array, Array]:
+    """The six parameters of points (..., 6), each (...)."""
+    return (points[..., 0], points[..., 1], points[..., 2], points[..., 3], points[..., 4], points[..., 5])
+
+
 def coefficient_slopes(points: Array) -> Array:
     """Derivatives of the coefficients with respect to the parameters: points (..., 6) to (..., 10, 6)."""
-    _, vy, gain, beta, quad, zero = np.moveaxis(points, -1, 0)
+    _, vy, gain, beta, quad, zero = _unpacked(points)
     shifted = zero + beta
     cz, sz, cb, sb = np.cos(zero), np.sin(zero), np.cos(shifted), np.sin(shifted)
     c2z, s2z, c2b, s2b = cz * cz - sz * sz, 2 * sz * cz, cb * cb - sb * sb, 2 * sb * cb
@@ -232,7 +240,7 @@ class Readings:
 
     def channels(self, points: Array) -> tuple[Array, Array]:
         """x and y (..., n) of the model at points (..., 6)."""
-        vx, vy, gain, beta, quad, zero = np.moveaxis(points[..., None, :], -1, 0)
+        vx, vy, gain, beta, quad, zero = _unpacked(points[..., None, :])
         cos_a = np.cos(zero) * self.cos_shaft - np.sin(zero) * self.sin_shaft
         sin_b = np.cos(zero + beta) * self.sin_shaft + np.sin(zero + beta) * self.cos_shaft
         return vx + cos_a * (1.0 + quad * cos_a), gain * (vy + sin_b * (1.0 + quad * sin_b))
@@ -244,7 +252,7 @@ class Readings:
 
     def linearised(self, points: Array) -> tuple[Array, Array]:
         """Residual (..., n) and the slopes of atan2(y, x) with respect to the parameters (..., 6, n)."""
-        _, vy, gain, beta, quad, zero = np.moveaxis(points[..., None, :], -1, 0)
+        _, vy, gain, beta, quad, zero = _unpacked(points[..., None, :])
         cz, sz, cb, sb = np.cos(zero), np.sin(zero), np.cos(zero + beta), np.sin(zero + beta)
         cos_a = cz * self.cos_shaft - sz * self.sin_shaft
         sin_a = cz * self.sin_shaft + sz * self.cos_shaft

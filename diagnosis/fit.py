@@ -25,10 +25,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import polish, swarm
+from diagnosis import error_model, polish, swarm
 from diagnosis.baseline_fit import BaselineFit, Contributions, SearchRange, Senses
 from diagnosis.error_model import LOWER_LIMIT, NAMES, UPPER_LIMIT, Readings
-from diagnosis.valley import Valley, search, without_glitches
+from diagnosis.valley import Valley, first_look, search
 from twin.angles import Array
 
 QUICK = swarm.SwarmSettings(particles=40, iterations=100, stop_settled=True)
@@ -121,41 +121,57 @@ def _fit_batch(
     band_rad: float | None,
     rng: np.random.Generator,
 ) -> list[BaselineFit]:
-    batch, n = reference.shape
+    n = reference.shape[1]
     sensor, output = _first_senses(reference, measured, weights, senses)
     plain = Readings.of(
         reference, measured, sensor_sense=sensor[:, None], output_sense=output[:, None], weights=weights
     )
     both = senses is None
-    used = without_glitches(plain, reference, both=both) if robust else plain
-    valley = search(used, both=both, settings=settings, rng=rng, band_rad=band_rad)
+    used, swap = first_look(plain, reference, both=both, robust=robust)
+    used = used.oriented(swap)
+    valley = search(used, settings=settings, rng=rng, band_rad=band_rad)
 
-    # One descent on the quadratic form says which pair of senses is worth a pass over the readings.
     coarse = polish.descend(polish.on_gram(valley.gram), valley.best, count=n)
-    lanes = [slice(0, batch)] + ([slice(batch, 2 * batch)] if both else [])
-    swap = np.zeros(batch, dtype=bool)
-    costs = [coarse.cost[lane] for lane in lanes]
+    exact = polish.descend(polish.on_readings(used), coarse.points, count=n)
+    other: tuple[Array, Array] | None = None
     if both:
-        swap = costs[1] < costs[0]
-        noise = np.maximum(np.minimum(*costs) / max(n - 6, 1), 1e-300)
-        close = np.abs(costs[1] - costs[0]) / noise < _CLEAR_SIGMA2
-    start = np.where(swap[:, None], coarse.points[lanes[-1]], coarse.points[lanes[0]])
-    exact = polish.descend(polish.on_readings(used.oriented(swap)), start, count=n)
-    other_points, other_cost = start, exact.cost
-    if both:
-        other_points = np.where(swap[:, None], coarse.points[lanes[0]], coarse.points[lanes[1]])
-        other_cost = np.where(swap, costs[0], costs[1])
-        if close.any():
-            rest = used.sweeps(close).oriented(~swap[close])
-            second = polish.descend(polish.on_readings(rest), other_points[close], count=n)
-            other_points[close], other_cost[close] = second.points, second.cost
-            # The exact residual may prefer the pair that the quadratic form did not.
-            turned = np.flatnonzero(close & (other_cost < exact.cost * (1.0 - 1e-9)))
-            if turned.size:
-                exact, other_points, other_cost = _exchange(exact, second, close, turned, other_points, other_cost)
-                swap = swap.copy()
-                swap[turned] = ~swap[turned]
-    return _results(used, plain, swap, sensor, output, exact, (other_points, other_cost), valley, both)
+        swapped = polish.descend(
+            polish.on_gram(error_model.swapped_gram(valley.gram)), error_model.mirrored(coarse.points), count=n
+        )
+        exact, other, turned = _both_senses(used, exact, coarse, swapped)
+        swap = swap ^ turned
+    sign = np.where(swap, -1.0, 1.0)
+    return _results(used, plain.oriented(swap), sensor * sign, output * sign, exact, other, valley)
+
+
+def _both_senses(
+    used: Readings, exact: polish.Polished, coarse: polish.Polished, swapped: polish.Polished
+) -> tuple[polish.Polished, tuple[Array, Array], NDArray[np.bool_]]:
+    """Polish the swapped senses too where they are not clearly worse, and keep the better pair of each sweep.
+
+    Returns the better one, points (batch, 6) and costs (batch,) of the other, and where the swapped one is the better.
+    """
+    noise = np.maximum(np.minimum(coarse.cost, swapped.cost) / max(used.count - 6, 1), 1e-300)
+    close = (swapped.cost - coarse.cost) / noise < _CLEAR_SIGMA2
+    points, cost = swapped.points.copy(), swapped.cost.copy()
+    turned = np.zeros(cost.size, dtype=np.bool_)
+    if close.any():
+        rest = used.sweeps(close).oriented(np.ones(int(close.sum()), dtype=np.bool_))
+        second = polish.descend(polish.on_readings(rest), points[close], count=used.count)
+        points[close], cost[close] = second.points, second.cost
+        turned = close & (cost < exact.cost * (1.0 - 1e-9))
+        if turned.any():
+            curvature, settled = exact.curvature.copy(), exact.settled.copy()
+            curvature[turned] = second.curvature[turned[close]]
+            settled[turned] = second.settled[turned[close]]
+            best = np.where(turned[:, None], points, exact.points)
+            points, cost, least = (
+                np.where(turned[:, None], exact.points, points),
+                np.where(turned, exact.cost, cost),
+                np.where(turned, cost, exact.cost),
+            )
+            exact = polish.Polished(best, least, curvature, exact.passes, settled)
+    return exact, (points, cost), turned
 
 
 def _first_senses(
@@ -170,41 +186,19 @@ def _first_senses(
     return np.where(follows[0] >= follows[1], 1.0, -1.0), np.ones(batch)
 
 
-def _exchange(
-    exact: polish.Polished,
-    second: polish.Polished,
-    close: NDArray[np.bool_],
-    turned: NDArray[np.intp],
-    other_points: Array,
-    other_cost: Array,
-) -> tuple[polish.Polished, Array, Array]:
-    """Make the second pair of senses the first one in the lanes ``turned``."""
-    place = np.cumsum(close) - 1
-    points, cost, curvature = exact.points.copy(), exact.cost.copy(), exact.curvature.copy()
-    settled = exact.settled.copy()
-    other_points, other_cost = other_points.copy(), other_cost.copy()
-    other_points[turned], other_cost[turned] = points[turned], cost[turned]
-    take = place[turned]
-    points[turned], cost[turned] = second.points[take], second.cost[take]
-    curvature[turned], settled[turned] = second.curvature[take], second.settled[take]
-    return polish.Polished(points, cost, curvature, exact.passes, settled), other_points, other_cost
-
-
 def _results(
     used: Readings,
     plain: Readings,
-    swap: NDArray[np.bool_],
     sensor: Array,
     output: Array,
     exact: polish.Polished,
-    other: tuple[Array, Array],
+    other: tuple[Array, Array] | None,
     valley: Valley,
-    both: bool,
 ) -> list[BaselineFit]:
+    """One report a sweep; ``plain`` are the readings in the senses that were kept, with the caller's weights."""
     batch, n = exact.points.shape[0], plain.count
-    sign = np.where(swap, -1.0, 1.0)
     # residual() is h m - atan2(y, x): times h it is measured minus predicted.
-    residual = (output * sign)[:, None] * plain.oriented(swap).residual(exact.points)
+    residual = output[:, None] * plain.residual(exact.points)
     weights = used.weights
     counted = np.full((batch, n), True) if weights is None else weights > 0.0
     outliers = (
@@ -212,7 +206,6 @@ def _results(
     )
     fits = []
     for k in range(batch):
-        lane = k + batch * int(swap[k]) if both else k
         rows = int(np.count_nonzero(counted[k]))
         freedom = max(rows - 6, 1)
         squares = residual[k] ** 2 if weights is None else weights[k] * residual[k] ** 2
@@ -221,9 +214,9 @@ def _results(
         covariance = sigma**2 * _inverse(exact.curvature[k])
         half = _student(freedom) * np.sqrt(np.diagonal(covariance))
         point = exact.points[k].copy()
-        best, own = valley.histories[lane]
+        best, own = valley.histories[k]
         share = float(rows if plain.weights is None else plain.weights[k].sum())
-        excess = max(float(other[1][k] - exact.cost[k]), 0.0) / max(sigma**2, 1e-300)
+        excess = np.inf if other is None else max(float(other[1][k] - exact.cost[k]), 0.0) / max(sigma**2, 1e-300)
         fits.append(
             BaselineFit(
                 point=point,
@@ -232,23 +225,23 @@ def _results(
                 high=point + half,
                 at_bound=(point <= LOWER_LIMIT) | (point >= UPPER_LIMIT),
                 senses=Senses(
-                    sensor=int(sensor[k] * sign[k]),
-                    output=int(output[k] * sign[k]),
-                    sigma=float(np.sqrt(excess)) if both else np.inf,
-                    other=other[0][k].copy() if both else None,
+                    sensor=int(sensor[k]),
+                    output=int(output[k]),
+                    sigma=float(np.sqrt(excess)),
+                    other=None if other is None else other[0][k].copy(),
                 ),
                 search=SearchRange(
-                    lower=valley.box.lower[lane].copy(),
-                    upper=valley.box.upper[lane].copy(),
-                    widened=tuple(name for name, wide in zip(NAMES, valley.box.widened[lane], strict=True) if wide),
-                    rounds=int(valley.rounds[lane]),
+                    lower=valley.box.lower[k].copy(),
+                    upper=valley.box.upper[k].copy(),
+                    widened=tuple(name for name, wide in zip(NAMES, valley.box.widened[k], strict=True) if wide),
+                    rounds=int(valley.rounds[k]),
                 ),
                 contributions=Contributions(
-                    zero_only_rms_rad=float(np.sqrt(valley.zero_only[lane] / share)),
-                    swarm_rms_rad=float(np.sqrt(valley.cost[lane] / share)),
+                    zero_only_rms_rad=float(np.sqrt(valley.zero_only[k] / share)),
+                    swarm_rms_rad=float(np.sqrt(valley.cost[k] / share)),
                     polished_rms_rad=rms,
-                    particles_evaluated=int(valley.evaluations[lane]),
-                    particles_discarded=int(valley.discarded[lane]),
+                    particles_evaluated=int(valley.evaluations[k]),
+                    particles_discarded=int(valley.discarded[k]),
                     passes=exact.passes,
                     best_history_rad=np.sqrt(best / share),
                     own_history_rad=np.sqrt(own / share),

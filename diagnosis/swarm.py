@@ -104,6 +104,7 @@ def run(
     shape = (batch, settings.particles, dims)
     grid = None if steps is None else steps / span
     sweeps = np.arange(batch)
+    scales = np.array([settings.own_pull, settings.best_pull]).reshape(2, 1, 1, 1)
 
     place = rng.random(shape)
     if grid is not None:
@@ -119,10 +120,12 @@ def run(
     for iteration in range(1, settings.iterations + 1):
         best = own[sweeps, leader][:, None, :]
         pulls = rng.random((2, *shape))
+        pulls *= scales
         velocity *= inertia(settings, iteration - 1)
-        velocity += settings.own_pull * pulls[0] * (own - place)
-        velocity += settings.best_pull * pulls[1] * (best - place)
-        np.clip(velocity, -_FASTEST, _FASTEST, out=velocity)
+        velocity += pulls[0] * (own - place)
+        velocity += pulls[1] * (best - place)
+        np.maximum(velocity, -_FASTEST, out=velocity)
+        np.minimum(velocity, _FASTEST, out=velocity)
         if grid is not None:
             velocity = np.round(velocity / grid) * grid
         place += velocity
@@ -135,12 +138,11 @@ def run(
             out = outside(points) & known
             discarded += out.sum(axis=1)
             now[out] = np.inf
-        better = now < own_cost
-        np.copyto(own, place, where=better[..., None])
-        np.copyto(own_cost, now, where=better)
-        leader = np.argmin(own_cost, axis=1)
+        np.copyto(own, place, where=(now < own_cost)[..., None])
+        np.minimum(own_cost, now, out=own_cost)
+        leader = own_cost.argmin(axis=1)
         best_history.append(own_cost[sweeps, leader])
-        own_history.append(own_cost.mean(axis=1))
+        own_history.append(own_cost.sum(axis=1) / settings.particles)
         if settings.stop_settled and np.all(own_history[-1] <= (1.0 + _SETTLED) * best_history[-1]):
             break
 
@@ -156,13 +158,14 @@ def run(
 
 def _keep_inside(place: Array, velocity: Array, bounds: str) -> None:
     """Bring particles back into 0..1, in place: reflected with their velocity, or stopped at the wall."""
-    beyond = (place < 0.0) | (place > 1.0)
+    inside = np.minimum(np.maximum(place, 0.0), 1.0)
+    beyond = inside != place
     if not beyond.any():
         return
     if bounds == "reflect":
-        np.copyto(place, np.abs(place), where=place < 0.0)
-        np.copyto(place, 2.0 - place, where=place > 1.0)
+        # The speed limit keeps a particle from passing the opposite wall.
+        np.copyto(place, 2.0 * inside - place)
         np.negative(velocity, out=velocity, where=beyond)
     else:
-        np.clip(place, 0.0, 1.0, out=place)
+        np.copyto(place, inside)
         np.copyto(velocity, 0.0, where=beyond)

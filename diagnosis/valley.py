@@ -1,7 +1,4 @@
-"""Where the minimum lies: the swarm on the quadratic form, in a range that widens by itself.
-
-Lanes: one a sweep, or two where the senses are free (the swapped pair behind all first ones).
-"""
+"""Where the minimum lies: a first look, then the swarm on the quadratic form, in a range that widens by itself."""
 
 from __future__ import annotations
 
@@ -19,39 +16,36 @@ _ROBUST_ROUNDS = 12
 
 
 class Valley:
-    """The swarm's outcome for each lane, filled in round by round."""
+    """The swarm's outcome for each sweep of the batch, filled in round by round."""
 
     def __init__(self, box: Box, gram: Array) -> None:
-        lanes = gram.shape[0]
+        batch = gram.shape[0]
         self.box = box
         self.gram = gram
-        self.best: Array = np.zeros((lanes, 6))
-        self.cost: Array = np.zeros(lanes)
-        self.zero_only: Array = np.zeros(lanes)
-        """Cost (lanes,) of an ideal sensor turned by the mean error."""
-        self.evaluations: NDArray[np.int64] = np.zeros(lanes, dtype=np.int64)
-        self.rounds: NDArray[np.int64] = np.zeros(lanes, dtype=np.int64)
-        self.discarded: NDArray[np.int64] = np.zeros(lanes, dtype=np.int64)
-        self.histories: list[tuple[Array, Array]] = [(np.zeros(0), np.zeros(0))] * lanes
+        """The quadratic forms (batch, 10, 10), those of widened sweeps with weights 1/r^2."""
+        self.best: Array = np.zeros((batch, 6))
+        self.cost: Array = np.zeros(batch)
+        self.zero_only: Array = np.zeros(batch)
+        """Cost (batch,) of an ideal sensor turned by the mean error."""
+        self.evaluations: NDArray[np.int64] = np.zeros(batch, dtype=np.int64)
+        self.rounds: NDArray[np.int64] = np.zeros(batch, dtype=np.int64)
+        self.discarded: NDArray[np.int64] = np.zeros(batch, dtype=np.int64)
+        self.histories: list[tuple[Array, Array]] = [(np.zeros(0), np.zeros(0))] * batch
         """Of the last round: the best of all and the mean of the own bests after each iteration."""
 
 
 def search(
-    readings: Readings,
-    *,
-    both: bool,
-    settings: swarm.SwarmSettings,
-    rng: np.random.Generator,
-    band_rad: float | None = None,
+    readings: Readings, *, settings: swarm.SwarmSettings, rng: np.random.Generator, band_rad: float | None = None
 ) -> Valley:
-    """Swarm each lane in Table 2's range, and again in a wider one as long as the best stands at a wall.
+    """Swarm each sweep in Table 2's range, and again in a wider one as long as the best stands at a wall.
 
     ``band_rad`` is the Delta E of the discard rule (Eq. 11); None leaves the rule out.
     """
-    start = _ideal(readings, both=both)
-    batch = start.shape[0] // 2 if both else start.shape[0]
-    valley = Valley(first_box(start[:, ZERO]), _grams(readings, None, both=both))
-    valley.zero_only = _costs(start[:, None, :], valley.gram)[:, 0]
+    start = _ideal(readings)
+    valley = Valley(first_box(start[:, ZERO]), readings.gram())
+    valley.zero_only = error_model.cost(error_model.coefficients(start[:, None, :]), error_model.factor(valley.gram))[
+        :, 0
+    ]
     active = np.arange(start.shape[0])
     while active.size:
         root = error_model.factor(valley.gram[active])
@@ -62,84 +56,67 @@ def search(
             upper,
             rng=rng,
             settings=settings,
-            outside=None if band_rad is None else outside(_lanes(readings, active, both=both), band_rad),
+            outside=None if band_rad is None else outside(readings.sweeps(active), band_rad),
         )
-        valley.discarded[active] += result.discarded
         valley.best[active] = result.best
         valley.cost[active] = result.best_cost
         valley.evaluations[active] += result.evaluations
         valley.rounds[active] += 1
-        for k, lane in enumerate(active):
-            valley.histories[lane] = (result.best_history[k], result.own_history[k])
+        valley.discarded[active] += result.discarded
+        for k, sweep in enumerate(active):
+            valley.histories[sweep] = (result.best_history[k], result.own_history[k])
         walls = np.zeros(valley.best.shape, dtype=np.bool_)
         walls[active] = at_wall(result.best, lower, upper)
-        # Both pairs of senses of a sweep go on together, on weights 1/r^2 that now follow the better of them.
-        again = np.unique(np.flatnonzero(walls.any(axis=1)) % batch)
-        if again.size:
+        active = np.flatnonzero(walls.any(axis=1))
+        if active.size:
             valley.box = widened(valley.box, walls)
-            around, _ = _better(valley.best, valley.cost, both=both)
-            active = np.concatenate([again, again + batch]) if both else again
-            valley.gram[active] = _grams(readings.sweeps(again), around[again], both=both)
-        else:
-            active = again
+            # The errors are large: from here on the weights 1/r^2 count.
+            valley.gram[active] = readings.sweeps(active).gram(valley.best[active])
     return valley
 
 
-def without_glitches(readings: Readings, reference_rad: Array, *, both: bool) -> Readings:
-    """The readings with weight 0 where they are isolated gross errors.
+def first_look(
+    readings: Readings, reference_rad: Array, *, both: bool, robust: bool
+) -> tuple[Readings, NDArray[np.bool_]]:
+    """Least squares on the quadratic form from an ideal sensor, with the senses as they are and, if ``both``, swapped.
 
-    In rounds, because each fit shows more clearly which they are. The sine of a gross error counts for one reading
-    at most, so even the first fit is not far off.
+    Returns the readings, with weight 0 where they are isolated gross errors if ``robust``, and where the swapped
+    senses (batch,) fit better. Gross errors are found in rounds, because each fit shows more clearly which they are;
+    the sine of a gross error counts for one reading at most, so even the first fit is not far off.
     """
-    order = np.argsort(np.remainder(reference_rad, 2.0 * np.pi), axis=-1, kind="stable")
+    batch = reference_rad.shape[0]
+    points = _ideal(readings)
+    if both:
+        points = np.concatenate([points, error_model.mirrored(points)])
+    elif not robust:
+        return readings, np.zeros(batch, dtype=np.bool_)
+    order = np.argsort(np.remainder(reference_rad, 2.0 * np.pi), axis=-1, kind="stable") if robust else None
     base = np.ones(reference_rad.shape) if readings.weights is None else readings.weights
     used, mask = readings, np.zeros(reference_rad.shape, dtype=np.bool_)
-    points = _ideal(readings, both=both)
-    gram = _grams(readings, None, both=both)
+    gram = readings.gram()
     for _ in range(_ROBUST_ROUNDS):
-        coarse = polish.descend(polish.on_gram(gram), points, count=readings.count)
+        forms = np.concatenate([gram, error_model.swapped_gram(gram)]) if both else gram
+        coarse = polish.descend(polish.on_gram(forms), points, count=readings.count)
         points = coarse.points
-        around, swap = _better(points, coarse.cost, both=both)
-        exact = np.where(swap[:, None], points[-swap.size :], points[: swap.size])
-        found = isolated(readings.oriented(swap).residual(exact), order, mask, readings.weights)
+        swap = coarse.cost[batch:] < coarse.cost[:batch] if both else np.zeros(batch, dtype=np.bool_)
+        if order is None:
+            break
+        best = np.where(swap[:, None], points[-batch:], points[:batch])
+        found = isolated(readings.oriented(swap).residual(best), order, mask, readings.weights)
         if np.array_equal(found, mask):
             break
         mask = found
         used = readings.weighted(np.where(mask, 0.0, base))
-        gram = _grams(used, around, both=both)
-    return used
+        gram = used.gram(np.where(swap[:, None], error_model.mirrored(best), best))
+    return used, swap
 
 
-def _better(points: Array, cost: Array, *, both: bool) -> tuple[Array, NDArray[np.bool_]]:
-    """The better lane of each sweep, as a point (batch, 6) of the first pair of senses, and where it was swapped."""
-    if not both:
-        return points, np.zeros(cost.size, dtype=np.bool_)
-    first, second = np.split(points, 2)
-    swap = cost[first.shape[0] :] < cost[: first.shape[0]]
-    return np.where(swap[:, None], error_model.mirrored(second), first), swap
-
-
-def _lanes(readings: Readings, active: NDArray[np.intp], *, both: bool) -> Readings:
-    batch = readings.cos_shaft.shape[0]
-    return readings.sweeps(active % batch).oriented(active >= batch) if both else readings.sweeps(active)
-
-
-def _grams(readings: Readings, around: Array | None, *, both: bool) -> Array:
-    gram = readings.gram(around)
-    return np.concatenate([gram, error_model.swapped_gram(gram)]) if both else gram
-
-
-def _costs(points: Array, gram: Array) -> Array:
-    return error_model.cost(error_model.coefficients(points), error_model.factor(gram))
-
-
-def _ideal(readings: Readings, *, both: bool) -> Array:
-    """For each lane an ideal sensor turned by the mean of h m - s theta on the circle (lanes, 6)."""
+def _ideal(readings: Readings) -> Array:
+    """An ideal sensor turned by the mean of h m - s theta on the circle, for each sweep (batch, 6)."""
     c = readings.cos_read * readings.cos_shaft + readings.sin_read * readings.sin_shaft
     s = readings.sin_read * readings.cos_shaft - readings.cos_read * readings.sin_shaft
     if readings.weights is not None:
         c, s = c * readings.weights, s * readings.weights
-    zero = np.arctan2(s.sum(axis=-1), c.sum(axis=-1))
-    start = np.tile(error_model.NOMINAL, (2 * zero.size if both else zero.size, 1))
-    start[:, ZERO] = np.concatenate([zero, -zero]) if both else zero
+    start = np.tile(error_model.NOMINAL, (c.shape[0], 1))
+    start[:, ZERO] = np.arctan2(s.sum(axis=-1), c.sum(axis=-1))
     return start

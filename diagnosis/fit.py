@@ -31,7 +31,7 @@ from diagnosis.error_model import LOWER_LIMIT, NAMES, UPPER_LIMIT, Readings
 from diagnosis.valley import Valley, first_look, search
 from twin.angles import Array
 
-QUICK = swarm.SwarmSettings(particles=40, iterations=100, stop_settled=True)
+QUICK = swarm.SwarmSettings(particles=32, iterations=64, stop_settled=True)
 """Enough to find the valley; the polish does the rest. The paper's own setting is ``SwarmSettings()``."""
 
 _CLEAR_SIGMA2 = 100.0

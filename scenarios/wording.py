@@ -1,0 +1,213 @@
+"""Numbers and findings of an answer in words: what terminal and report have in common."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+BASELINE_LABELS = {
+    "Vx_over_Ax": ("offset x", "%", 100.0),
+    "Vy_over_Ay": ("offset y", "%", 100.0),
+    "gain_ratio": ("gain ratio y/x", "", 1.0),
+    "beta_deg": ("phase", "deg", 1.0),
+    "quad": ("quadratic", "%", 100.0),
+    "zero_deg": ("zero", "deg", 1.0),
+}
+"""Parameter of the JSON -> label, unit shown, and what the JSON's value is multiplied by for that unit."""
+
+_LACKS = {
+    "both directions": ("one direction", "turn in both directions"),
+    "moving shaft": ("the shaft stood still at each reading", "record while the shaft moves, with time_s or speed_rpm"),
+    "one turn": ("less than a turn", "cover a whole turn"),
+    "several turns": ("less than two turns", "record several turns"),
+    "temperature_c": ("no temperature_c", "record temperature_c"),
+    "time_s": ("no time_s", "record time_s"),
+    "turn": ("no turn column", "number the sweeps in a turn column"),
+    "two air gaps": ("one air gap", "measure at a second air gap"),
+    "two speeds": ("one speed", "measure at a second speed"),
+    "two speeds|both directions": ("one speed, one direction", "measure at a second speed or in both directions"),
+    "two temperatures": ("one temperature", "measure at a second temperature"),
+    "two turns": ("one turn", "record several turns"),
+    "vx": ("no vx, vy", "record vx and vy"),
+}
+"""What a sweep lacks for a cause to be visible: in words, and what to do about it."""
+
+_ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two speeds|both directions": "moving shaft"}
+"""A want that goes without saying where the second one is wanted too."""
+
+_ENDING = re.compile(r"_?(deg|percent|us|mT|mm|Hz|s)$")
+_NUMBERED = re.compile(r"^(?P<name>.*?)(?:_(?P<number>\d+))?$")
+
+
+# ---- numbers ----------------------------------------------------------------------------------------------------
+
+
+def plain(value: float | None, digits: int = 3) -> str:
+    """A figure to so many significant digits; whole numbers in full."""
+    if value is None or not math.isfinite(value):
+        return "unknown"
+    if value == int(value) and abs(value) < 1e9:
+        return str(int(value))
+    text = f"{value:.{digits}g}"
+    if "e" in text and abs(value) >= 1.0:
+        return f"{value:.0f}"
+    # Zeros that fill up the digits show how well a value is known: keep 0.0190, drop none.
+    return text if "e" in text else _filled(value, digits)
+
+
+def _filled(value: float, digits: int) -> str:
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:.{decimals}f}"
+
+
+def half_width(parameter: Mapping[str, Any]) -> float | None:
+    """Half of a parameter's 95 % interval; None where it has no end."""
+    low, high = parameter["low"], parameter["high"]
+    return None if low is None or high is None else 0.5 * (high - low)
+
+
+def figure(parameter: Mapping[str, Any], scale: float = 1.0) -> tuple[str, str]:
+    """Value and half width ("" where the value is exact) of a parameter, to two digits of the half width."""
+    value, half = parameter["value"], half_width(parameter)
+    if value is None:
+        return "unknown", ""
+    if half is None:
+        return plain(value * scale, 4), "±unknown"
+    value, half = value * scale, half * scale
+    if half <= 0.0:
+        return plain(value, 4), ""
+    decimals = min(max(0, 1 - math.floor(math.log10(half))), 9)
+    return f"{value:.{decimals}f}", f"±{half:.{decimals}f}"
+
+
+def with_unit(parameter: Mapping[str, Any], unit: str | None = None, scale: float = 1.0) -> str:
+    """Value, half width and unit of a parameter."""
+    shown = unit_shown(parameter["unit"]) if unit is None else unit
+    return " ".join(part for part in (*figure(parameter, scale), shown) if part)
+
+
+def unit_shown(unit: str) -> str:
+    """A unit as it stands behind a number: nothing for pure numbers."""
+    return {"1": "", "row": "", "1/turn": "/turn"}.get(unit, unit)
+
+
+def chance(probability: float | None) -> str:
+    """The chance of a false alarm."""
+    if probability is None:
+        return "unknown"
+    return "< 1e-6" if probability < 1e-6 else f"{probability:.1g}"
+
+
+# ---- parameters -------------------------------------------------------------------------------------------------
+
+
+def label(name: str) -> str:
+    """A parameter's name without its unit: ``lag_deg`` is a lag."""
+    if name.endswith("_per_K"):
+        stem = _ENDING.sub("", name.removesuffix("_per_K"))
+        return f"{stem} drift".strip()
+    if name.endswith("_rms"):
+        return "rms"
+    return _ENDING.sub("", name).replace("_", " ") or name
+
+
+def instances(parameters: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The parameters of each instance of a cause: ``order_2`` belongs to the second."""
+    found: dict[int, dict[str, Any]] = {}
+    for full, parameter in parameters.items():
+        match = _NUMBERED.match(full)
+        assert match is not None
+        found.setdefault(int(match["number"] or 1), {})[match["name"]] = parameter
+    return [found[number] for number in sorted(found)]
+
+
+def parameter_line(parameters: Mapping[str, Any]) -> str:
+    """One instance's parameters on one line."""
+    return ", ".join(f"{label(name)} {with_unit(parameter)}" for name, parameter in parameters.items())
+
+
+# ---- findings ---------------------------------------------------------------------------------------------------
+
+
+def structure_words(structure: Mapping[str, Any]) -> str:
+    """A structure without a name in words."""
+
+    def of(name: str, digits: int = 3) -> str:
+        return plain(structure.get(name), digits)
+
+    kind = structure["kind"]
+    amplitude = f"amplitude {of('amplitude_deg')} deg"
+    order = f"order {of('order', 4)}"
+    words = {
+        "order": f"{order} in the shaft angle (cycles per turn), {amplitude}",
+        "direction": f"{order} whose sign turns with the direction, {amplitude}",
+        "temperature": f"{order} that scales with temperature, {amplitude} at the one farthest from 25 C",
+        "speed": f"{order} that scales with speed, {amplitude} at the highest one",
+        "time_frequency": f"{of('frequency_Hz', 4)} Hz in time, which the shaft angle does not carry, {amplitude}",
+        "local": (
+            f"a bump at {of('centre_deg', 4)} deg of the shaft, {of('height_deg')} deg high, "
+            f"sigma {of('width_deg')} deg"
+        ),
+        "noise": f"rows {of('first_row')} to {of('last_row')} scatter by {of('rms_deg')} deg RMS beyond the noise",
+        "drift": f"a slow movement of the zero, {plain(_largest(structure))} deg at most in one mode",
+    }
+    if kind in words:
+        return words[kind]
+    return ", ".join(f"{label(name)} {plain(value)}" for name, value in structure.items() if name != "kind")
+
+
+def _largest(structure: Mapping[str, Any]) -> float:
+    return max((abs(value) for name, value in structure.items() if name.endswith("_deg")), default=0.0)
+
+
+def verdict_words(answer: Mapping[str, Any]) -> str:
+    """The verdict and what follows from it, in one or two sentences."""
+    verdict = answer["verdict"]
+    if verdict == "adequate":
+        return "The baseline is adequate: nothing else stands out of the noise."
+    gain = answer["extended"]["gain"]
+    closer = f"The extended twin is {plain(gain, 2)} times closer on readings it never saw."
+    if verdict == "unnamed":
+        return f"Structure is there that no cause of the catalogue explains. {closer}"
+    if verdict == "partly explained":
+        return f"{closer} Part of that is structure without a name."
+    return closer
+
+
+def explained_percent(before: float, after: float) -> float:
+    """How much of a mean square is gone [%]."""
+    return 100.0 * (1.0 - (after / before) ** 2) if before > 0.0 else 0.0
+
+
+def rejected_words(sweep: Mapping[str, Any], most: int = 5) -> str:
+    """How many rows were rejected, which, and why."""
+    if not sweep["rejected"]:
+        return "none rejected"
+    rows_by_reason: dict[str, list[str]] = {}
+    for row, why in sweep["rejected_rows"].items():
+        rows_by_reason.setdefault(why, []).append(row)
+    listed = [
+        f"{'row' if len(rows) == 1 else 'rows'} {', '.join(rows[:most])}{' ...' if len(rows) > most else ''}: {why}"
+        for why, rows in rows_by_reason.items()
+    ]
+    return f"{sweep['rejected']} rejected ({'; '.join(listed)})"
+
+
+def not_visible(missing: Mapping[str, Iterable[str]]) -> list[tuple[list[str], str, str]]:
+    """Causes that a sweep cannot show, grouped: (names, what is missing, what to do); the largest group first."""
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for name, needs in missing.items():
+        wanted = set(needs)
+        told = tuple(sorted(need for need in wanted if _ALSO_SAYS.get(need) not in wanted))
+        groups.setdefault(told, []).append(name)
+    ranked = sorted(groups.items(), key=lambda item: (-len(item[1]), item[1]))
+    return [
+        (
+            names,
+            "; ".join(_LACKS.get(need, (f"no {need}", ""))[0] for need in needs),
+            "; ".join(_LACKS.get(need, ("", f"provide {need}"))[1] for need in needs),
+        )
+        for needs, names in ranked
+    ]

@@ -197,8 +197,12 @@ def aligned(chain: Chain, recorded: Motion, measured: Array) -> Chain:
 def _mask_spikes(fit: Fit, step: float, also: BoolArray | None = None) -> tuple[Evidence, Fit]:
     """The fit without the rows that stand out alone; fitted anew where there are any, until the set is stable."""
     for _ in range(4):
-        mask, _sigma = footprints.spikes(fit.residual[0], fit.evidence.motion.shaft_rad, max(step, stair_step(fit.chain, step)))
+        mask, _sigma = footprints.spikes(fit.residual[0], fit.evidence.motion, max(step, stair_step(fit.chain, step)))
         usable = ~mask
+        if fit.evidence.observables == 2:
+            # Channels that fall out for a reading say nothing true about the radius.
+            radius = fit.residual[1] - np.median(fit.residual[1])
+            usable &= np.abs(radius) < 10.0 * max(footprints.robust_rms(radius), 1e-6)
         if also is not None:
             usable &= ~_rows_of(fit.evidence, also)
         if np.array_equal(usable, fit.evidence.usable):

@@ -12,6 +12,7 @@ from diagnosis.joint_fit import Fit, root_weights
 from diagnosis.noise_model import to_rows
 from twin.angles import TAU, Array
 from twin.effect import BoolArray, Effect
+from twin.motion import Motion
 
 SPIKE_SIGMA = 7.0
 LONGEST_SPIKE = 4
@@ -30,7 +31,7 @@ def local_residual(residual: Array) -> Array:
     return np.asarray(residual - np.median(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1))
 
 
-def spikes(residual: Array, motion_angle: Array, step: float) -> tuple[BoolArray, float]:
+def spikes(residual: Array, motion: Motion, step: float) -> tuple[BoolArray, float]:
     """Rows (n,) that stand far out of their neighbours, and the noise they stand out of.
 
     Readings on a grid of ``step`` [rad] jump by a whole step where noise moves them by much less.
@@ -45,14 +46,16 @@ def spikes(residual: Array, motion_angle: Array, step: float) -> tuple[BoolArray
         if last - first > LONGEST_SPIKE:
             mask[first:last] = False
     if mask.any():
-        # The same place of the turn, off the same way in other turns too: a narrow shape, no spike.
-        place = np.round(np.degrees(motion_angle % TAU) / 2.0).astype(int) % 180
-        for spot in np.unique(place[mask]):
-            here = np.isin(place, [(spot - 1) % 180, spot, (spot + 1) % 180])
-            if here.sum() > 2 * mask[here].sum():
-                continue
-            if mask[here].sum() >= 3 and abs(np.sum(np.sign(away[here & mask]))) == mask[here].sum():
-                mask[here] = False
+        # The same place of the turn in the same direction, off the same way in other turns too: a narrow shape (or
+        # what follows a reversal), no spike.
+        place = np.round(np.degrees(motion.shaft_rad % TAU) / 2.0).astype(int) % 180
+        for way in (1.0, -1.0):
+            same_way = motion.direction == way
+            for spot in np.unique(place[mask & same_way]):
+                here = same_way & np.isin(place, [(spot - 1) % 180, spot, (spot + 1) % 180])
+                off = here & mask
+                if off.sum() >= 3 and 2 * off.sum() >= here.sum() and abs(np.sum(np.sign(away[off]))) == off.sum():
+                    mask[off] = False
     return mask, sigma
 
 

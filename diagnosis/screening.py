@@ -22,6 +22,8 @@ from twin.angles import Array
 from twin.effect import Effect
 
 _CHUNK = 4_000_000
+COARSE = (0, 2, 4, 6, 8, 13)
+"""Family members that a first-order gain is taken over, beside the best one; exact fits ask them all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +183,8 @@ def _gains_of_columns(base: Base, effect: Effect, columns: Array) -> tuple[Array
     best_gain = np.full(count, -np.inf)
     best_coefficient = np.zeros((count, terms))
     top = float(base.likelihood.max())
-    for member, likelihood in enumerate(base.likelihood):
+    for member in sorted({base.member, *COARSE}):
+        likelihood = base.likelihood[member]
         white = (cosine * base.roots[member]).reshape(count * terms, -1)
         q = base.rows[member]
         r = base.residuals[member]

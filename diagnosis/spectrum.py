@@ -33,10 +33,15 @@ def line_shapes(matched: Sequence[Array], fit: Fit, effect: Effect) -> tuple[Seq
     span = float(np.ptp(clock))
     if span <= 0.0 or high <= low:
         return [], 0.0
+    whole_orders = np.arange(np.ceil(low), np.floor(high) + 1)
+    if line.clock == "shaft" and span < 1.8:
+        # Over one turn only whole orders are told apart; others are what an aperiodic residual looks like.
+        grid = whole_orders[line.within(whole_orders)]
+        return [{line.param: float(f)} for f in grid], max(float(grid.size), 1.0)
     if (high - low) * span < 64:
         # Few enough to try them all, at a quarter of the resolution.
         grid = np.linspace(low, high, int(np.ceil((high - low) * span * OVERSAMPLING)) + 2)
-        grid = np.unique(np.concatenate([grid, np.arange(np.ceil(low), np.floor(high) + 1)]))
+        grid = np.unique(np.concatenate([grid, whole_orders]))
         grid = grid[line.within(grid)]
         looks = max(float((high - low) * span), 1.0)
         return [{line.param: float(f)} for f in grid], looks

@@ -124,7 +124,7 @@ class Motion:
             found.add("moving shaft")
         if np.ptp(self.shaft_rad) > 0.95 * TAU * (1 - 1 / max(self.points_per_turn, 2)):
             found.add("one turn")
-        if self.turns > 1.8:
+        if np.ptp(self.shaft_rad) > 1.8 * TAU:
             found.add("several turns")
         if np.ptp(self.temperature_c) > 5.0:
             found.add("two temperatures")

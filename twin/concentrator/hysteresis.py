@@ -40,7 +40,7 @@ HYSTERESIS = Effect(
     stage="concentrator",
     acts_on="shaft",
     params={
-        "lag_deg": Param(unit="deg", null=0.0, lower=0.0, upper=5.0, doc="steady lag behind the direction of turning"),
+        "lag_deg": Param(unit="deg", null=0.0, lower=-5.0, upper=5.0, doc="steady lag; negative: the reference lags"),
         "memory_deg": Param(
             unit="deg",
             null=10.0,

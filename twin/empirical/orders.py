@@ -33,10 +33,6 @@ def _always(motion: Motion, values: Parameters) -> Array:
     return np.ones(len(motion))
 
 
-def _direction(motion: Motion, values: Parameters) -> Array:
-    return motion.direction
-
-
 def _temperature(motion: Motion, values: Parameters) -> Array:
     warm = motion.temperature_c - 25.0
     return np.asarray(warm / max(float(np.max(np.abs(warm))), 1e-9))
@@ -92,16 +88,32 @@ UNNAMED_ORDER = Effect(
     signature="a line at an order that no cause sets",
 )
 
+DIRECTION_ORDERS = 4
+
+
+def _direction_pattern(
+    signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None
+) -> Array:
+    pattern = np.zeros(len(motion))
+    for k in range(1, DIRECTION_ORDERS + 1):
+        for wave, turned in (("cos", np.cos(k * motion.shaft_rad)), ("sin", np.sin(k * motion.shaft_rad))):
+            pattern = pattern + radians(values[f"{wave}{k}_deg"]) * turned
+    return signal + motion.direction * pattern
+
+
 UNNAMED_DIRECTION = Effect(
     name="unnamed_direction",
     stage="empirical",
     acts_on="angle",
-    params=_order_params(64.0),
-    forward=_weighted(_direction),
-    shapes=_low_orders(range(1, 9)),
+    params={
+        f"{wave}{k}_deg": Param(unit="deg", null=0.0, lower=-90.0, upper=90.0, doc=f"{wave} of order {k}, times d")
+        for k in range(1, DIRECTION_ORDERS + 1)
+        for wave in ("cos", "sin")
+    },
+    forward=_direction_pattern,
     needs=frozenset({"both directions"}),
-    source="Fourier component times the direction",
-    signature="a low order whose sign turns with the direction",
+    source="Fourier series times the direction",
+    signature="a pattern over the turn whose sign turns with the direction",
 )
 
 UNNAMED_TEMPERATURE = Effect(

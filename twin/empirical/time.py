@@ -36,7 +36,8 @@ UNNAMED_TONE = Effect(
     },
     forward=_tone,
     line=Line(param="frequency_Hz", clock="time", limits=_tone_limits, within=_any_tone),
-    needs=frozenset({"time_s"}),
+    # On a shaft that is stopped for each reading a tone in time is one more order.
+    needs=frozenset({"time_s", "moving shaft"}),
     source="Fourier component in time",
     signature="a tone that the shaft angle does not carry",
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -28,10 +29,14 @@ class Findings:
     sweep: Sweep
     fit: BaselineFit
     identifiability: Identifiability
-    mechanical: Mechanical
     added: Added | None
     repeated: str | None
     """What repeated readings did to the intervals, in words."""
+
+    @cached_property
+    def mechanical(self) -> Mechanical:
+        """The mechanical causes that would make the same curve, for the twin's magnet."""
+        return mechanical(self.fit.point)
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -106,7 +111,7 @@ def _findings(sweep: Sweep, fit: BaselineFit) -> Findings:
     added = channels.added(fit, sweep.vx, sweep.vy) if sweep.vx is not None and sweep.vy is not None else None
     fit, repeated = between_angles(fit, sweep.reference_deg)
     words = identifiability(fit, radians(sweep.reference_deg), radians(sweep.measured_deg), has_channels=has_channels)
-    return Findings(sweep, fit, words, mechanical(fit.point), added, repeated)
+    return Findings(sweep, fit, words, added, repeated)
 
 
 def curve_deg(fit: BaselineFit, shaft_deg: Array) -> Array:

@@ -8,6 +8,7 @@ one air gap, so the figures are equivalents, not findings.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from twin.angles import Array
 from twin.magnet.magnet_misalignment import MAGNET_MISALIGNMENT, tensor
 from twin.magnet.stray_field import FIELD_MT
 
-_BISECTIONS = 60
+_NODES = 401
 
 
 @dataclass(frozen=True)
@@ -67,24 +68,26 @@ def mechanical(point: Array, *, field_mT: float = FIELD_MT) -> Mechanical:
     )
 
 
-def _share(name: str, value: float) -> float:
-    """Signed counter-rotating share of a displacement [mm] or tilt [deg]: along less across, over their sum."""
-    zero, given = np.zeros(1), np.array([value])
-    along, across = tensor(given, zero) if name == "off_axis_mm" else tensor(zero, given)
-    return float((along - across)[0] / (along + across)[0])
+@lru_cache(maxsize=2)
+def _shares(name: str) -> tuple[Array, Array]:
+    """Displacements [mm] or tilts [deg] (nodes,) and the signed counter-rotating share that each makes.
+
+    Along less across, over their sum.
+    """
+    value = np.linspace(0.0, MAGNET_MISALIGNMENT.params[name].upper, _NODES)
+    zero = np.zeros(_NODES)
+    along, across = tensor(value, zero) if name == "off_axis_mm" else tensor(zero, value)
+    return value, np.asarray((along - across) / (along + across))
 
 
 def _solve(share: float, name: str) -> tuple[float | None, float]:
     """The displacement or tilt with this share, and the sign of the share it makes."""
-    high = MAGNET_MISALIGNMENT.params[name].upper
-    sign = float(np.sign(_share(name, 0.5 * high)))
-    if abs(_share(name, high)) < share:
+    value, shares = _shares(name)
+    sign = float(np.sign(shares[-1]))
+    if abs(shares[-1]) < share:
         return None, sign
-    low = 0.0
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if abs(_share(name, middle)) < share else (low, middle)
-    return 0.5 * (low + high), sign
+    # The share grows with the square, so its root is nearly straight in the displacement.
+    return float(np.interp(np.sqrt(share), np.sqrt(np.maximum(sign * shares, 0.0)), value)), sign
 
 
 def _half_turn(towards_deg: float, sign: float) -> float:

@@ -18,7 +18,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-Seed = Annotated[int, typer.Option(help="Seed of everything random; the same seed gives the same bytes.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of everything random; the same seed gives the same bytes.")]
 
 
 @app.command()
@@ -173,7 +173,9 @@ def main() -> None:
     try:
         app()
     except UserError as error:
-        print(f"halltwin: {error}", file=sys.stderr)
+        # Names of files and cells may hold line breaks and control characters; the message stays one line.
+        line = " ".join(str(error).split())
+        print(f"halltwin: {''.join(c if c.isprintable() else '?' for c in line)}", file=sys.stderr)
         raise SystemExit(2) from None
 
 

@@ -11,9 +11,10 @@ import numpy as np
 from diagnosis.discovery import Discovery, discover
 from diagnosis.fit import fit_baseline
 from scenarios.answer import to_json
+from twin.errors import UserError
 from twin.files import read_twin, write_twin
 from twin.sweep import Sweep
-from twin.sweep_file import write_beside
+from twin.sweep_file import check_writable, write_beside
 
 
 def explain(sweep: Sweep, *, twin: Path | None = None, seed: int = 0) -> Discovery:
@@ -44,9 +45,10 @@ def run(
     extended: Path | None,
     seed: int,
 ) -> None:
-    """The command: print the answer, write what was asked for."""
+    """The command: print the answer, write what was asked for. Raises UserError before anything is written."""
     from scenarios.console import show
 
+    _check_outputs([given for given in (json_path, report, extended) if given is not None], inputs=[path, twin])
     sweep = Sweep.read(path)
     found = explain(sweep, twin=twin, seed=seed)
     answer = to_json(found)
@@ -59,3 +61,13 @@ def run(
         from scenarios.report import write_report
 
         write_report(report, found, answer)
+
+
+def _check_outputs(outputs: list[Path], *, inputs: list[Path | None]) -> None:
+    """Refuse outputs that cannot be written, or that would overwrite an input or one another."""
+    taken = {given.resolve() for given in inputs if given is not None}
+    for output in outputs:
+        check_writable(output)
+        if output.resolve() in taken and not output.is_char_device():
+            raise UserError(f"{output}: is read or written already by this command; give each output a name of its own")
+        taken.add(output.resolve())

@@ -17,6 +17,7 @@ from twin.magnet.assembly import assembly_from, assembly_table
 from twin.sweep_file import write_beside
 
 SCHEMA = "halltwin.twin/1"
+_KEYS = ("schema", "sensor_sense", "output_sense", "magnet", "effects")
 
 
 class TwinError(UserError):
@@ -42,11 +43,19 @@ def to_dict(chain: Chain) -> dict[str, Any]:
 def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[Effect, ...] = CATALOGUE) -> Chain:
     """The chain of a twin file's content. Raises TwinError."""
     if content.get("schema") != SCHEMA:
-        raise TwinError(f"{name}: schema is {content.get('schema')!r}; expected {SCHEMA!r}")
+        raise TwinError(
+            f"{name}: schema is {content.get('schema')!r}; expected {SCHEMA!r}: give a twin file, "
+            "such as --extended writes"
+        )
+    for key in content:
+        if key not in _KEYS:
+            raise TwinError(f"{name}: unknown key {key!r}; expected only {', '.join(_KEYS)}")
     senses = {key: content.get(key, 1) for key in ("sensor_sense", "output_sense")}
     for key, sense in senses.items():
         if sense not in (1, -1):
             raise TwinError(f"{name}: {key} is {sense!r}; expected 1 or -1")
+    if not isinstance(content.get("magnet", {}), Mapping):
+        raise TwinError(f"{name}: magnet is {content['magnet']!r}; expected a table [magnet]")
     try:
         magnet = assembly_from(content["magnet"]) if "magnet" in content else None
     except UserError as error:
@@ -59,10 +68,26 @@ def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[
         raise TwinError(f"{name}: effects is {declared!r}; expected tables such as [effects.offset]")
     for key, params in declared.items():
         try:
+            _check_params(find(key, effects), params)
             chain = chain.with_effect(key, **params)
-        except (KeyError, ValueError, TypeError) as error:
+        except (KeyError, ValueError) as error:
             raise TwinError(f"{name}: [effects.{key}]: {error.args[0] if error.args else error}") from None
     return chain
+
+
+def _check_params(effect: Effect, params: Any) -> None:
+    """Refuse parameters that are unknown or no numbers. Raises ValueError."""
+    if not isinstance(params, Mapping):
+        raise ValueError(f"found {params!r}; expected a table of parameters: {', '.join(effect.params)}")
+    for name, value in params.items():
+        if name not in effect.params:
+            raise ValueError(f"has no parameter '{name}'; it has {', '.join(effect.params)}")
+        several = effect.params[name].role == "per turn"
+        for item in value if several and isinstance(value, list) and value else [value]:
+            if isinstance(item, bool) or not isinstance(item, int | float):
+                raise ValueError(f"{name} is {value!r}; expected {'numbers, one a turn' if several else 'a number'}")
+            if effect.params[name].counts and not float(item).is_integer():
+                raise ValueError(f"{name} is {value!r}; expected a whole number")
 
 
 def read_twin(path: str | Path, *, effects: tuple[Effect, ...] = CATALOGUE) -> Chain:
@@ -73,7 +98,7 @@ def read_twin(path: str | Path, *, effects: tuple[Effect, ...] = CATALOGUE) -> C
     except OSError as error:
         raise TwinError(f"{name}: cannot be read ({error.strerror}); give the path of a twin TOML") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise TwinError(f"{name}: is no TOML ({error})") from None
+        raise TwinError(f"{name}: is no TOML ({error}); give the path of a twin TOML") from None
     return from_dict(content, name=name, effects=effects)
 
 

@@ -149,17 +149,22 @@ def infer_direction(shaft_rad: Array) -> Array:
 
 
 def infer_speed(shaft_rad: Array, time_s: Array, direction: Array) -> Array:
-    """Signed speed [rad/s] (n,): the median over each stretch of one direction and one time step."""
+    """Signed speed [rad/s] (n,): the median over each stretch of one direction and one time step.
+
+    Steps over which the clock stands still or runs backwards take the pace of their neighbours.
+    """
     dt = np.diff(time_s)
-    step = np.diff(shaft_rad)
-    rate = np.divide(step, dt, out=np.full_like(step, np.nan), where=dt > 0)
+    forward = np.flatnonzero(dt > 0)
+    if not forward.size:
+        return np.zeros(shaft_rad.size)
+    rate = np.interp(np.arange(dt.size), forward, np.diff(shaft_rad)[forward] / dt[forward])
     # A stretch ends where the direction turns or where the pace changes by more than a fifth, for good.
     padded = np.pad(rate, 4, mode="edge")
-    smooth = np.nanmedian(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1)
+    smooth = np.median(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1)
     jump = np.abs(np.diff(smooth)) > 0.2 * np.maximum(np.abs(smooth[1:]), np.abs(smooth[:-1]))
     cuts = [0, *(np.flatnonzero(jump) + 1).tolist(), rate.size]
     speed = np.empty(shaft_rad.size)
     for a, b in itertools.pairwise(cuts):
-        speed[a:b] = np.nanmedian(rate[a:b]) if b > a else 0.0
+        speed[a:b] = np.median(rate[a:b])
     speed[-1] = speed[-2]
-    return np.abs(np.nan_to_num(speed)) * direction
+    return np.abs(speed) * direction

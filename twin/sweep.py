@@ -30,7 +30,21 @@ COLUMNS = (
 REQUIRED = ("reference_deg", "measured_deg")
 MAY_BE_MISSING = frozenset({"temperature_c"})
 FEWEST_ROWS = 8
-_LARGEST = 1e12
+_PLAUSIBLE = {
+    "time_s": (-1e12, 1e12),
+    "reference_deg": (-1e9, 1e9),
+    "measured_deg": (-1e9, 1e9),
+    "speed_rpm": (-1e7, 1e7),
+    "turn": (-1e9, 1e9),
+    "temperature_c": (-273.15, 1e4),
+    "vx": (-1e12, 1e12),
+    "vy": (-1e12, 1e12),
+}
+_ONE_ANGLE_DEG = 0.1
+"""Angles closer than this count as one: a jig's stop, read again."""
+_FOLLOWS_DEG = 40.0
+_FOLLOWS_SHARE = 0.6
+"""A sensor follows where the typical difference is below this angle, and this share of what the shaft itself did."""
 
 
 class SweepError(UserError):
@@ -42,7 +56,6 @@ class Sweep:
     """The used rows of a recording, all columns of shape (n,), in the order in which they were taken.
 
     ``rejected`` maps the numbers of the rows left out (first reading = 1) to the reason; ``rows`` counts both.
-    ``line`` says where a row stands in the file, for messages.
     """
 
     reference_deg: Array
@@ -81,23 +94,14 @@ class Sweep:
             if needed not in columns:
                 found = ", ".join(columns) or "none"
                 raise SweepError(f"{name}: column {needed} is missing; found {found}; rename the column or add it")
-        if ("vx" in columns) != ("vy" in columns):
-            have, lack = ("vx", "vy") if "vx" in columns else ("vy", "vx")
-            raise SweepError(f"{name}: column {have} stands without {lack}; give both channels or none")
         data = {key: np.asarray(columns[key], dtype=np.float64) for key in COLUMNS if key in columns}
         for key, values in data.items():
-            with np.errstate(invalid="ignore"):
-                huge = np.flatnonzero(np.isfinite(values) & (np.abs(values) > _LARGEST))
-            if huge.size:
-                row = int(huge[0])
-                raise SweepError(
-                    f"{name}: row {row + 1}, column {key}: {values[row]:g} is no plausible value; "
-                    f"expected at most {_LARGEST:g}"
-                )
+            _check_plausible(key, values, name=name)
         # A column without a single reading was not recorded.
         data = {key: v for key, v in data.items() if key in REQUIRED or np.isfinite(v).any()}
         if ("vx" in data) != ("vy" in data):
-            data = {key: v for key, v in data.items() if key not in ("vx", "vy")}
+            have, lack = ("vx", "vy") if "vx" in data else ("vy", "vx")
+            raise SweepError(f"{name}: column {have} stands without {lack}; expected both channels or none: add {lack}")
         rejected: dict[int, str] = {}
         keep = np.ones(data["reference_deg"].size, dtype=bool)
         for key, values in data.items():
@@ -108,6 +112,9 @@ class Sweep:
             rejected.update({int(row) + 1: f"{key} missing or not finite" for row in bad})
         used = {key: np.ascontiguousarray(values[keep]) for key, values in data.items()}
         _check_usable(used, name=name, rejected=len(rejected))
+        _check_follows(used["measured_deg"], used["reference_deg"], name=name)
+        if "vx" in used:
+            _check_channels(used["vx"], used["vy"], used["measured_deg"], name=name)
         return cls(**used, rejected=dict(sorted(rejected.items())), name=name)
 
     @classmethod
@@ -153,17 +160,36 @@ class Sweep:
         )
 
 
+def _check_plausible(key: str, values: Array, *, name: str) -> None:
+    """Refuse the first cell (n,) that no bench can have meant; what is missing or infinite is not judged here."""
+    known = np.isfinite(values)
+    if key == "direction":
+        wrong = known & (np.abs(values) != 1.0)
+        expected = "+1 or -1; leave the column out where the direction was not recorded"
+    else:
+        low, high = _PLAUSIBLE[key]
+        wrong = known & ((values < low) | (values > high))
+        expected = f"{low:g} to {high:g}; leave the cell empty where there is no reading"
+        if key == "turn" and not wrong.any():
+            wrong = known & (values != np.round(values))
+            expected = "a whole number: which sweep or revolution the reading belongs to"
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise SweepError(f"{name}: row {row + 1}, column {key}: found {values[row]:g}; expected {expected}")
+
+
 def _check_usable(data: Mapping[str, Array], *, name: str, rejected: int) -> None:
+    """Enough rows at enough angles, in degrees, and a sensor that moves."""
     reference, measured = data["reference_deg"], data["measured_deg"]
     n = reference.size
     if n < FEWEST_ROWS:
-        lost = f" ({rejected} rejected for missing cells)" if rejected else ""
+        lost = f" ({rejected} rejected for missing or infinite cells)" if rejected else ""
         raise SweepError(f"{name}: {n} usable rows{lost}; expected at least {FEWEST_ROWS} readings over the circle")
-    if np.ptp(reference) == 0.0:
+    if np.max(np.abs(wrap_deg(reference - reference[0]))) < _ONE_ANGLE_DEG:
         raise SweepError(
             f"{name}: column reference_deg: every row is {reference[0]:g} deg; expected readings at different angles"
         )
-    if np.ptp(measured) == 0.0:
+    if np.max(np.abs(wrap_deg(measured - measured[0]))) == 0.0:
         raise SweepError(
             f"{name}: column measured_deg: every row is {measured[0]:g} deg while the reference moves; "
             "expected a sensor that follows; check the sensor's link"
@@ -171,14 +197,103 @@ def _check_usable(data: Mapping[str, Array], *, name: str, rejected: int) -> Non
     if np.ptp(reference) <= 6.4 and np.ptp(measured) <= 6.4:
         raise SweepError(
             f"{name}: columns reference_deg and measured_deg span {np.ptp(reference):.3g} and {np.ptp(measured):.3g}: "
-            "that looks like radians; expected degrees"
+            "that looks like radians or turns; expected degrees: convert both columns"
         )
-    if np.unique(np.round(wrap_deg(reference), 3)).size < FEWEST_ROWS:
-        count = np.unique(np.round(wrap_deg(reference), 3)).size
+    count = np.unique(np.round(wrap_deg(reference) / _ONE_ANGLE_DEG)).size
+    if count < FEWEST_ROWS:
         raise SweepError(f"{name}: column reference_deg: {count} different angles; expected at least {FEWEST_ROWS}")
-    follows = max(abs(np.mean(np.exp(1j * radians(measured - sense * reference)))) for sense in (1.0, -1.0))
-    if follows < 0.6:
-        raise SweepError(
-            f"{name}: measured_deg does not follow reference_deg (correlation on the circle {follows:.2f}, expected "
-            "above 0.6); check that both columns belong to one sweep and are in degrees"
-        )
+
+
+def _check_follows(measured: Array, reference: Array, *, name: str) -> None:
+    """Refuse columns (n,) [deg] that do not go round together, with the reason where it can be seen."""
+    to_deg = 180.0 / np.pi
+    if _follows(measured, reference):
+        if _repeats_every_radian_turn(measured, reference):
+            raise SweepError(
+                f"{name}: columns reference_deg and measured_deg: the error repeats every 6.283 over a span of "
+                f"{np.ptp(reference):.4g}: that looks like radians; expected degrees: convert both columns"
+            )
+        return
+    for wrong, (scale_measured, scale_reference) in {
+        "column reference_deg": (1.0, to_deg),
+        "column measured_deg": (to_deg, 1.0),
+        "columns reference_deg and measured_deg": (to_deg, to_deg),
+    }.items():
+        if _follows(scale_measured * measured, scale_reference * reference):
+            raise SweepError(
+                f"{name}: {wrong}: the two columns agree only if this is in radians (they span "
+                f"{np.ptp(reference):.4g} and {np.ptp(measured):.4g}); expected degrees: convert it"
+            )
+    for pole_pairs in range(2, 13):
+        if _follows(measured, pole_pairs * reference):
+            raise SweepError(
+                f"{name}: measured_deg turns {pole_pairs} times as fast as reference_deg; expected both in degrees of "
+                "the same shaft: unwrap and divide the faster one"
+            )
+    raise SweepError(
+        f"{name}: measured_deg does not follow reference_deg (typically {_distance(measured, reference):.0f} deg off, "
+        f"in the better counting sense; expected below {_FOLLOWS_DEG:g}); "
+        "check that both columns belong to one sweep and are in degrees"
+    )
+
+
+def _check_channels(vx: Array, vy: Array, measured: Array, *, name: str) -> None:
+    """Refuse channels (n,) whose angle is not what the sensor reports: a radius taken from them would say nothing."""
+    for key, values in (("vx", vx), ("vy", vy)):
+        if np.ptp(values) == 0.0:
+            raise SweepError(
+                f"{name}: column {key}: every row is {values[0]:g} while the reference moves; "
+                "expected the channel's signal: mend it, or leave vx and vy out"
+            )
+    if _follows(np.degrees(np.arctan2(vy, vx)), measured):
+        return
+    middle = [float(np.min(values) + np.max(values)) / 2.0 for values in (vx, vy)]
+    hint = "check the columns, or leave vx and vy out"
+    if _follows(np.degrees(np.arctan2(vy - middle[1], vx - middle[0])), measured):
+        hint = f"the channels stand at about {middle[0]:.4g} and {middle[1]:.4g} in mid-range: take that off both"
+    raise SweepError(
+        f"{name}: columns vx, vy: atan2(vy, vx) does not follow measured_deg; expected the two channels that the angle "
+        f"is computed from, zero at zero field; {hint}"
+    )
+
+
+def _distance(measured: Array, driver: Array) -> float:
+    """Typical (median) difference [deg] of two angles (n,) [deg] in the better counting sense, zeros taken off."""
+    return min(_spread(measured - sense * driver) for sense in (1.0, -1.0))
+
+
+def _spread(angle: Array) -> float:
+    """Median distance [deg] of angles (n,) [deg] from their mean direction."""
+    centre = np.degrees(np.angle(np.mean(np.exp(1j * radians(angle)))))
+    return float(np.median(np.abs(wrap_deg(angle - centre))))
+
+
+def _follows(measured: Array, driver: Array) -> bool:
+    """Whether one angle (n,) [deg] goes with another; over a part of a turn a constant is near to everything."""
+    return _distance(measured, driver) <= min(_FOLLOWS_DEG, _FOLLOWS_SHARE * _spread(driver))
+
+
+def _repeats_every_radian_turn(measured: Array, reference: Array) -> bool:
+    """Whether the error (n,) repeats every 2 pi rather than every 360: several turns in radians also follow.
+
+    Asked only of sweeps that hold two turns if they are in radians, and less than one in degrees.
+    """
+    if not 4.0 * np.pi <= np.ptp(reference) <= 340.0 or reference.size < 20:
+        return False
+    sense = min((1.0, -1.0), key=lambda s: _spread(measured - s * reference))
+    to_deg = 180.0 / np.pi
+    in_radians = _left_by_two_orders(to_deg * (measured - sense * reference), to_deg * reference) / to_deg
+    return 3.0 * in_radians < _left_by_two_orders(measured - sense * reference, reference)
+
+
+def _left_by_two_orders(error: Array, reference: Array) -> float:
+    """Typical (median) error [deg] that orders 0 to 2 leave of errors (n,) [deg]; single wild readings do not count."""
+    turn = radians(reference)
+    orders = np.stack([np.ones_like(turn), np.cos(turn), np.sin(turn), np.cos(2 * turn), np.sin(2 * turn)], axis=1)
+    error = wrap_deg(error - np.degrees(np.angle(np.mean(np.exp(1j * radians(error))))))
+    kept = np.ones(error.size, dtype=bool)
+    left = np.abs(error)
+    for _ in range(3):
+        left = np.abs(error - orders @ np.linalg.lstsq(orders[kept], error[kept], rcond=None)[0])
+        kept = left <= 5.0 * np.median(left)
+    return float(np.median(left))

@@ -17,6 +17,7 @@ from twin.chain import Chain
 from twin.errors import UserError
 from twin.files import write_twin
 from twin.motion import Motion
+from twin.sweep import Sweep
 
 
 def device(ratio: float = 1.01) -> Chain:
@@ -63,6 +64,24 @@ def test_diagnose_many_and_twice_the_same_bytes(
     assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
     assert len(json.loads((tmp_path / "a.json").read_text())["sweeps"]) == 24
     assert "sweep23.csv" in capsys.readouterr().out
+
+
+def test_diagnose_uses_several_air_gaps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    angle = TAU * np.arange(180) / 180
+    rng = np.random.default_rng(0)
+    for name, field in (("near", 1.0), ("far", 0.6)):
+        # A misalignment grows as the sensor comes nearer; the channels are in volts.
+        chain = device(1.0 + 0.01 * field)
+        clean = chain.channels(Motion.from_angle(angle))
+        x, y = clean * field
+        measured = np.degrees(np.arctan2(y, x)) + 0.01 * rng.standard_normal(180)
+        columns = {"reference_deg": np.degrees(angle), "measured_deg": measured, "vx": x, "vy": y}
+        Sweep.from_columns(columns).write(tmp_path / f"{name}.csv")
+    diagnose.run([str(tmp_path)], json_path=tmp_path / "a.json")
+    assert "air gaps: gain mismatch and phase change" in capsys.readouterr().out
+    laws = {law["part"]: law["best"] for law in json.loads((tmp_path / "a.json").read_text())["air_gaps"]}
+    assert laws["gain mismatch and phase"] == "grows with the field"
+    assert laws["quadratic term"] == "stays"
 
 
 def test_inputs(folder: Path, tmp_path: Path) -> None:

@@ -8,15 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.angles import Array, wrap
+from twin.angles import TAU, Array, wrap
 
 BLOCKS = 10
 FOLDS = 5
+_GRID = 720
 
 
 @dataclass(frozen=True, eq=False)
 class BeforeAfter:
-    """Errors [rad] (n,) without and with the correction; both against the zero found in calibration."""
+    """Errors [rad] (n,) without and with the correction's shape; both with the zero found in calibration."""
 
     before_rad: Array
     after_rad: Array
@@ -53,35 +54,23 @@ def cross_validated(
     """
     before, after = np.zeros(reference_rad.size), np.zeros(reference_rad.size)
     for mask in folds(reference_rad.size):
-        one = against(
-            reference_rad[mask],
-            measured_rad[mask],
-            correct(reference_rad[~mask], measured_rad[~mask]),
-            calibrated_on=(reference_rad[~mask], measured_rad[~mask]),
-        )
+        shaft = correct(reference_rad[~mask], measured_rad[~mask])
+        one = against(reference_rad[mask], measured_rad[mask], shaft)
         before[mask], after[mask] = one.before_rad, one.after_rad
     return BeforeAfter(before, after)
 
 
-def against(
-    reference_rad: Array,
-    measured_rad: Array,
-    shaft: Callable[[Array], Array],
-    *,
-    calibrated_on: tuple[Array, Array] | None = None,
-) -> BeforeAfter:
+def against(reference_rad: Array, measured_rad: Array, shaft: Callable[[Array], Array]) -> BeforeAfter:
     """Errors of a finished correction on other readings (n,).
 
-    The zero of the uncorrected error comes from the readings that calibrated, or else from these.
+    The error before is that of the same correction without its shape: its slope and its zero alone.
     """
-    reference, measured = (reference_rad, measured_rad) if calibrated_on is None else calibrated_on
-    slope = 1.0 if _follows(reference, measured, 1.0) >= _follows(reference, measured, -1.0) else -1.0
-    zero = np.angle(np.mean(np.exp(1j * (slope * measured - reference))))
+    grid = TAU * np.arange(_GRID) / _GRID
+    corrected = shaft(grid)
+    turning = [np.mean(np.exp(1j * (slope * grid - corrected))) for slope in (1.0, -1.0)]
+    slope = 1.0 if abs(turning[0]) >= abs(turning[1]) else -1.0
+    zero = np.angle(turning[0] if slope > 0 else turning[1])
     return BeforeAfter(wrap(slope * measured_rad - zero - reference_rad), wrap(shaft(measured_rad) - reference_rad))
-
-
-def _follows(reference: Array, measured: Array, sense: float) -> float:
-    return float(np.abs(np.mean(np.exp(1j * (measured - sense * reference)))))
 
 
 def _without_zeros(error: Array, turn: Array) -> Array:

@@ -69,6 +69,11 @@ def run(
 
         if not judged:
             raise UserError(f"{outputs.plot.name}: nothing to draw; give sweeps to --check the twin's correction on")
+        if check:
+            judged = [
+                (f"{name}, own zero taken out", found.per_turn(_turns(tested)), tested)
+                for name, found, tested in judged
+            ]
         plot_before_after(outputs.plot, judged)
         print(f"wrote {outputs.plot}")
 
@@ -103,10 +108,14 @@ def _judge(
 def _lines(name: str, found: BeforeAfter, tested: Sweep, *, other: bool) -> list[str]:
     """As it is and, where the reference may have found its zero anew, with each turn's own zero taken out."""
     lines = [_line(name, found)]
-    turn = np.zeros(len(tested)) if tested.turn is None else tested.turn
+    turn = _turns(tested)
     if other or np.unique(turn).size > 1:
         lines.append(_line("  each turn's own zero taken out", found.per_turn(turn)))
     return lines
+
+
+def _turns(sweep: Sweep) -> Array:
+    return np.zeros(len(sweep)) if sweep.turn is None else sweep.turn
 
 
 def _line(name: str, found: BeforeAfter) -> str:

@@ -13,7 +13,7 @@ from twin.sweep import Sweep
 
 
 def facts(found: Discovery) -> dict[str, Any]:
-    """Directions, points a turn, speeds, temperatures, the error's RMS without its zero, and what it is held against."""
+    """Directions, points a turn, speeds, temperatures, the error's RMS without its zero, what it is held against."""
     sweep, motion = found.sweep, found.sweep.motion()
     said: dict[str, Any] = {
         "held_against": "given twin" if found.given is not None else "error model",

@@ -92,6 +92,21 @@ def mean_of_draws(sweep: Sweep, points: int, draws: int = DRAWS) -> tuple[float,
     return float(results[:, 0].mean()), float(results[:, 1].mean()), wins
 
 
+def at_angles_left_out(sweep: Sweep) -> tuple[float, float]:
+    """RMS [deg] of ours and of the table at each angle in turn, calibrated on all readings at the other angles."""
+    reference, measured = radians(sweep.reference_deg), radians(sweep.measured_deg)
+    place = np.round(sweep.reference_deg % 360.0 / _SAME_ANGLE_DEG)
+    squares = np.zeros(2)
+    for value in np.unique(place):
+        out = place == value
+        ours = correction_of(calibrate(reference[~out], measured[~out], rng=np.random.default_rng(0)).chain).shaft
+        table = look_up_table(reference[~out], measured[~out])
+        for k, shaft in enumerate((ours, table)):
+            squares[k] += np.sum(against(reference[out], measured[out], shaft).after_rad ** 2)
+    rms = np.degrees(np.sqrt(squares / len(sweep)))
+    return float(rms[0]), float(rms[1])
+
+
 def _follows(reference: Array, measured: Array, sense: float) -> float:
     return float(np.abs(np.mean(np.exp(1j * (measured - sense * reference)))))
 
@@ -112,6 +127,12 @@ def main() -> None:
             ours, table, wins = mean_of_draws(sweep, points)
             cells.append(f"{ours:8.4f} / {table:6.4f} ({wins:2d}/{DRAWS})")
         print(f"{name:20}" + "".join(f"{cell:>26}" for cell in cells))
+    print(
+        "The jigs have 16 angles, so 32 and 64 readings repeat them. At each angle in turn, calibrated on the others:"
+    )
+    for name in FILES[:3]:
+        ours, table = at_angles_left_out(Sweep.read(REAL / f"{name}.csv"))
+        print(f"{name:20}{ours:8.4f} / {table:6.4f}")
 
 
 if __name__ == "__main__":

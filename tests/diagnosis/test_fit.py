@@ -15,7 +15,7 @@ from tests.diagnosis.study import DEVICES, compensated, draw, ratio_and_coverage
 from twin.angles import Array, wrap
 from twin.motion import Motion
 
-PROFILE = settings(max_examples=60, deadline=None, derandomize=True)
+PROFILE = settings(max_examples=35, deadline=None, derandomize=True)
 
 
 def difference(one: Array, other: Array) -> Array:

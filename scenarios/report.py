@@ -14,7 +14,7 @@ from scenarios.report_data import Readings, readings, two_ways
 from scenarios.report_style import CSS
 from scenarios.report_tables import number
 from scenarios.svg import Plot
-from scenarios.wording import explained_percent, plain, rejected_words, verdict_words
+from scenarios.wording import explained_percent, minus, plain, rejected_words, verdict_words
 from twin.catalogue import find
 from twin.sweep_file import write_beside
 
@@ -50,7 +50,7 @@ def page(found: Discovery, answer: Mapping[str, Any]) -> str:
 
 def _headline(answer: Mapping[str, Any]) -> str:
     names = [cause["name"].replace("_", " ") for cause in answer["causes"] if cause["name"] != "unnamed"]
-    told = f": {', '.join(names)}" if names else ""
+    told = f" ({', '.join(names)})" if names else ""
     cards = [
         ("baseline, held-out RMS", number(answer["baseline"]["heldout_rms_deg"]), "deg"),
         ("extended twin, held-out RMS", number(answer["extended"]["heldout_rms_deg"]), "deg"),
@@ -129,7 +129,8 @@ def _causes(answer: Mapping[str, Any], found: Discovery, read: Readings) -> Iter
     yield "<h2>What explains it</h2>"
     yield (
         "<p>Each cause was fitted together with the baseline and judged on readings that neither fit nor selection "
-        "had seen. The chance of a false alarm counts everything that was searched.</p>"
+        "had seen. The chance of a false alarm counts everything that was searched. In signatures, "
+        "a is the angle in the sensor's own axes, d the direction, w the speed, T the temperature, t the time.</p>"
     )
     yield report_tables.summary(answer["causes"])
     for place, (cause, named) in enumerate(zip(answer["causes"], found.causes, strict=True), 1):
@@ -147,7 +148,7 @@ def _cause(
             f"so that the gain is had all the same:</p>{report_tables.structure(answer['unexplained']['structure'])}"
         )
     else:
-        words = f"<p>Stage: {escape(effect.stage)}. Signature in the error: {escape(effect.signature)}.</p>"
+        words = f"<p>Stage: {escape(effect.stage)}. Signature in the error: {escape(minus(effect.signature))}.</p>"
     gain = (
         f"<p>RMS on held-out readings: {number(cause['heldout_rms_deg_before'])} deg without it, "
         f"{number(cause['heldout_rms_deg_after'])} deg with it.</p>"
@@ -210,7 +211,7 @@ def _invisible(answer: Mapping[str, Any]) -> str:
 
 def _plots(pictures: list[tuple[str, str, Plot]]) -> str:
     items = "".join(
-        f"<figure><figcaption><b>{escape(title)}.</b> {escape(note)}</figcaption>{plot.svg()}</figure>"
+        f"<figure><figcaption><b>{escape(title)}.</b> {escape(note)}</figcaption>{plot.legend()}{plot.svg()}</figure>"
         for title, note, plot in pictures
     )
     return f'<div class="plots">{items}</div>'

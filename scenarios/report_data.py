@@ -17,6 +17,7 @@ from twin.motion import Motion
 
 HIGHEST_ORDER = 1024
 """Spectra end here, however dense the readings."""
+_MOST_BINS = float(1 << 21)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,19 +71,28 @@ def spectrum(motion: Motion, values: Array, use: BoolArray, highest: float) -> t
     """Orders (cycles a turn) up to ``highest`` and the amplitude of the values (n,) at each.
 
     What turns with the direction would cancel in a sweep there and back, so it is transformed on its own and added in
-    power; half of the step between the directions then stands at order 0. Readings go to the nearest of many bins
-    around the travelled turns, so that one transform serves a million.
+    power; half of the step between the directions then stands at order 0. Readings are shared out
+    over many bins around the travelled turns, so that one transform serves a million.
     """
     turns = motion.shaft_rad[use] / TAU
     period = max(int(np.ceil(np.ptp(turns) - 1e-3)), 1)
-    per_turn = 1 << int(np.ceil(np.log2(8.0 * max(highest, 1.0))))
+    # Bins must be narrow against the readings' own spacing, whose multiples would fold back as lines.
+    per_turn = 1 << int(np.ceil(np.log2(max(8.0 * highest, min(64.0 * highest, _MOST_BINS / period)))))
     bins = per_turn * period
-    place = np.round((turns - turns.min()) * per_turn).astype(np.int64) % bins
+    place = (turns - turns.min()) * per_turn
+    left = np.floor(place).astype(np.int64)
+    right_share = place - left
+
+    def power_of(signal: Array) -> Array:
+        grid = np.bincount(left % bins, signal * (1.0 - right_share), bins)
+        grid += np.bincount((left + 1) % bins, signal * right_share, bins)
+        return np.asarray(np.abs(np.fft.rfft(grid)) ** 2)
+
     kept = values[use] - np.mean(values[use])
-    power = np.abs(np.fft.rfft(np.bincount(place, kept, bins))) ** 2
+    power = power_of(kept)
     both = two_ways(motion)
     if both:
-        power += np.abs(np.fft.rfft(np.bincount(place, kept * motion.direction[use], bins))) ** 2
+        power += power_of(kept * motion.direction[use])
     power[0] /= 4.0
     orders = np.arange(power.size) / period
     inside = (orders >= (0.0 if both else 0.5 / period)) & (orders <= highest)

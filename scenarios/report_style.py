@@ -13,7 +13,8 @@ CSS = """
 @media (prefers-color-scheme: dark) { :root { --page:#15181c; --ink:#e8eaed; --soft:#a2abb6; --rule:#3a4048;
   --card:#1e2227; --grid:#2a2f36; --before:#f0883e; --after:#58a6e8; --forward:#3fc89b; --backward:#d98bc5;
   --cause:#58a6e8; --first:#58a6e8; --second:#e0b93a; --third:#f0785e; --new:#f0883e; --good:#3fc89b; } }
-* { box-sizing: border-box; }
+*, *::before { box-sizing: border-box; }
+a { color: inherit; }
 html { -webkit-text-size-adjust: 100%; }
 body { margin: 0 auto; max-width: 74rem; padding: 1.5rem 1.25rem 4rem; background: var(--page); color: var(--ink);
   font: 16px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "DejaVu Sans", sans-serif; }
@@ -25,7 +26,7 @@ h3 { font-size: 1.12rem; line-height: 1.3; margin: 2rem 0 .4rem; }
 p { margin: .4rem 0 .8rem; max-width: 46rem; }
 code, .name { font-family: ui-monospace, "SF Mono", Menlo, Consolas, "DejaVu Sans Mono", monospace; font-size: .92em; }
 .soft { color: var(--soft); }
-.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(9.4rem, 1fr)); gap: .75rem;
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(9.4rem, 1fr)); gap: .75rem;
   margin: 0 0 1rem; padding: 0; }
 .figures div { background: var(--card); border-radius: .5rem; padding: .7rem .9rem; }
 .figures dt { color: var(--soft); font-size: .84rem; line-height: 1.3; }
@@ -40,8 +41,11 @@ svg text { font-size: 12.5px; fill: var(--soft); font-variant-numeric: tabular-n
 svg .label { fill: var(--ink); }
 svg path { fill: none; }
 .grid { stroke: var(--grid); } .frame { stroke: var(--soft); }
-.points, .legend, .marks { stroke-linecap: round; stroke-width: 2.6; }
-.points { stroke-opacity: .5; } .legend { stroke-width: 6; } .marks { stroke-width: 7; }
+.points, .marks { stroke-linecap: round; stroke-width: 2.6; }
+.points { stroke-opacity: .5; } .marks { stroke-width: 7; } .sample.points { stroke-width: 7; stroke-opacity: 1; }
+.legend { display: flex; flex-wrap: wrap; gap: .1rem 1rem; font-size: .82rem; color: var(--soft);
+  margin: 0 0 .35rem 1rem; }
+.legend svg { display: inline-block; width: 26px; height: 12px; margin-right: .35rem; vertical-align: -1px; }
 .line { stroke-width: 1.6; stroke-linejoin: round; }
 .c-before { stroke: var(--before); } .c-after { stroke: var(--after); } .c-cause { stroke: var(--cause); }
 .c-forward { stroke: var(--forward); } .c-backward { stroke: var(--backward); } .c-model { stroke: var(--ink); }

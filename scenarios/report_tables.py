@@ -12,6 +12,7 @@ from scenarios.wording import (
     figure,
     instances,
     label,
+    minus,
     not_visible,
     plain,
     structure_words,
@@ -26,7 +27,7 @@ def number(value: float | None, text: str | None = None) -> str:
     if value is None:
         return "unknown"
     shown = plain(value) if text is None else text
-    return f'<data value="{value!r}">{escape(shown.replace("-", "−") if shown[:1] == "-" else shown)}</data>'
+    return f'<data value="{value!r}">{escape(minus(shown))}</data>'
 
 
 def table(
@@ -74,8 +75,7 @@ def summary(causes: Sequence[Mapping[str, Any]]) -> str:
     """All causes with their gain."""
     rows = [
         [
-            str(place),
-            f'<a href="#cause-{place}"><span class="name">{escape(cause["name"])}</span></a>',
+            f'<a href="#cause-{place}">{place}. <span class="name">{escape(cause["name"])}</span></a>',
             escape(cause["stage"]),
             number(cause["heldout_rms_deg_before"]),
             number(cause["heldout_rms_deg_after"]),
@@ -83,8 +83,8 @@ def summary(causes: Sequence[Mapping[str, Any]]) -> str:
         ]
         for place, cause in enumerate(causes, 1)
     ]
-    heads = ["", "cause", "stage", "held-out RMS before / deg", "after / deg", "chance of a false alarm"]
-    return table(heads, rows, numbers=(3, 4, 5))
+    heads = ["cause", "stage", "held-out RMS before / deg", "after / deg", "chance of a false alarm"]
+    return table(heads, rows, numbers=(2, 3, 4))
 
 
 def parameters(cause: Mapping[str, Any], effect: Effect) -> str:

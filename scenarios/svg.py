@@ -15,10 +15,8 @@ import numpy as np
 
 from twin.angles import Array
 
-WIDTH, HEIGHT = 520.0, 310.0
-_LEFT, _RIGHT, _BOTTOM = 70.0, 14.0, 46.0
-_LINE, _LETTER = 18.0, 6.6
-"""Height of a legend's line and mean width of a letter at the style sheet's size."""
+WIDTH, HEIGHT = 520.0, 290.0
+_LEFT, _RIGHT, _TOP, _BOTTOM = 70.0, 16.0, 10.0, 46.0
 MOST_POINTS = 1500
 
 Kind = Literal["points", "line", "marks"]
@@ -57,13 +55,23 @@ class Plot:
     layers: Sequence[Layer]
     alt: str
 
+    def legend(self) -> str:
+        """The legend as text that wraps as the page does, each label behind a sample of its layer."""
+        samples = {"line": "M1 6h24", "points": "M13 6h0", "marks": "M13 6h0"}
+        items = "".join(
+            f'<span><svg viewBox="0 0 26 12" aria-hidden="true"><path class="sample {layer.kind} {layer.colour}" '
+            f'd="{samples[layer.kind]}"/></svg>{escape(layer.label)}</span>'
+            for layer in self.layers
+            if layer.label
+        )
+        return f'<div class="legend">{items}</div>' if items else ""
+
     def svg(self) -> str:
-        """The picture."""
-        legend, top = _legend([layer for layer in self.layers if layer.label])
-        frame = _Frame(self, top)
+        """The picture without its legend."""
+        frame = _Frame(self)
         parts = [frame.axes(), '<g class="data">']
         parts += [frame.draw(layer) for layer in self.layers]
-        parts += ["</g>", frame.beyond(), legend]
+        parts += ["</g>", frame.beyond()]
         return (
             f'<svg viewBox="0 0 {WIDTH:.0f} {HEIGHT:.0f}" role="img" aria-label="{escape(self.alt, quote=True)}">'
             f"{''.join(parts)}</svg>"
@@ -73,10 +81,10 @@ class Plot:
 class _Frame:
     """Where data lands on the picture: linear or logarithmic axes, points outside drawn at the edge."""
 
-    def __init__(self, plot: Plot, top: float) -> None:
+    def __init__(self, plot: Plot) -> None:
         self.plot = plot
         self.left, self.right = _LEFT, WIDTH - _RIGHT
-        self.top, self.bottom = top, HEIGHT - _BOTTOM
+        self.top, self.bottom = _TOP, HEIGHT - _BOTTOM
         self.x_limits = plot.x.limits or _limits([layer.x for layer in plot.layers], margin=0.0)
         self.y_limits = plot.y.limits or _limits([layer.y for layer in plot.layers], margin=0.06, log=plot.y.log)
 
@@ -185,7 +193,7 @@ def _line(x: Array, y: Array) -> str:
     return "".join(parts)
 
 
-# ---- ticks, ranges, legend --------------------------------------------------------------------------------------
+# ---- ticks and ranges -------------------------------------------------------------------------------------------
 
 
 def _limits(series: Sequence[Array], *, margin: float, log: bool = False) -> tuple[float, float]:
@@ -228,19 +236,3 @@ def round_step(rough: float) -> float:
     """The round number 1, 2 or 5 times a power of ten next to a rough step."""
     power = 10.0 ** math.floor(math.log10(rough))
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= rough * 0.999)
-
-
-def _legend(layers: Sequence[Layer]) -> tuple[str, float]:
-    """The legend above the plot, on as many lines as it needs, and where the plot begins below it."""
-    parts, x, y = [], _LEFT, 14.0
-    for layer in layers:
-        width = 30.0 + _LETTER * len(layer.label)
-        if x > _LEFT and x + width > WIDTH - _RIGHT:
-            x, y = _LEFT, y + _LINE
-        if layer.kind == "line":
-            parts.append(f'<path class="line {layer.colour}" d="M{x:.0f} {y - 4:.0f}h18"/>')
-        else:
-            parts.append(f'<path class="legend {layer.colour}" d="M{x + 9:.0f} {y - 4:.0f}h0"/>')
-        parts.append(f'<text x="{x + 24:.0f}" y="{y:.0f}">{escape(layer.label)}</text>')
-        x += width + 12.0
-    return "".join(parts), (y + 10.0 if layers else 10.0)

@@ -62,6 +62,11 @@ def _filled(value: float, digits: int) -> str:
     return f"{value:.{decimals}f}"
 
 
+def minus(text: str) -> str:
+    """Text with a minus sign where a hyphen stood for one: it does not break a line and is as wide as a plus."""
+    return re.sub(r"(?<![\w-])-(?=\w)", "−", text)
+
+
 def half_width(parameter: Mapping[str, Any]) -> float | None:
     """Half of a parameter's 95 % interval; None where it has no end."""
     low, high = parameter["low"], parameter["high"]

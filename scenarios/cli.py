@@ -8,8 +8,6 @@ from typing import Annotated
 
 import typer
 
-from twin.errors import UserError
-
 app = typer.Typer(
     name="halltwin",
     help="A digital twin of a Hall angle sensor that says what its own simulation gets wrong, and why.",
@@ -172,7 +170,12 @@ def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
     try:
         app()
-    except UserError as error:
+    except ValueError as error:
+        # twin loads numpy, which --help need not wait for.
+        from twin.errors import UserError
+
+        if not isinstance(error, UserError):
+            raise
         # Names of files and cells may hold line breaks and control characters; the message stays one line.
         line = " ".join(str(error).split())
         print(f"halltwin: {''.join(c if c.isprintable() else '?' for c in line)}", file=sys.stderr)

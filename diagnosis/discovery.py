@@ -14,7 +14,7 @@ from diagnosis.holdout import held_out_residuals, rms_deg
 from diagnosis.joint_fit import BASELINE, Fit, Free, Setting, evaluate, free_of, solve, tidy
 from diagnosis.linear import Linear
 from diagnosis.noise_model import noise_family
-from diagnosis.search import ALPHA, Cause, judge, search, settle
+from diagnosis.search import ALPHA, SWAP_MARGIN, drop, judge, likelihood, search, settle
 from twin.angles import TAU, Array, wrap
 from twin.catalogue import CATALOGUE, base_name, find
 from twin.chain import Chain
@@ -100,29 +100,27 @@ def discover(
     keys: list[str] = []
     values_found: list[Named] = []
     fit = _with_stairs(fit, sweep, candidates, bits, values_found)
-    sequence_mask, sequence_found = _sequence(fit, sweep, candidates, step, "stale_frames", np.zeros(len(sweep), dtype=bool))
+    sequence_mask, sequence_found = _sequence(
+        fit, sweep, candidates, step, "stale_frames", np.zeros(len(sweep), dtype=bool)
+    )
     fit = _masked(fit, sequence_mask)
     burst = footprints.bursts(fit)
     if burst is not None and burst.log_p < BURST_LOG_P:
         fit = _scaled(fit, burst.variance)
     baseline = fit
     looked = 0
-    for _ in range(ROUNDS):
-        found = search(fit, means, keys=keys)
-        fit, looked = found.fit, found.looked_at
-        changed = list(found.keys) != keys
-        keys = list(found.keys)
-        evidence, refined = _mask_spikes(fit, step, sequence_mask)
-        refined = _reblurred(refined, step)
-        if not changed and np.array_equal(refined.evidence.usable, fit.evidence.usable):
-            break
-        fit = solve(refined)
+    fit, keys, looked = _searched(fit, means, [], step, sequence_mask)
+    if given is None and evidence.observables == 1:
+        # Angles alone tell who counts which way by the quadratic term only, and a cause may have stood in for it.
+        other = solve(evaluate(mirrored(fit.chain), fit.free, fit.evidence, fit.setting))
+        if likelihood(other) > likelihood(fit) + SWAP_MARGIN:
+            fresh = solve(evaluate(other.chain.without(*keys), baseline.free, fit.evidence, fit.setting))
+            fit, keys, looked = _searched(fresh, means, [], step, sequence_mask)
+            baseline = fresh
     stairs = [named.keys[0] for named in values_found]
     baseline = solve(evaluate(baseline.chain.without(*stairs), baseline.free, fit.evidence, fit.setting))
     spread_found, fit = _spread(fit, candidates, looked)
-    mean_causes = [judge(fit, key, means, keys) for key in keys]
-    mean_causes.sort(key=lambda cause: -cause.gain)
-    entries, held = _prove(fit, mean_causes)
+    fit, entries, held = _prove(fit, means, keys)
     glitch_mask, glitches = _sequence(fit, sweep, candidates, step, "bus_glitch", sequence_mask)
     masked = sequence_mask | glitch_mask
     _quantisation(fit, bits, step, values_found)
@@ -153,7 +151,50 @@ def discover(
     )
 
 
+def senses_of_channels(sweep: Sweep) -> tuple[int, int] | None:
+    """Who counts which way, (s, h), where the recorded channels say it: the reading follows h atan2(vy, vx)."""
+    if sweep.vx is None or sweep.vy is None:
+        return None
+    measured, reference = np.radians(sweep.measured_deg), np.radians(sweep.reference_deg)
+    channel = np.arctan2(sweep.vy, sweep.vx)
+
+    def together(a: Array, b: Array) -> int:
+        return 1 if abs(np.mean(np.exp(1j * (a - b)))) >= abs(np.mean(np.exp(1j * (a + b)))) else -1
+
+    output = together(measured, channel)
+    return together(measured, reference) * output, output
+
+
+def mirrored(chain: Chain) -> Chain:
+    """The chain that counts the other way on both sides: the same readings but for the quadratic term."""
+    values: dict[str, dict[str, Any]] = {key: dict(params) for key, params in chain.values.items()}
+    for params in values.values():
+        for name in params:
+            if name.startswith("y_") or name in ("beta_deg", "deg_per_K", "zero_deg"):
+                params[name] = -params[name]
+    return Chain(values, -chain.sensor_sense, -chain.output_sense, chain.effects)
+
+
 # ---- steps of the discovery -------------------------------------------------------------------------------------
+
+
+def _searched(
+    fit: Fit, effects: Sequence[Effect], keys: Sequence[str], step: float, also: BoolArray
+) -> tuple[Fit, list[str], int]:
+    """Search, look again for spikes and at the blur of the stairs in what is left, and search on until nothing moves."""
+    keys = list(keys)
+    looked = 0
+    for _ in range(ROUNDS):
+        found = search(fit, effects, keys=keys)
+        fit, looked = found.fit, found.looked_at
+        changed = list(found.keys) != keys
+        keys = list(found.keys)
+        _, refined = _mask_spikes(fit, step, also)
+        refined = _reblurred(refined, step)
+        if not changed and np.array_equal(refined.evidence.usable, fit.evidence.usable):
+            break
+        fit = solve(refined)
+    return fit, keys, looked
 
 
 def _first_fit(evidence: Evidence, start: Chain, given: Chain | None) -> Fit:
@@ -166,7 +207,7 @@ def _first_fit(evidence: Evidence, start: Chain, given: Chain | None) -> Fit:
     chain = start
     if "reference_rezero" in chain.values and turns > 1:
         chain = chain.with_values({"reference_rezero": {"zeros_deg": np.full(turns, _NUDGE), "spread_deg": 0.0}})
-        free += free_of(find("reference_rezero"), "reference_rezero", chain, turns)
+        free += free_of(find("reference_rezero"), "reference_rezero", turns=turns, channels=False)
     chain = chain.with_values({"zero": {"zero_deg": 0.0, **chain.values.get("zero", {})}})
     chain = aligned(chain, evidence.motion, evidence.measured)
     fit = solve(evaluate(chain, tuple(free), evidence, setting))
@@ -229,9 +270,7 @@ def _scaled(fit: Fit, variance: Array) -> Fit:
     return solve(evaluate(fit.chain, fit.free, evidence, fit.setting))
 
 
-def _with_stairs(
-    fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | None, found: list[Named]
-) -> Fit:
+def _with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | None, found: list[Named]) -> Fit:
     """The fit with the stairs that the set of values shows: a truncated CORDIC, the output's grid."""
     step = TAU / 2.0**bits if bits is not None else 0.0
     chain = fit.chain
@@ -319,21 +358,42 @@ def _spread(fit: Fit, effects: Sequence[Effect], looked: int) -> tuple[list[Name
     return [Named((best.name,), best.log_p, best.gain)], _scaled(fit, best.variance)
 
 
-def _prove(fit: Fit, causes: Sequence[Cause]) -> tuple[list[Named], list[Array]]:
+def _prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fit, list[Named], list[Array]]:
     """Entries with their held-out figures; what gains nothing on readings it never saw is no cause."""
-    use = fit.evidence.usable
-    keys = [cause.key for cause in causes]
-    held = held_out_residuals(fit, keys)
-    entries = []
-    for place, cause in enumerate(causes):
-        before, after = rms_deg(held[place], use), rms_deg(held[place + 1], use)
-        entries.append(Named((cause.key,), cause.log_p, cause.gain, cause.rivals, before, after))
-    return entries, held
+    keys = list(keys)
+    while True:
+        causes = sorted((judge(fit, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
+        use = fit.evidence.usable
+        ordered = [cause.key for cause in causes]
+        held = held_out_residuals(fit, ordered)
+        figures = [rms_deg(residual, use) for residual in held]
+        idle = None
+        for place, key in enumerate(ordered):
+            if figures[place + 1] < figures[place]:
+                continue
+            # Not the last step: its turn may come only with what was added after it.
+            alone = held_out_residuals(fit, [*(k for k in ordered if k != key), key])
+            if rms_deg(alone[-1], use) >= rms_deg(alone[-2], use):
+                idle = key
+                break
+        if idle is None:
+            break
+        fit, _ = settle(drop(fit, idle))
+        keys.remove(idle)
+    entries = [
+        Named((cause.key,), cause.log_p, cause.gain, cause.rivals, figures[place], figures[place + 1])
+        for place, cause in enumerate(causes)
+    ]
+    return fit, entries, held
 
 
 def _quantisation(fit: Fit, bits: int | None, step: float, found: list[Named]) -> None:
     """The output's grid is a cause where its noise exceeds half of what is left otherwise."""
-    if bits is None or "output_quantisation" not in fit.chain.values or any(n.name != "output_quantisation" for n in found):
+    if (
+        bits is None
+        or "output_quantisation" not in fit.chain.values
+        or any(n.name != "output_quantisation" for n in found)
+    ):
         return
     rest = fit.setting.blur if fit.setting.blur > 0.0 else 1.0
     noise = step / np.sqrt(12.0)

@@ -135,12 +135,7 @@ def white_rows(fit: Fit) -> Array:
 
 def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
     """Which declared shapes of the variance gain over constant variance, each at its best strength."""
-    stairs = fit.linear.stair_variance
-    if stairs is not None and float(np.mean(stairs)) > 3.0 * fit.setting.blur**2:
-        # The stairs make most of the spread: how much a reading scatters depends on its place between two steps.
-        return []
-    if any(effect.line and effect.line.clock == "channels" for _, effect, _ in fit.chain.active("channels")):
-        # So does a bit's weight in the channels.
+    if stairs_rule(fit):
         return []
     white = white_rows(fit)
     use = fit.evidence.usable
@@ -165,6 +160,17 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
         full = effect.spread(angle, {name: value}) + sigma2 / (1.0 + ratio)
         found.append(SpreadFinding(effect.name, {name: float(value)}, gain, _half_chi_square(gain), full))
     return found
+
+
+def stairs_rule(fit: Fit) -> bool:
+    """Whether stairs make most of the spread: how much a reading scatters then depends on its place between two steps.
+
+    The variance is no evidence of anything else there.
+    """
+    stairs = fit.linear.stair_variance
+    if stairs is not None and float(np.mean(stairs)) > 3.0 * fit.setting.blur**2:
+        return True
+    return any(effect.line and effect.line.clock == "channels" for _, effect, _ in fit.chain.active("channels"))
 
 
 def _expected_variance(fit: Fit, square: Array) -> Array:
@@ -203,6 +209,8 @@ def _half_chi_square(gain: float) -> float:
 
 def bursts(fit: Fit) -> SpreadFinding | None:
     """The stretch of rows with the most outstanding variance, if its noise is at least half as large again."""
+    if stairs_rule(fit):
+        return None
     white = white_rows(fit)
     use = fit.evidence.usable
     square = np.where(use, np.clip(white**2, 0.0, 36.0), 0.0)
@@ -224,8 +232,12 @@ def bursts(fit: Fit) -> SpreadFinding | None:
         gain = np.where(inside / k > outside / rest, gain, 0.0)
         place = int(np.argmax(gain))
         if best is None or gain[place] > best[0]:
-            best = (float(gain[place]), int(starts[place]), int(starts[place] + length - 1),
-                    float((inside / k)[place] / (outside / rest)[place]))
+            best = (
+                float(gain[place]),
+                int(starts[place]),
+                int(starts[place] + length - 1),
+                float((inside / k)[place] / (outside / rest)[place]),
+            )
         length = int(length * 1.3) + 1
     if best is None or best[3] < 2.25:
         return None

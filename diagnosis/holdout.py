@@ -39,9 +39,7 @@ def held_out_residuals(fit: Fit, keys: Sequence[str], known: Sequence[str] = ())
     stages: list[tuple[list[str], list[Free]]] = []
     for count in range(len(keys) + 1):
         present = set(keys[:count])
-        stages.append(
-            ([k for k in keys if k not in present], [*base_free, *(f for f in fit.free if f.key in present)])
-        )
+        stages.append(([k for k in keys if k not in present], [*base_free, *(f for f in fit.free if f.key in present)]))
     residuals = [np.full(len(fit.evidence), np.nan) for _ in stages]
     for number in range(FOLDS):
         held = fold == number

@@ -229,12 +229,12 @@ def _moved(fit: Fit, step: Array) -> Chain:
     return replace(fit.chain, values=values)
 
 
-def free_of(effect: Effect, key: str, chain: Chain, turns: int) -> tuple[Free, ...]:
+def free_of(effect: Effect, key: str, *, turns: int, channels: bool) -> tuple[Free, ...]:
     """The parameters of an effect that a fit may move: strengths, phases, and shapes that are no whole numbers."""
     found: list[Free] = []
     for name, param in effect.params.items():
         if param.role in ("strength", "phase") or (
-            param.role in ("level", "shape") and not param.counts and name in searched(effect)
+            param.role in ("level", "shape") and not param.counts and name in searched(effect, channels)
         ):
             found.append(Free(key, name))
         elif param.role == "per turn":
@@ -242,10 +242,10 @@ def free_of(effect: Effect, key: str, chain: Chain, turns: int) -> tuple[Free, .
     return tuple(found)
 
 
-def searched(effect: Effect) -> frozenset[str]:
-    """Names of the shape and level parameters that move smoothly and that a search has set."""
+def searched(effect: Effect, channels: bool) -> frozenset[str]:
+    """Names of the shape and level parameters that a fit may move, with or without recorded channels."""
     names = {effect.line.param} if effect.line else set()
-    return frozenset(names | set(effect.fitted_shapes))
+    return frozenset(names | set(effect.fitted_shapes) | (set(effect.channel_shapes) if channels else set()))
 
 
 def tidy(chain: Chain) -> Chain:

@@ -70,7 +70,9 @@ class Linear:
         bounds = {name: _last_place(self.chain, name) for name in SIGNALS}
         points: list[tuple[float, Insertion]] = []
         for step in reversed(steps):
-            place = bounds[step.key.removeprefix("after ")] + 0.5 if step.effect is None else self._order[step.effect.name]
+            place = (
+                bounds[step.key.removeprefix("after ")] + 0.5 if step.effect is None else self._order[step.effect.name]
+            )
             if step.effect is None and step.key == "after channels":
                 points.append((place, Insertion(step.after, sense)))
                 x, y = step.before

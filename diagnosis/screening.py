@@ -105,9 +105,7 @@ def screen(base: Base, effects: Iterable[Effect], *, shapes_of: Mapping[str, Any
     return sorted(found, key=lambda c: c.log_p)
 
 
-def screen_one(
-    base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, float]] | None = None
-) -> Candidate | None:
+def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, float]] | None = None) -> Candidate | None:
     """The effect at the shape that gains most, zoomed in on where its shape is continuous. None: no gain."""
     fit = base.fit
     motion = fit.linear.motion
@@ -144,7 +142,9 @@ def matched(base: Base) -> list[Array]:
 
 
 def _smooth(effect: Effect, shape: Mapping[str, float]) -> list[str]:
-    return [name for name in shape if not effect.params[name].counts and (name in effect.zoomed or _is_line(effect, name))]
+    return [
+        name for name in shape if not effect.params[name].counts and (name in effect.zoomed or _is_line(effect, name))
+    ]
 
 
 def _is_line(effect: Effect, name: str) -> bool:

@@ -119,9 +119,10 @@ def add(fit: Fit, candidate: Candidate) -> tuple[Fit, str]:
     name = candidate.effect.name
     taken = sum(1 for key in fit.chain.values if base_name(key) == name)
     key = name if taken == 0 else f"{name}#{taken + 1}"
-    chain = fit.chain.with_values({key: dict(candidate.values)})
+    chain = fit.chain.with_values({key: dict(candidate.effect.begin(candidate.values))})
     turns = int(fit.evidence.motion.turn.max(initial=0)) + 1
-    return refit(chain, (*fit.free, *free_of(candidate.effect, key, chain, turns)), fit), key
+    free = free_of(candidate.effect, key, turns=turns, channels=fit.evidence.observables == 2)
+    return refit(chain, (*fit.free, *free), fit), key
 
 
 def drop(fit: Fit, key: str) -> Fit:

@@ -11,7 +11,7 @@ from twin.angles import TAU, Array
 from twin.effect import Effect
 
 OVERSAMPLING = 4
-PEAKS = 10
+PEAKS = 8
 _LARGEST_GRID = 1 << 21
 
 
@@ -27,8 +27,10 @@ def line_shapes(matched: Sequence[Array], fit: Fit, effect: Effect) -> tuple[Seq
     low, high = line.limits(motion)
     if line.clock == "channels":
         return _weights_of_a_bit(matched[0], fit, effect, low, high)
-    clock = motion.shaft_rad / TAU if line.clock == "shaft" else motion.time_s - 0.5 * (
-        motion.time_s[0] + motion.time_s[-1]
+    clock = (
+        motion.shaft_rad / TAU
+        if line.clock == "shaft"
+        else motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
     )
     span = float(np.ptp(clock))
     if span <= 0.0 or high <= low:
@@ -48,9 +50,7 @@ def line_shapes(matched: Sequence[Array], fit: Fit, effect: Effect) -> tuple[Seq
     middle = 0.5 * (low + high)
     quadrature = fit.linear.columns(effect, [{line.param: middle}])[0][:, 0]
     turning = np.exp(-1j * TAU * middle * clock)
-    amplitudes = [
-        (quadrature[k] - 1j * quadrature[k + 1]) * turning for k in range(0, len(quadrature) - 1, 2)
-    ]
+    amplitudes = [(quadrature[k] - 1j * quadrature[k + 1]) * turning for k in range(0, len(quadrature) - 1, 2)]
     bins = 1 << int(np.ceil(np.log2(max(OVERSAMPLING * 2.0 * high * span, 64.0))))
     bins = min(bins, _LARGEST_GRID)
     period = OVERSAMPLING * span
@@ -70,23 +70,26 @@ def line_shapes(matched: Sequence[Array], fit: Fit, effect: Effect) -> tuple[Seq
                 grid_sum += 1j * np.bincount(index % bins, (signal * part).imag, bins)
             power += np.abs(np.fft.fft(grid_sum)[: bins // 2]) ** 2
         # Linear interpolation between bins damps high frequencies by sinc^2: undone.
-        powers.append(power / np.sinc(np.arange(bins // 2) / bins) ** 4 / _level(power, OVERSAMPLING))
-    # A line stands out of the noise about it, whatever the noise's colour.
-    power = np.max(powers, axis=0)
+        power = power / np.sinc(np.arange(bins // 2) / bins) ** 4
+        # A line stands out of the noise about it, whatever the noise's colour; a strong one over gappy clocks has
+        # side lobes that raise the level about it, and stands out of everything.
+        powers += [power, power / _level(power, OVERSAMPLING)]
     whole_only = not bool(line.within(np.array([low + 0.37 / span]))[0]) and not bool(
         line.within(np.array([np.floor(middle) + 0.5]))[0]
     )
     if whole_only:
         whole = np.arange(np.ceil(low), np.floor(high) + 1)
         whole = whole[line.within(whole)]
-        rank = np.interp(whole, frequency, power)
-        order = np.argsort(rank)[::-1][: 2 * PEAKS]
-        return [{line.param: float(f)} for f in np.sort(whole[order])], float(whole.size)
-    power = np.where(inside, power, 0.0)
-    peak = np.flatnonzero((power[1:-1] >= power[:-2]) & (power[1:-1] > power[2:])) + 1
-    peak = peak[line.within(frequency[peak])]
-    order = np.argsort(power[peak])[::-1][:PEAKS]
-    chosen = frequency[peak[order]]
+        ranked = [np.argsort(np.interp(whole, frequency, power))[::-1][:PEAKS] for power in powers]
+        order = np.unique(np.concatenate(ranked))
+        return [{line.param: float(f)} for f in whole[order]], float(whole.size)
+    picked = []
+    for power in powers:
+        power = np.where(inside, power, 0.0)
+        peak = np.flatnonzero((power[1:-1] >= power[:-2]) & (power[1:-1] > power[2:])) + 1
+        peak = peak[line.within(frequency[peak])]
+        picked.append(frequency[peak[np.argsort(power[peak])[::-1][:PEAKS]]])
+    chosen = np.unique(np.concatenate(picked))
     # A line at a whole order that belongs to the effect is tried as such.
     whole = np.round(chosen)
     whole = whole[(np.abs(whole - chosen) < 0.5 / span) & line.within(whole)]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.discovery import Discovery, discover
+from diagnosis.discovery import Discovery, discover, senses_of_channels
 from diagnosis.fit import fit_baseline
 from scenarios.answer import to_json
 from twin.errors import UserError
@@ -26,6 +26,7 @@ def explain(sweep: Sweep, *, twin: Path | None = None, seed: int = 0) -> Discove
         np.radians(sweep.reference_deg),
         np.radians(sweep.measured_deg),
         rng=np.random.default_rng(seed),
+        senses=senses_of_channels(sweep),
         robust=True,
     )
     return discover(sweep, start=fit.chain())

@@ -90,6 +90,10 @@ def _one_shape(motion: Motion) -> Sequence[Mapping[str, float]]:
     return ({},)
 
 
+def _as_they_are(values: Parameters) -> Parameters:
+    return values
+
+
 def _nothing_derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
     return {}
 
@@ -101,7 +105,9 @@ class Effect:
     ``needs``     names of :attr:`Motion.provides` without which it is invisible; ``"a|b"`` means a or b.
     ``shapes``    the values of the shape parameters worth trying on a motion (a grid fine enough to climb from).
     ``zoomed``    the shape and level parameters that are searched more finely around the grid's best point.
-    ``fitted_shapes`` those that a fit may move smoothly from there.
+    ``fitted_shapes`` those that a fit may move smoothly from there; ``channel_shapes`` those that it may move where the
+    channels are recorded, because an angle alone does not show them.
+    ``begin``     parameters of a first-order fit -> those that an exact fit sets out from.
     ``line``      for sinusoids: the shape parameter that is found by a spectrum.
     ``derived``   parameters -> further figures to report, with their units.
     ``spread``    for the footprint "spread": angle (n,), parameters -> added variance of the angle [rad^2].
@@ -123,6 +129,8 @@ class Effect:
     shapes: Callable[[Motion], Sequence[Mapping[str, float]]] = field(default=_one_shape)
     zoomed: tuple[str, ...] = ()
     fitted_shapes: tuple[str, ...] = ()
+    channel_shapes: tuple[str, ...] = ()
+    begin: Callable[[Parameters], Parameters] = field(default=_as_they_are)
     line: Line | None = None
     derived: Callable[[Parameters], Mapping[str, tuple[float, str]]] = field(default=_nothing_derived)
     spread: Callable[[Array, Parameters], Array] | None = None

@@ -23,6 +23,11 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return channels_of(signal[..., :1, :] * gain_x, signal[..., 1:, :] * gain_y)
 
 
+def begin(values: Parameters) -> Parameters:
+    """The delay spelt out, so that a fit can move it."""
+    return {**values, "delay_us": values["delay_us"] or 1e6 / (6.0 * values["frequency_Hz"])}
+
+
 def limits(motion: Motion) -> tuple[float, float]:
     duration = float(np.ptp(motion.time_s)) or 1.0
     step = np.diff(motion.time_s)
@@ -43,11 +48,19 @@ REFERENCE_RIPPLE = Effect(
         "frequency_Hz": Param(unit="Hz", null=100.0, lower=1e-3, upper=1e7, doc="frequency", role="shape"),
         "amplitude_percent": Param(unit="%", null=0.0, lower=0.0, upper=50.0, doc="of the reference", typical=0.3),
         "delay_us": Param(
-            unit="us", null=0.0, lower=0.0, upper=1e6, doc="from x to y; 0: a sixth of a period", role="shape"
+            unit="us",
+            null=0.0,
+            lower=0.0,
+            upper=1e6,
+            doc="from x to y; 0: a sixth of a period",
+            role="shape",
+            typical=1e3,
         ),
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
     },
     forward=forward,
+    channel_shapes=("delay_us",),
+    begin=begin,
     needs=frozenset({"time_s", "moving shaft"}),
     line=Line(param="frequency_Hz", clock="time", limits=limits, within=within),
     source="ratio of the signal to the converter's reference; paper, Eq. 3, for a periodic fluctuation",

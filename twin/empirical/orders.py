@@ -91,9 +91,7 @@ UNNAMED_ORDER = Effect(
 DIRECTION_ORDERS = 4
 
 
-def _direction_pattern(
-    signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None
-) -> Array:
+def _direction_pattern(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     pattern = np.zeros(len(motion))
     for k in range(1, DIRECTION_ORDERS + 1):
         for wave, turned in (("cos", np.cos(k * motion.shaft_rad)), ("sin", np.sin(k * motion.shaft_rad))):

@@ -87,7 +87,7 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
     rejected = f" Rows: {escape(rejected_words(sweep))}." if sweep["rejected"] else " No row was rejected."
     words = f"<p>Columns: {columns}.{rejected} The noise is best described as {escape(answer['noise'])}.</p>"
     plots = _plots([("The shaft at each reading", "", report_pictures.protocol(read))])
-    return f"<h2>What was measured</h2>{_cards(cards)}{words}{plots}"
+    return f'<h2>What was measured</h2><div class="beside"><div>{_cards(cards)}{words}</div>{plots}</div>'
 
 
 def _baseline(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings, found: Discovery) -> str:
@@ -162,8 +162,8 @@ def _cause(
         )
     ]
     return (
-        f"<section>{head}{words}{gain}{_rivals(cause)}{listed}"
-        f"{report_tables.parameters(cause, effect)}{_plots(pictures)}</section>"
+        f'<section>{head}<div class="beside"><div>{words}{gain}{_rivals(cause)}{listed}'
+        f"{report_tables.parameters(cause, effect)}</div>{_plots(pictures)}</div></section>"
     )
 
 

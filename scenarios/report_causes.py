@@ -11,6 +11,7 @@ from diagnosis.discovery import Discovery, Named
 from scenarios.report_data import Readings, binned, share_deg, unexplained_by
 from scenarios.report_pictures import ANGLE, angle_bins, ways
 from scenarios.svg import Axis, Layer, Plot
+from scenarios.wording import minus
 from twin.angles import TAU, Array
 from twin.catalogue import find
 from twin.effect import BoolArray, Effect
@@ -83,19 +84,22 @@ def _views(read: Readings) -> Iterator[tuple[str, list[Group]]]:
     if len(by_direction) == 2:
         yield ", by direction", by_direction
     if "two temperatures" in motion.provides:
-        yield ", by temperature", list(_thirds(motion.temperature_c, "°C"))
+        yield ", by temperature", list(_levels(motion.temperature_c, "°C"))
     if "two speeds" in motion.provides:
-        yield ", by speed", list(_thirds(motion.speed_rad_s * 60.0 / TAU, "rpm"))
+        yield ", by speed", list(_levels(motion.speed_rad_s * 60.0 / TAU, "rpm"))
 
 
-def _thirds(values: Array, unit: str) -> Iterator[Group]:
-    """Up to three groups of a condition, between the middles of its range."""
-    low, high = float(values.min()), float(values.max())
-    place = np.clip(((values - low) / (high - low) * 3.0).astype(int), 0, 2)
-    for k, colour in enumerate(("c-first", "c-second", "c-third")):
+def _levels(values: Array, unit: str) -> Iterator[Group]:
+    """Groups of a condition (n,): its values where they are few, else quarters of its range."""
+    colours = ("c-first", "c-second", "c-third", "c-fourth")
+    levels, place = np.unique(np.round(values), return_inverse=True)
+    if levels.size > len(colours):
+        low, high = float(values.min()), float(values.max())
+        place = np.clip(((values - low) / (high - low) * len(colours)).astype(int), 0, len(colours) - 1)
+    for k, colour in enumerate(colours):
         mask = place == k
         if mask.any():
-            yield f"{np.mean(values[mask]):.0f} {unit}", colour, mask
+            yield minus(f"{np.mean(values[mask]):.0f} {unit}"), colour, mask
 
 
 def _over_angle(read: Readings, share: Array, groups: list[Group]) -> Plot:
@@ -104,7 +108,7 @@ def _over_angle(read: Readings, share: Array, groups: list[Group]) -> Plot:
         for name, colour, m in groups
     ]
     for name, colour, m in groups:
-        middles, means = binned(read.angle_deg[m], share[m], angle_bins(read))
+        middles, means = binned(read.angle_deg[m], share[m], angle_bins(int(np.count_nonzero(m)), each=3))
         kept = np.isfinite(means)
         layers.append(Layer("line", middles[kept], means[kept], f"the effect{_behind(name)}", f"{colour} deep"))
     return Plot(ANGLE, Axis(_SHARE), layers, "the effect's share of the error over the shaft angle")
@@ -142,7 +146,7 @@ def _spread(found: Discovery, read: Readings, effect: Effect, values: Any) -> tu
     sigma = np.degrees(np.sqrt(effect.spread(fit.linear.sensor_angle, values)))
     added = sigma if len(sigma) == len(read.after_deg) else sigma[fit.evidence.group]
     rest = np.sqrt(max(float(np.mean(read.after_deg[read.plain] ** 2) - np.mean(added**2)), 0.0))
-    middles, means = binned(read.angle_deg, np.hypot(added, rest), angle_bins(read))
+    middles, means = binned(read.angle_deg, np.hypot(added, rest), angle_bins(len(added), each=3))
     kept = np.isfinite(means)
     layers = [
         Layer("points", read.angle_deg, read.after_deg, "residual", "c-cause"),

@@ -16,9 +16,9 @@ _ERROR = "error / deg"
 _RESIDUAL = "residual / deg"
 
 
-def angle_bins(read: Readings) -> int:
-    """As many bins around the turn as hold a few readings each."""
-    return int(np.clip(read.angle_deg.size / 6, 12, 180))
+def angle_bins(count: int, *, each: int) -> int:
+    """As many bins around the turn as hold so many of the readings each."""
+    return int(np.clip(count / each, 12, 180))
 
 
 def ways(read: Readings) -> Iterator[tuple[str, str, BoolArray]]:
@@ -43,7 +43,7 @@ def error(read: Readings) -> Plot:
         Layer("points", read.angle_deg[mask], read.error_deg[mask], f"measured, {way}", colour)
         for way, colour, mask in ways(read)
     ]
-    middles, means = binned(read.angle_deg, read.predicted_deg, angle_bins(read))
+    middles, means = binned(read.angle_deg, read.predicted_deg, angle_bins(len(read.angle_deg), each=2))
     layers.append(Layer("line", *_without_gaps(middles, means), "baseline", "c-model"))
     return Plot(ANGLE, Axis(_ERROR), layers, "error of the angle over the shaft angle, and the baseline's prediction")
 
@@ -52,11 +52,11 @@ def residual(read: Readings, values: Array, *, limits: tuple[float, float] | Non
     """A residual over the angle by direction, with its mean."""
     layers = []
     for way, colour, mask in ways(read):
-        layers.append(Layer("points", read.angle_deg[mask], values[mask], "" if mask.all() else way, colour))
+        layers.append(Layer("points", read.angle_deg[mask], values[mask], "readings" if mask.all() else way, colour))
     for way, colour, mask in ways(read):
         use = mask & read.plain
         if use.any():
-            middles, means = binned(read.angle_deg[use], values[use], max(angle_bins(read) // 2, 12))
+            middles, means = binned(read.angle_deg[use], values[use], angle_bins(int(np.count_nonzero(use)), each=5))
             name = "mean" if mask.all() else f"mean, {way}"
             layers.append(Layer("line", *_without_gaps(middles, means), name, f"{colour} deep"))
     return Plot(ANGLE, Axis(_RESIDUAL, limits), layers, "residual over the shaft angle, by direction")
@@ -81,13 +81,20 @@ def over_clock(read: Readings) -> Plot:
 
 
 def over_condition(read: Readings, values: Array, label: str) -> Plot:
-    """The residual before and after over a condition of the bench (n,), with its mean and spread."""
+    """The residual before and after over a condition of the bench (n,).
+
+    Where the bench stopped at a few values only, the points are drawn beside each other, before to the left.
+    """
     low, high = float(values.min()), float(values.max())
-    margin = 0.04 * (high - low)
+    margin = 0.06 * (high - low)
     limits = (low - margin, high + margin)
+    left = right = np.zeros(values.size)
+    if np.unique(np.round(values, 1)).size <= 12:
+        spread = np.mod(np.arange(values.size) * 0.618034, 1.0)
+        left, right = -0.5 * margin * spread, 0.5 * margin * spread
     layers = [
-        Layer("points", values, read.before_deg, "baseline", "c-before"),
-        Layer("points", values, read.after_deg, "extended twin", "c-after"),
+        Layer("points", values + left, read.before_deg, "baseline", "c-before"),
+        Layer("points", values + right, read.after_deg, "extended twin", "c-after"),
     ]
     return Plot(Axis(label, limits), Axis(_RESIDUAL), layers, f"residual before and after over {label}")
 
@@ -109,14 +116,21 @@ def spectra(read: Readings, orders: list[float]) -> Plot:
     _, after = spectrum(read.motion, read.after_deg, read.plain, highest)
     level = noise_level(at, after, both=two_ways(read.motion))
     layers = [
-        Layer("line", at, before, "baseline", "c-before"),
-        Layer("line", at, after, "extended twin", "c-after"),
+        Layer("line", *_peaks(at, before), "baseline", "c-before"),
+        Layer("line", *_peaks(at, after), "extended twin", "c-after"),
         Layer("line", at, level, "noise passes this at 1 order in 20", "c-model dashed"),
     ]
     floor = 0.1 * float(np.median(level))
     y = Axis("amplitude / deg", (max(floor, 1e-9), 1.6 * float(max(before.max(), after.max(), level.max()))), log=True)
     x = Axis("order / cycles per turn", (0.0, highest))
     return Plot(x, y, layers, "spectrum of the residual over the order before and after")
+
+
+def _peaks(orders: Array, amplitudes: Array, most: int = 300) -> tuple[Array, Array]:
+    """A spectrum of few enough points to be drawn as a line: of more orders, the largest of each few neighbours."""
+    few = -(-orders.size // most)
+    starts = np.arange(0, orders.size, few)
+    return orders[starts], np.maximum.reduceat(amplitudes, starts)
 
 
 def _without_gaps(x: Array, y: Array) -> tuple[Array, Array]:

@@ -9,10 +9,12 @@ from __future__ import annotations
 CSS = """
 :root { --page:#fff; --ink:#1a1d21; --soft:#5b636e; --rule:#d9dde2; --card:#f5f6f8; --grid:#e8ebee;
   --before:#d55e00; --after:#0072b2; --forward:#00855f; --backward:#b0509a; --cause:#0072b2;
-  --first:#0072b2; --second:#b58900; --third:#c8402a; --new:#d55e00; --good:#00734f; color-scheme: light dark; }
+  --first:#0072b2; --second:#b58900; --third:#c8402a; --fourth:#6a3d9a;
+  --new:#d55e00; --good:#00734f; color-scheme: light dark; }
 @media (prefers-color-scheme: dark) { :root { --page:#15181c; --ink:#e8eaed; --soft:#a2abb6; --rule:#3a4048;
   --card:#1e2227; --grid:#2a2f36; --before:#f0883e; --after:#58a6e8; --forward:#3fc89b; --backward:#d98bc5;
-  --cause:#58a6e8; --first:#58a6e8; --second:#e0b93a; --third:#f0785e; --new:#f0883e; --good:#3fc89b; } }
+  --cause:#58a6e8; --first:#58a6e8; --second:#e0b93a; --third:#f0785e; --fourth:#b59be0;
+  --new:#f0883e; --good:#3fc89b; } }
 *, *::before { box-sizing: border-box; }
 a { color: inherit; }
 html { -webkit-text-size-adjust: 100%; }
@@ -33,6 +35,8 @@ code, .name { font-family: ui-monospace, "SF Mono", Menlo, Consolas, "DejaVu San
 .figures dd { margin: .15rem 0 0; font-size: 1.35rem; font-weight: 600; font-variant-numeric: tabular-nums; }
 .figures dd small { font-size: .6em; font-weight: 400; color: var(--soft); }
 .plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 27rem), 1fr)); gap: 1.25rem 1.75rem; }
+@media (min-width: 64rem) { .beside { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.75rem; }
+  .beside .plots { grid-template-columns: 1fr; } }
 figure { margin: .25rem 0; break-inside: avoid; min-width: 0; }
 figcaption { font-size: .88rem; line-height: 1.4; color: var(--soft); margin-bottom: .3rem; }
 figcaption b { color: var(--ink); font-weight: 600; }
@@ -42,7 +46,8 @@ svg .label { fill: var(--ink); }
 svg path { fill: none; }
 .grid { stroke: var(--grid); } .frame { stroke: var(--soft); }
 .points, .marks { stroke-linecap: round; stroke-width: 2.6; }
-.points { stroke-opacity: .5; } .marks { stroke-width: 7; } .sample.points { stroke-width: 7; stroke-opacity: 1; }
+.points { stroke-opacity: .5; } .few { stroke-width: 4; stroke-opacity: .75; }
+.marks { stroke-width: 7; } .sample.points { stroke-width: 7; stroke-opacity: 1; }
 .legend { display: flex; flex-wrap: wrap; gap: .1rem 1rem; font-size: .82rem; color: var(--soft);
   margin: 0 0 .35rem 1rem; }
 .legend svg { display: inline-block; width: 26px; height: 12px; margin-right: .35rem; vertical-align: -1px; }
@@ -50,12 +55,14 @@ svg path { fill: none; }
 .c-before { stroke: var(--before); } .c-after { stroke: var(--after); } .c-cause { stroke: var(--cause); }
 .c-forward { stroke: var(--forward); } .c-backward { stroke: var(--backward); } .c-model { stroke: var(--ink); }
 .c-first { stroke: var(--first); } .c-second { stroke: var(--second); } .c-third { stroke: var(--third); }
+.c-fourth { stroke: var(--fourth); }
 .line.deep { stroke-width: 2.4; stroke: color-mix(in srgb, var(--ink) 55%, var(--cause)); }
 .line.c-forward.deep { stroke: color-mix(in srgb, var(--ink) 45%, var(--forward)); }
 .line.c-backward.deep { stroke: color-mix(in srgb, var(--ink) 45%, var(--backward)); stroke-dasharray: 7 3; }
 .line.c-first.deep { stroke: color-mix(in srgb, var(--ink) 45%, var(--first)); }
 .line.c-second.deep { stroke: color-mix(in srgb, var(--ink) 45%, var(--second)); stroke-dasharray: 7 3; }
 .line.c-third.deep { stroke: color-mix(in srgb, var(--ink) 45%, var(--third)); stroke-dasharray: 2 3; }
+.line.c-fourth.deep { stroke: color-mix(in srgb, var(--ink) 45%, var(--fourth)); stroke-dasharray: 9 2 2 2; }
 .dashed { stroke-dasharray: 5 4; } svg .beyond { stroke: none; fill: var(--soft); }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; margin: .5rem 0 1rem; font-size: .94rem; }
@@ -92,11 +99,12 @@ ol.chain { list-style: none; display: grid; gap: .55rem 1.1rem; padding: 0; marg
 @media print {
   :root { --page:#fff; --ink:#000; --soft:#444; --rule:#bbb; --card:#fff; --grid:#e4e4e4; --before:#d55e00;
     --after:#0072b2; --forward:#00855f; --backward:#b0509a; --cause:#0072b2; --first:#0072b2; --second:#b58900;
-    --third:#c8402a; --new:#b84f00; }
+    --third:#c8402a; --fourth:#6a3d9a; --new:#b84f00; }
   @page { margin: 16mm 14mm; }
   body { max-width: none; padding: 0; font-size: 10.5pt; }
   h2, h3 { break-after: avoid; } table, .told, .figures, .cause-head { break-inside: avoid; }
   .figures div, .told { border: 1px solid var(--rule); } .plots { grid-template-columns: 1fr 1fr; gap: 4mm 6mm; }
+  .beside { display: grid; grid-template-columns: 1fr 1fr; gap: 0 6mm; } .beside .plots { grid-template-columns: 1fr; }
   .chain .new { print-color-adjust: exact; -webkit-print-color-adjust: exact; } .scroll { overflow: visible; }
 }
 """

@@ -97,11 +97,15 @@ def parameters(cause: Mapping[str, Any], effect: Effect) -> str:
             prefix = f"{place}: " if len(several) > 1 else ""
             unit = unit_shown(parameter["unit"])
             value = number(parameter["value"], figure(parameter)[0])
+            # The instances of unnamed structure are of different kinds, and described in words beside the table.
             meaning = "" if declared is None or cause["name"] == "unnamed" else declared.doc
             rows.append([escape(prefix + label(name)), value, _interval(parameter), escape(unit), escape(meaning)])
     if not rows:
         return ""
-    return table(["parameter", "value", "95 % interval", "unit", "meaning"], rows, numbers=(1, 2))
+    heads = ["parameter", "value", "95 % interval", "unit", "meaning"]
+    if not any(row[-1] for row in rows):
+        heads, rows = heads[:-1], [row[:-1] for row in rows]
+    return table(heads, rows, numbers=(1, 2))
 
 
 def structure(structures: Sequence[Mapping[str, Any]]) -> str:

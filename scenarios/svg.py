@@ -18,6 +18,7 @@ from twin.angles import Array
 WIDTH, HEIGHT = 520.0, 290.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70.0, 16.0, 10.0, 46.0
 MOST_POINTS = 1500
+_FEW = 400
 
 Kind = Literal["points", "line", "marks"]
 
@@ -129,7 +130,9 @@ class _Frame:
             return f'<path class="line {layer.colour}" d="{path}"/>'
         inside = self._inside(x, y)
         path = "".join(f"M{a:g} {b:g}h0" for a, b in thinned(x[inside], y[inside]))
-        return f'<path class="{layer.kind} {layer.colour}" d="{path}"/>'
+        # Few points are drawn larger: nothing hides behind them.
+        kind = "points few" if layer.kind == "points" and np.count_nonzero(inside) < _FEW else layer.kind
+        return f'<path class="{kind} {layer.colour}" d="{path}"/>'
 
     def _inside(self, x: Array, y: Array) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
         return np.asarray(
@@ -161,17 +164,23 @@ class _Frame:
 
 def thinned(x: Array, y: Array) -> list[tuple[float, float]]:
     """Points (picture units) rounded to half a unit, each once; of too many, every k-th and every column's extremes."""
-    if not x.size:
-        return []
-    places = np.unique(np.round(np.column_stack([x, y]) * 2.0), axis=0) / 2.0
+    places = _once(x, y, 0.5)
     if len(places) > MOST_POINTS:
-        column = np.round(places[:, 0])
-        edges = np.flatnonzero(np.diff(column)) + 1
-        extremes = np.concatenate([[0], edges, edges - 1, [len(places) - 1]])
-        # The rows are sorted by x, then y, so a column begins and ends with its extremes.
+        places = _once(places[:, 0], places[:, 1], 1.0)
+        # They are sorted by column, then by height: a column begins and ends with its extremes.
+        edges = np.flatnonzero(np.diff(places[:, 0]))
         some = np.linspace(0, len(places) - 1, MOST_POINTS).astype(int)
-        places = places[np.unique(np.concatenate([extremes, some]))]
+        places = places[np.unique(np.concatenate([edges, edges + 1, some]))]
     return [(float(a), float(b)) for a, b in places]
+
+
+def _once(x: Array, y: Array, unit: float) -> Array:
+    """Points rounded to this unit, each once, sorted by x and then by y."""
+    columns, rows = np.round(x / unit).astype(np.int64), np.round(y / unit).astype(np.int64)
+    # One number a point: sorting these is many times faster than sorting pairs.
+    packed = np.unique((columns << 32) + rows)
+    rows = ((packed + (1 << 31)) & 0xFFFFFFFF) - (1 << 31)
+    return np.column_stack([(packed - rows) >> 32, rows]) * unit
 
 
 def _line(x: Array, y: Array) -> str:
@@ -233,6 +242,7 @@ def _ticks(axis: Axis, limits: tuple[float, float]) -> list[tuple[float, str]]:
 
 
 def round_step(rough: float) -> float:
-    """The round number 1, 2 or 5 times a power of ten next to a rough step."""
-    power = 10.0 ** math.floor(math.log10(rough))
-    return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= rough * 0.999)
+    """The round number 1, 2 or 5 times a power of ten nearest above three quarters of a rough step."""
+    least = 0.75 * rough
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= least)

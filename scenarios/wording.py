@@ -83,7 +83,8 @@ def figure(parameter: Mapping[str, Any], scale: float = 1.0) -> tuple[str, str]:
     value, half = value * scale, half * scale
     if half <= 0.0:
         return plain(value, 4), ""
-    decimals = min(max(0, 1 - math.floor(math.log10(half))), 9)
+    # Rounded first: 0.0999999 is to count as 0.1.
+    decimals = min(max(0, 1 - math.floor(math.log10(float(f"{half:.1e}")))), 9)
     return f"{value:.{decimals}f}", f"±{half:.{decimals}f}"
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -14,6 +14,7 @@ from diagnosis.holdout import held_out_residuals, rms_deg
 from diagnosis.joint_fit import BASELINE, Fit, Free, Setting, evaluate, free_of, solve, tidy
 from diagnosis.linear import Linear
 from diagnosis.noise_model import noise_family
+from diagnosis.screening import log_probability
 from diagnosis.search import ALPHA, SWAP_MARGIN, drop, judge, likelihood, search, settle
 from twin.angles import TAU, Array, wrap
 from twin.catalogue import CATALOGUE, base_name, find
@@ -25,6 +26,8 @@ from twin.sweep import Sweep
 ROUNDS = 3
 BURST_LOG_P = float(np.log(1e-6))
 """A stretch of noise must be this improbable: its test takes the noise to be Gaussian, which is true only nearly."""
+STAIRS_GAIN = 25.0
+"""Twice the log likelihood, five sigma, that the output's stairs must gain to be named."""
 _NUDGE = 1e-9
 """A baseline parameter exactly at null is skipped by the chain and could not be fitted: it starts this far off."""
 
@@ -33,7 +36,8 @@ _NUDGE = 1e-9
 class Named:
     """One entry of the answer: a cause, its probability, rivals, and the held-out RMS around it [deg].
 
-    ``rows`` are the raw rows (from 0) that a cause of single readings has touched.
+    ``rows`` are the raw rows (from 0) that a cause of single readings has touched; ``intervals`` are of parameters
+    that no fit of the mean has.
     """
 
     keys: tuple[str, ...]
@@ -43,6 +47,7 @@ class Named:
     before_deg: float = float("nan")
     after_deg: float = float("nan")
     rows: tuple[int, ...] = ()
+    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -355,7 +360,8 @@ def _spread(fit: Fit, effects: Sequence[Effect], looked: int) -> tuple[list[Name
     best = min(shapes, key=lambda s: s.log_p + (6.0 if s.name.startswith("unnamed") else 0.0))
     chain = fit.chain.with_values({best.name: best.values})
     fit = evaluate(chain, fit.free, fit.evidence, fit.setting)
-    return [Named((best.name,), best.log_p, best.gain)], _scaled(fit, best.variance)
+    named = Named((best.name,), best.log_p, best.gain, intervals=best.intervals)
+    return [named], _scaled(fit, best.variance)
 
 
 def _prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fit, list[Named], list[Array]]:
@@ -388,17 +394,24 @@ def _prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fi
 
 
 def _quantisation(fit: Fit, bits: int | None, step: float, found: list[Named]) -> None:
-    """The output's grid is a cause where its noise exceeds half of what is left otherwise."""
-    if (
-        bits is None
-        or "output_quantisation" not in fit.chain.values
-        or any(n.name != "output_quantisation" for n in found)
-    ):
+    """The output's grid is a cause where its noise exceeds half of what is left otherwise, and its stairs are seen.
+
+    Noise ahead of the grid blurs the stairs; where it blurs them away, nothing is gained by knowing them.
+    """
+    if bits is None or "output_quantisation" not in fit.chain.values or fit.setting.blur <= 0.0 or found:
         return
-    rest = fit.setting.blur if fit.setting.blur > 0.0 else 1.0
-    noise = step / np.sqrt(12.0)
-    if noise > 0.5 * rest:
-        found.append(Named(("output_quantisation",), -700.0, 1400.0))
+    use = fit.evidence.usable
+    plain = _without_stairs(fit, "output_quantisation")[use]
+    gain = int(use.sum()) * float(np.log(np.mean(plain**2) / np.mean(fit.residual[0][use] ** 2)))
+    if step / np.sqrt(12.0) > 0.5 * fit.setting.blur and gain > STAIRS_GAIN:
+        log_p = float(log_probability(np.array(gain), 1, int(use.sum())))
+        found.append(Named(("output_quantisation",), log_p, gain))
+
+
+def _without_stairs(fit: Fit, key: str) -> Array:
+    """Angle residual (n,) [rad] against the smooth angle ahead of one effect's stairs."""
+    smooth = Linear(fit.chain.without(key), fit.evidence.motion, blur=fit.setting.blur, observables=1)
+    return wrap(fit.evidence.measured - smooth.angle)
 
 
 def _merge(entries: list[Named]) -> list[Named]:
@@ -429,8 +442,6 @@ def _with_figures(entry: Named, fit: Fit, held: list[Array], use: BoolArray) -> 
         return replace(entry, before_deg=rms_deg(held[-1], np.ones_like(use)), after_deg=after)
     effect = find(entry.keys[0], fit.chain.effects)
     if effect.footprint == "values":
-        # Without the stairs the readings stand off the smooth angle ahead of them.
-        smooth = fit.chain.without(entry.keys[0])
-        plain = Linear(smooth, fit.evidence.motion, blur=fit.setting.blur, observables=1)
-        return replace(entry, before_deg=rms_deg(wrap(fit.evidence.measured - plain.angle), use), after_deg=after)
+        before = rms_deg(_without_stairs(fit, entry.keys[0]), use)
+        return replace(entry, before_deg=before, after_deg=rms_deg(fit.residual[0], use))
     return replace(entry, before_deg=after, after_deg=after)

@@ -120,6 +120,7 @@ class SpreadFinding:
     gain: float
     log_p: float
     variance: Array
+    intervals: dict[str, tuple[float, float]]
 
 
 def white_rows(fit: Fit) -> Array:
@@ -142,7 +143,7 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
     square = np.clip(white[use] ** 2, 0.0, 36.0)
     angle = fit.linear.sensor_angle
     sigma2 = float(np.mean(fit.residual[0][use] ** 2))
-    found = []
+    found: list[SpreadFinding] = []
     expected = _expected_variance(fit, square)
     for effect in effects:
         if effect.spread is None:
@@ -151,14 +152,17 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
         shape = effect.spread(angle, {name: effect.params[name].typical})[use]
         if np.ptp(shape) < 1e-3 * np.mean(shape):
             continue
-        gain, ratio = _variance_gain(square, shape / np.mean(shape), expected)
-        if ratio <= 0.0:
+        gain, ratios = _variance_gain(square, shape / np.mean(shape), expected)
+        if ratios[1] <= 0.0:
             continue
-        # ratio is the share of the variance: mean added variance over the constant part.
-        added = sigma2 * ratio / (1.0 + ratio)
-        value = effect.params[name].typical * np.sqrt(added / np.mean(shape))
-        full = effect.spread(angle, {name: value}) + sigma2 / (1.0 + ratio)
-        found.append(SpreadFinding(effect.name, {name: float(value)}, gain, _half_chi_square(gain), full))
+        # A ratio is the mean added variance over the constant part.
+        low, value, high = (
+            float(effect.params[name].typical * np.sqrt(sigma2 * ratio / (1.0 + ratio) / np.mean(shape)))
+            for ratio in ratios
+        )
+        full = effect.spread(angle, {name: value}) + sigma2 / (1.0 + ratios[1])
+        log_p = _half_chi_square(gain)
+        found.append(SpreadFinding(effect.name, {name: value}, gain, log_p, full, {name: (low, high)}))
     return found
 
 
@@ -168,7 +172,7 @@ def stairs_rule(fit: Fit) -> bool:
     The variance is no evidence of anything else there.
     """
     stairs = fit.linear.stair_variance
-    if stairs is not None and float(np.mean(stairs)) > 3.0 * fit.setting.blur**2:
+    if stairs is not None and float(np.mean(stairs)) > 2.0 * fit.setting.blur**2:
         return True
     return any(effect.line and effect.line.clock == "channels" for _, effect, _ in fit.chain.active("channels"))
 
@@ -187,17 +191,22 @@ def _expected_variance(fit: Fit, square: Array) -> Array:
     return min(profiles, key=lambda v: square.size * np.log(np.mean(square / v)) + np.sum(np.log(v)))
 
 
-def _variance_gain(square: Array, shape: Array, expected: Array) -> tuple[float, float]:
-    """Twice the gain of variance ``expected + ratio shape`` over ``expected`` for squares (n,), and the best ratio."""
+def _variance_gain(square: Array, shape: Array, expected: Array) -> tuple[float, tuple[float, float, float]]:
+    """Twice the gain of variance ``expected + ratio shape`` over ``expected`` for squares (n,); the ratio.
+
+    The ratio comes as its 95 % interval around the best one: low, best, high.
+    """
     n = square.size
     flat = n * np.log(np.mean(square / expected)) + np.sum(np.log(expected))
-    best, where = 0.0, 0.0
-    for ratio in np.geomspace(0.02, 200.0, 80):
+    ratios = np.concatenate([[0.0], np.geomspace(0.02, 200.0, 160)])
+    gains = np.empty(ratios.size)
+    for place, ratio in enumerate(ratios):
         profile = expected + ratio * shape
-        gain = flat - (n * np.log(np.mean(square / profile)) + np.sum(np.log(profile)))
-        if gain > best:
-            best, where = float(gain), float(ratio)
-    return best, where
+        gains[place] = flat - (n * np.log(np.mean(square / profile)) + np.sum(np.log(profile)))
+    best = int(np.argmax(gains))
+    inside = np.flatnonzero(gains > gains[best] - 3.84)
+    low, high = ratios[max(inside[0] - 1, 0)], ratios[min(inside[-1] + 1, ratios.size - 1)]
+    return float(gains[best]), (float(low), float(ratios[best]), float(high))
 
 
 def _half_chi_square(gain: float) -> float:
@@ -256,6 +265,7 @@ def bursts(fit: Fit) -> SpreadFinding | None:
         best[0],
         _half_chi_square(best[0]) + float(np.log(max(looks, 1))),
         base**2 * share,
+        {},
     )
 
 

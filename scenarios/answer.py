@@ -8,8 +8,10 @@ import numpy as np
 
 from diagnosis.discovery import Discovery, Named, raw_residual
 from diagnosis.joint_fit import Fit
+from twin.angles import wrap
 from twin.catalogue import base_name, find
 from twin.files import to_dict
+from twin.sweep import Sweep
 
 SCHEMA = "halltwin.explain/1"
 _T95 = 1.959964
@@ -43,6 +45,9 @@ def to_json(found: Discovery) -> dict[str, Any]:
                 "rejected": len(sweep.rejected),
                 "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:100]},
                 "turns": found.fit.evidence.motion.turns,
+                "points_per_turn": found.fit.evidence.motion.points_per_turn,
+                "directions": 2 if "both directions" in found.fit.evidence.motion.provides else 1,
+                "error_rms_deg": _rms(np.degrees(raw_error(sweep))),
                 "columns": list(sweep.columns),
                 "output_bits": found.bits,
             },
@@ -139,11 +144,23 @@ def parameters(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
         for name, param in effect.params.items():
             if param.role == "per turn" or name not in values or np.ndim(values[name]):
                 continue
+            if param.role == "random" and name in effect.derived(values):
+                continue
             value = float(values[name])
             half = _T95 * deviation.get((key, name), 0.0)
             answer[name + suffix] = {"value": value, "low": value - half, "high": value + half, "unit": param.unit}
-        for name, (value, unit) in effect.derived(values).items():
-            answer[name + suffix] = {"value": value, "low": value, "high": value, "unit": unit}
+            if param.role == "shape" and (key, name) not in deviation and name in effect.zoomed:
+                # A step's instant lies between two readings.
+                clock = fit.evidence.motion.time_s
+                place = int(np.searchsorted(clock, value))
+                answer[name + suffix] |= {
+                    "low": float(min(clock[max(place - 2, 0)], value)),
+                    "high": float(max(clock[min(place + 1, clock.size - 1)], value)),
+                }
+        for name, (value, low, high, unit) in effect.derived(values).items():
+            answer[name + suffix] = {"value": value, "low": low, "high": high, "unit": unit}
+        for name, (low, high) in cause.intervals.items():
+            answer[name + suffix] |= {"low": low, "high": high}
     if cause.name == "bus_glitch":
         count = float(len(cause.rows))
         answer["count"] = {"value": count, "low": count, "high": count, "unit": "1"}
@@ -175,6 +192,14 @@ def advice(cause: Named) -> str:
     if {"zero_drift", "index_slip"} & rivals:
         return "record more turns, with time stamps"
     return "record vx, vy, both directions and a second speed"
+
+
+def raw_error(sweep: Sweep) -> Any:
+    """Angle error [rad] (n,) of the readings as they are: measured against reference, their zeros aside."""
+    measured, reference = np.radians(sweep.measured_deg), np.radians(sweep.reference_deg)
+    sums = [np.mean(np.exp(1j * (measured - sense * reference))) for sense in (1.0, -1.0)]
+    sense = 1.0 if abs(sums[0]) >= abs(sums[1]) else -1.0
+    return wrap(measured - sense * reference - np.angle(sums[0 if sense > 0 else 1]))
 
 
 def _rms(values: Any) -> float:

@@ -94,7 +94,7 @@ def _as_they_are(values: Parameters) -> Parameters:
     return values
 
 
-def _nothing_derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
+def _nothing_derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
     return {}
 
 
@@ -109,7 +109,7 @@ class Effect:
     channels are recorded, because an angle alone does not show them.
     ``begin``     parameters of a first-order fit -> those that an exact fit sets out from.
     ``line``      for sinusoids: the shape parameter that is found by a spectrum.
-    ``derived``   parameters -> further figures to report, with their units.
+    ``derived``   parameters -> further figures to report: value, low, high, unit.
     ``spread``    for the footprint "spread": angle (n,), parameters -> added variance of the angle [rad^2].
     ``attainable`` for the footprint "values": parameters -> all angles [rad] a reading can take.
     ``marks``     for the footprint "sequence": see :class:`Marks`.
@@ -132,7 +132,7 @@ class Effect:
     channel_shapes: tuple[str, ...] = ()
     begin: Callable[[Parameters], Parameters] = field(default=_as_they_are)
     line: Line | None = None
-    derived: Callable[[Parameters], Mapping[str, tuple[float, str]]] = field(default=_nothing_derived)
+    derived: Callable[[Parameters], Mapping[str, tuple[float, float, float, str]]] = field(default=_nothing_derived)
     spread: Callable[[Array, Parameters], Array] | None = None
     attainable: Callable[[Parameters], Array] | None = None
     marks: Marks | None = None

@@ -35,10 +35,12 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return signal + np.where(step > 0.0, step * held, 0.0)
 
 
-def derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
+def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
     """The bit's number in a 14-bit code whose full scale lies between 1 and 2 amplitudes."""
     step = 0.01 * float(np.ravel(values["step_percent"])[0])
-    return {"bit": (float(np.floor(np.log2(step * 2.0 ** (BITS - 1)))) if step > 0 else 0.0, "bit")}
+    bit = float(np.floor(np.log2(step * 2.0 ** (BITS - 1)))) if step > 0 else 0.0
+    # Full scale is not known to better than the factor of two that one bit is.
+    return {"bit": (bit, bit - 1.0, bit + 1.0, "bit")}
 
 
 def within(step_percent: Array) -> BoolArray:

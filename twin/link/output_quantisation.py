@@ -27,9 +27,10 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     return [{"bits": float(bits)} for bits in range(5, 17)]
 
 
-def derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
+def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
     """The step of the grid."""
-    return {"step_deg": (360.0 / 2.0 ** float(np.ravel(values["bits"])[0]), "deg")}
+    step = 360.0 / 2.0 ** float(np.ravel(values["bits"])[0])
+    return {"step_deg": (step, step, step, "deg")}
 
 
 OUTPUT_QUANTISATION = Effect(

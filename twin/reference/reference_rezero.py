@@ -24,10 +24,13 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return signal + radians(zeros_deg)[..., motion.turn]
 
 
-def derived(values: Parameters) -> Mapping[str, tuple[float, str]]:
+def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
     """The scatter of the turns' zeros."""
     zeros = np.ravel(values.get("zeros_deg", 0.0))
-    return {"spread_deg": (float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, "deg")}
+    spread = float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0
+    # The scatter of a scatter: log-normal with a relative deviation of 1/sqrt(2 (turns - 1)).
+    factor = float(np.exp(1.96 / np.sqrt(2.0 * max(zeros.size - 1, 1))))
+    return {"spread_deg": (spread, spread / factor, spread * factor, "deg")}
 
 
 REFERENCE_REZERO = Effect(

@@ -324,8 +324,9 @@ def _reblurred(fit: Fit, step: float) -> Fit:
 def raw_residual(fit: Fit, sweep: Sweep) -> Array:
     """Residual [rad] of every raw reading (n_raw,) against the fit."""
     if len(sweep) == len(fit.evidence):
-        return fit.residual[0]
-    return wrap(np.radians(sweep.measured_deg) - fit.linear.angle[fit.evidence.group])
+        return np.asarray(fit.residual[0])
+    predicted: Array = fit.linear.angle[fit.evidence.group]
+    return wrap(np.radians(sweep.measured_deg) - predicted)
 
 
 def _sequence(

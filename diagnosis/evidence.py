@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.angles import Array, wrap
+from twin.angles import Array, IntArray, wrap
 from twin.effect import BoolArray
 from twin.motion import Motion
 from twin.sweep import Sweep
@@ -26,7 +26,7 @@ class Evidence:
     log_radius: Array | None
     usable: BoolArray
     scale: Array
-    group: np.ndarray[tuple[int], np.dtype[np.int64]]
+    group: IntArray
     repeat_rms: float | None
 
     def __len__(self) -> int:
@@ -47,14 +47,14 @@ def collect(sweep: Sweep) -> Evidence:
     motion = sweep.motion()
     measured = np.radians(sweep.measured_deg)
     group = _repeats(motion)
-    count = np.bincount(group)
+    count: IntArray = np.bincount(group)
     repeat_rms = None
     if count.max() > 1:
-        first = np.searchsorted(group, np.arange(count.size))
+        first: IntArray = np.searchsorted(group, np.arange(count.size)).astype(np.int64)
         deviation = wrap(measured - measured[first][group])
         mean = np.bincount(group, deviation) / count
         scatter = deviation - mean[group]
-        repeat_rms = float(np.sqrt(np.sum(scatter**2) / max(np.sum(count - 1), 1)))
+        repeat_rms = float(np.sqrt(np.sum(scatter**2) / max(int(np.sum(count - 1)), 1)))
         measured = measured[first] + mean
         motion = _averaged(motion, group, count, first)
     log_radius = None
@@ -74,7 +74,7 @@ def collect(sweep: Sweep) -> Evidence:
     )
 
 
-def _repeats(motion: Motion) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+def _repeats(motion: Motion) -> IntArray:
     """For each row the number of its group; groups of one unless the bench stood still between most readings."""
     step = np.abs(np.diff(motion.shaft_rad))
     n = len(motion)
@@ -85,7 +85,7 @@ def _repeats(motion: Motion) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
     return np.concatenate([[0], np.cumsum(~same)])
 
 
-def _averaged(motion: Motion, group: Array, count: Array, first: Array) -> Motion:
+def _averaged(motion: Motion, group: IntArray, count: IntArray, first: IntArray) -> Motion:
     def mean(values: Array) -> Array:
         return np.asarray(np.bincount(group, values) / count)
 

@@ -101,7 +101,7 @@ def root_weights(setting: Setting, observables: int, member: int | None = None) 
     rows = [weights[setting.member if member is None else member]]
     if observables == 2:
         rows.append(setting.radius_weight * weights[setting.radius_member])
-    return np.sqrt(np.stack(rows))
+    return np.asarray(np.sqrt(np.stack(rows)))
 
 
 def evaluate(chain: Chain, free: tuple[Free, ...], evidence: Evidence, setting: Setting) -> Fit:

@@ -67,7 +67,7 @@ class Linear:
         # Backward: sensitivity of (angle, log radius) to the signal after each step.
         sense = np.zeros((self.observables, 1, n))
         sense[0] = 1.0
-        bounds = {name: _last_place(self.chain, name) for name in SIGNALS}
+        bounds = {str(name): _last_place(self.chain, name) for name in SIGNALS}
         points: list[tuple[float, Insertion]] = []
         for step in reversed(steps):
             place = (
@@ -112,7 +112,8 @@ class Linear:
         away = wrap(signal[:, 0] - computed[0])
         if nodes.size > 1:
             self.stair_variance = np.var(away, axis=0)
-        return self.chain.output_sense * (computed[0] + np.mean(away, axis=0))
+        mean: Array = np.mean(away, axis=0)
+        return np.asarray(self.chain.output_sense * (computed[0] + mean))
 
     def at(self, effect: Effect) -> Insertion:
         """The point behind the effect's own place: the signal it made, or would be given were it not at null."""
@@ -130,7 +131,7 @@ class Linear:
             # The reference reads too much by this, so the shaft stands back by it.
             shaft: Array = self.motion.shaft_rad[None, :]
             moved = effect.forward(shaft, self.motion, new, None) - effect.forward(shaft, self.motion, old, None)
-            start = self._points[0][1].sensitivity.sum(axis=1)
+            start: Array = self._points[0][1].sensitivity.sum(axis=1)
             return -start * moved
         point, ahead = self.at(effect), self.before(effect)
         moved = effect.forward(ahead.signal, self.motion, new, None) - effect.forward(

@@ -92,7 +92,7 @@ def log_probability(gain: Array, terms: int, dof: int) -> Array:
     with np.errstate(divide="ignore"):
         tail = a * np.log(np.maximum(share, 1e-300)) + (b - 1.0) * np.log1p(-np.minimum(share, 1 - 1e-16))
         tail = tail - betaln(a, b) - np.log(a)
-        return np.where(plain > 1e-280, np.log(np.maximum(plain, 1e-300)), tail)
+        return np.asarray(np.where(plain > 1e-280, np.log(np.maximum(plain, 1e-300)), tail))
 
 
 def screen(base: Base, effects: Iterable[Effect], *, shapes_of: Mapping[str, Any] | None = None) -> list[Candidate]:

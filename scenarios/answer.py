@@ -35,7 +35,7 @@ def to_json(found: Discovery) -> dict[str, Any]:
     kept = ~found.masked if found.masked.any() and not found.masked.all() else np.ones_like(found.masked)
     gain = found.baseline_held_deg / max(found.extended_held_deg, 1e-12)
     unnamed = [key for cause in found.causes if cause.name == "unnamed" for key in cause.keys]
-    return _rounded(
+    answer: dict[str, Any] = _rounded(
         {
             "schema": SCHEMA,
             "sweep": {
@@ -75,6 +75,7 @@ def to_json(found: Discovery) -> dict[str, Any]:
             "twin": to_dict(found.fit.chain),
         }
     )
+    return answer
 
 
 def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from twin.angles import TAU, Array, wrap
+from twin.angles import TAU, Array, IntArray, wrap
 
 STOP_AND_MEASURE_S = 0.02
 """Readings farther apart than this, with no speed recorded, were taken at standstill."""
@@ -27,7 +27,7 @@ class Motion:
     time_s: Array
     direction: Array
     speed_rad_s: Array
-    turn: Array
+    turn: IntArray
     temperature_c: Array
     columns: frozenset[str] = frozenset()
 
@@ -84,7 +84,9 @@ class Motion:
             time_s=np.arange(n, dtype=np.float64) if time_s is None else np.asarray(time_s, dtype=np.float64),
             direction=way,
             speed_rad_s=speed,
-            turn=np.zeros(n, dtype=np.int64) if turn is None else np.unique(turn, return_inverse=True)[1],
+            turn=np.zeros(n, dtype=np.int64)
+            if turn is None
+            else np.unique(turn, return_inverse=True)[1].astype(np.int64),
             temperature_c=temperature,
             columns=frozenset(columns),
         )

@@ -11,7 +11,7 @@ from twin.motion import Motion
 
 def _tone(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     elapsed = motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
-    wave = np.cos(TAU * np.asarray(values["frequency_Hz"]) * elapsed + radians(values["phase_deg"]))
+    wave: Array = np.cos(TAU * np.asarray(values["frequency_Hz"]) * elapsed + radians(values["phase_deg"]))
     return signal + radians(values["amplitude_deg"]) * wave
 
 

@@ -11,7 +11,7 @@ from twin.motion import Motion
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     turn = radians(values["amplitude_deg"])
-    return signal + turn * np.sin(values["order"] * signal + radians(values["phase_deg"]))
+    return signal + turn * np.sin(np.asarray(values["order"]) * signal + radians(values["phase_deg"]))
 
 
 def within(order: Array) -> BoolArray:

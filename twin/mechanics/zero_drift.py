@@ -15,9 +15,10 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     elapsed = motion.time_s - motion.time_s[0]
     duration = np.maximum(np.max(np.abs(elapsed)), 1e-12)
     # The amplitude is what the zero moves by over this record, whatever the time constant.
-    tau = np.maximum(values["time_constant_s"], 1e-9)
+    tau: Array = np.maximum(values["time_constant_s"], 1e-9)
     reach = -np.expm1(-duration / tau)
-    return signal + radians(values["amplitude_deg"]) * -np.expm1(-elapsed / tau) / reach
+    course: Array = -np.expm1(-elapsed / tau) / reach
+    return signal + radians(values["amplitude_deg"]) * course
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:

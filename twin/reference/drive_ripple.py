@@ -1,4 +1,4 @@
-"""drive_ripple: the shaft departs from the angle the drive reports (its own ripple, or wind-up), at the motor's order."""
+"""drive_ripple: the shaft departs from the angle that the drive reports (ripple, wind-up) at the motor's order."""
 
 from __future__ import annotations
 

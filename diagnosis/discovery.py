@@ -186,7 +186,7 @@ def mirrored(chain: Chain) -> Chain:
 def _searched(
     fit: Fit, effects: Sequence[Effect], keys: Sequence[str], step: float, also: BoolArray
 ) -> tuple[Fit, list[str], int]:
-    """Search, look again for spikes and at the blur of the stairs in what is left, and search on until nothing moves."""
+    """Search, look again for spikes and at the blur of the stairs in what is left, and search on until all is still."""
     keys = list(keys)
     looked = 0
     for _ in range(ROUNDS):

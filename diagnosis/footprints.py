@@ -60,7 +60,7 @@ def spikes(residual: Array, motion: Motion, step: float) -> tuple[BoolArray, flo
 
 
 def grid_bits(measured: Array) -> int | None:
-    """The smallest word length (6 to 20 bits) on whose grid all readings (n,) [rad] lie, as far as their digits tell."""
+    """The smallest word length (6 to 20 bits) on whose grid all readings (n,) [rad] lie; None: no such grid."""
     for bits in range(6, 21):
         step = TAU / 2.0**bits
         off = np.abs(measured / step - np.round(measured / step))

@@ -71,7 +71,7 @@ def likelihood(fit: Fit) -> float:
 
 
 def degrees(effect: Effect, terms: int) -> int:
-    """Degrees of freedom of an effect in the likelihood: one, the scatter, where its coefficients are integrated out."""
+    """Degrees of freedom of an effect in the likelihood: one, the scatter, where coefficients are integrated out."""
     return 1 if effect.roles("per turn") else terms
 
 

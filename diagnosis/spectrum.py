@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -18,8 +19,9 @@ _LARGEST_GRID = 1 << 21
 def line_shapes(matched: Sequence[Array], fit: Fit, effect: Effect) -> tuple[Sequence[Mapping[str, float]], float]:
     """The orders or frequencies at which the effect's line matches the residual best, and how many were looked at.
 
-    ``matched`` holds residuals (n,) filtered by the inverse covariance of the noises in question. The effect's column at frequency f is
-    Re[A exp(i 2 pi f clock)] with an amplitude A(n,) that does not depend on f, so one transform serves all f.
+    ``matched`` holds residuals (n,) filtered by the inverse covariance of the noises in question. The effect's column
+    at frequency f is Re[A exp(i 2 pi f clock)] with an amplitude A (n,) that does not depend on f, so one transform
+    serves all f.
     """
     line = effect.line
     assert line is not None
@@ -102,7 +104,7 @@ def _level(power: Array, oversampling: int) -> Array:
     edges = np.unique(np.concatenate([[0], np.geomspace(8 * oversampling, max(power.size, 16), 24)]).astype(int))
     edges = np.unique(np.clip(edges, 0, power.size))
     centres, levels = [], []
-    for first, last in zip(edges[:-1], edges[1:], strict=True):
+    for first, last in itertools.pairwise(edges):
         centres.append(0.5 * (first + last))
         levels.append(max(float(np.median(power[first:last])), 1e-300))
     return np.asarray(np.exp(np.interp(np.arange(power.size), centres, np.log(levels))))

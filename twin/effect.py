@@ -76,8 +76,8 @@ class Param:
 class Line:
     """A periodic shape in the shaft angle (orders), in time (Hz) or in the channels' value (a bit's weight, %).
 
-    It is screened by one spectrum instead of a grid. ``limits`` maps a motion to the lowest and highest order or frequency worth looking at; ``within`` says of an
-    array of them which belong to the effect.
+    It is screened by one spectrum instead of a grid. ``limits`` maps a motion to the lowest and highest order or
+    frequency worth looking at; ``within`` says of an array of them which belong to the effect.
     """
 
     param: str

@@ -15,11 +15,13 @@ from twin.sweep import Sweep
 def facts(found: Discovery) -> dict[str, Any]:
     """Directions, points a turn, speeds, temperatures, the error's RMS without its zero, what it is held against."""
     sweep, motion = found.sweep, found.sweep.motion()
+    # Readings that single events have touched are left out, as they are of the baseline's figure beside this one.
+    kept = ~found.masked if not found.masked.all() else np.ones_like(found.masked)
     said: dict[str, Any] = {
         "held_against": "given twin" if found.given is not None else "error model",
         "directions": int(np.unique(motion.direction).size),
         "points_per_turn": motion.points_per_turn,
-        "error_rms_deg": float(np.sqrt(np.mean(angle_error_deg(found.baseline, sweep) ** 2))),
+        "error_rms_deg": float(np.sqrt(np.mean(angle_error_deg(found.baseline, sweep)[kept] ** 2))),
     }
     if np.any(motion.speed_rad_s != 0.0):
         rpm = np.abs(motion.speed_rad_s) * 60.0 / (2.0 * np.pi)

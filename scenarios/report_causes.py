@@ -44,7 +44,7 @@ def _one(found: Discovery, read: Readings, keys: tuple[str, ...]) -> tuple[str, 
         return _spread(found, read, effect, values)
     share = share_deg(found, keys)
     if effect.footprint == "values":
-        return _stairs(found, read, share)
+        return _stairs(found, read, share, values)
     if "frequency_Hz" in values:
         clock, name = read.clock
         first = _window(clock, _PERIODS / max(float(values["frequency_Hz"]), 1e-9))
@@ -127,12 +127,15 @@ def _over(
     return note, Plot(Axis(name, window), Axis(_SHARE), layers, f"the effect's share of the error over {name}")
 
 
-def _stairs(found: Discovery, read: Readings, share: Array) -> tuple[str, Plot]:
-    """A dozen steps of a staircase: what the rounding does to the angle."""
-    spacing = float(np.ptp(share)) or 1.0
-    reading = np.mod(found.sweep.measured_deg - share, 360.0)
-    window = _window(reading, max(12.0 * spacing, 20.0 * 360.0 / len(reading)))
-    return _over(read, share, reading, "angle before rounding / deg", window, "A few steps of the stairs.")
+def _stairs(found: Discovery, read: Readings, share: Array, values: Any) -> tuple[str, Plot]:
+    """What rounding does to the angle: all readings folded into one step of a grid, or a dozen uneven steps."""
+    smooth = np.mod(found.sweep.measured_deg - share - read.after_deg, 360.0)
+    if "bits" in values:
+        place = np.mod(smooth * 2.0 ** float(values["bits"]) / 360.0, 1.0)
+        return _over(read, share, place, "place within a step / 1", (0.0, 1.0), "All readings, folded into one step.")
+    width = max(12.0 * float(np.ptp(share)), 60.0 * 360.0 / read.motion.points_per_turn)
+    window = _window(smooth, width)
+    return _over(read, share, smooth, "angle before rounding / deg", window, "A few of the uneven steps.")
 
 
 def _spread(found: Discovery, read: Readings, effect: Effect, values: Any) -> tuple[str, Plot]:

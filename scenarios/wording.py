@@ -37,7 +37,8 @@ _LACKS = {
 _ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two speeds|both directions": "moving shaft"}
 """A want that goes without saying where the second one is wanted too."""
 
-_ENDING = re.compile(r"_?(deg|percent|us|mT|mm|Hz|s)$")
+_NO_GAIN = 1.05
+_ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT|mm|Hz|s)$")
 _NUMBERED = re.compile(r"^(?P<name>.*?)(?:_(?P<number>\d+))?$")
 
 
@@ -174,6 +175,9 @@ def verdict_words(answer: Mapping[str, Any]) -> str:
     if verdict == "adequate":
         return "The baseline is adequate: nothing else stands out of the noise."
     gain = answer["extended"]["gain"]
+    if gain < _NO_GAIN:
+        # Single readings and scatter are no part of what a twin predicts for the mean.
+        return "It lies in single readings or in their scatter, so that their mean is predicted no better."
     closer = f"The extended twin is {plain(gain, 2)} times closer on readings it never saw."
     if verdict == "unnamed":
         return f"Structure is there that no cause of the catalogue explains. {closer}"

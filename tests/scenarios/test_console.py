@@ -137,8 +137,17 @@ def test_numbers_have_the_digits_that_are_known() -> None:
 def test_parameters_are_grouped_by_instance_and_named_without_units() -> None:
     several = instances({"order": 1, "amplitude_deg": 2, "order_2": 3, "amplitude_deg_2": 4})
     assert several == [{"order": 1, "amplitude_deg": 2}, {"order": 3, "amplitude_deg": 4}]
-    names = ("lag_deg", "k_percent", "x_percent_per_K", "deg_per_K", "delay_us", "percent_rms", "half_width_deg")
-    assert [label(name) for name in names] == ["lag", "k", "x drift", "drift", "delay", "rms", "half width"]
+    names = (
+        "lag_deg",
+        "k_percent",
+        "x_percent_per_K",
+        "deg_per_K",
+        "delay_us",
+        "percent_rms",
+        "half_width_deg",
+        "bits",
+    )
+    assert [label(name) for name in names] == ["lag", "k", "x drift", "drift", "delay", "rms", "half width", "bits"]
 
 
 def test_what_is_missing_is_grouped_and_said_once() -> None:
@@ -160,3 +169,8 @@ def test_the_catalogue_is_listed_whole_with_a_source_each() -> None:
     for effect in CATALOGUE:
         line = next(line for line in text.splitlines() if line.startswith(f"| `{effect.name}` |"))
         assert line.replace("\\|", "").count("|") == 8
+
+
+def test_a_cause_without_gain_on_the_mean_is_not_sold_as_one() -> None:
+    answer = an_answer(verdict="explained", extended={"rms_deg": 0.02, "heldout_rms_deg": 0.02, "gain": 1.0})
+    assert "in single readings or in their scatter" in " ".join(shown(answer, 80).split())

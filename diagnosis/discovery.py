@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnosis import footprints
 from diagnosis.evidence import Evidence, collect
-from diagnosis.holdout import held_out_residuals, rms_deg
+from diagnosis.proof import held_out_residuals, rms_deg
 from diagnosis.joint_fit import BASELINE, Fit, Free, Setting, evaluate, free_of, solve, tidy
 from diagnosis.linear import Linear
 from diagnosis.noise_model import noise_family

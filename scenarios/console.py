@@ -56,16 +56,12 @@ def _baseline(answer: Mapping[str, Any]) -> RenderableType:
     baseline = answer["baseline"]
     before = answer["sweep"].get("error_rms_deg")
     after = baseline["rms_deg"]
-    head = Table.grid(expand=True, padding=(0, 2, 0, 0))
-    head.add_column(ratio=1)
-    head.add_column(justify="right")
     model = "The given twin" if answer["sweep"].get("held_against") == "given twin" else "The paper's error model"
-    title = f"{model} leaves"
-    rms = f"{plain(after)} deg RMS"
+    head = f"{model} leaves {plain(after)} deg RMS"
     if before is not None:
-        title = f"{model} explains {explained_percent(before, after):.0f} % of the error"
-        rms = f"{plain(before)} -> {rms}"
-    head.add_row(Text(title, "bold"), f"{rms} (noise floor {plain(answer['noise_floor_deg'])})")
+        share = f"{explained_percent(before, after):.0f} % of the error"
+        head = f"{model} explains {share}: {plain(before)} -> {plain(after)} deg RMS"
+    floor = Text(f"noise floor {plain(answer['noise_floor_deg'])} deg RMS")
     table = Table.grid(padding=(0, 2, 0, 0))
     cells = []
     for name, (label, unit, scale) in BASELINE_LABELS.items():
@@ -74,7 +70,7 @@ def _baseline(answer: Mapping[str, Any]) -> RenderableType:
         cells.append((label, with_unit(parameter, unit, scale) + flag))
     for left, right in zip(cells[::2], cells[1::2], strict=True):
         table.add_row(left[0], left[1], "", right[0], right[1])
-    return Group(head, Padding(table, (0, 0, 0, 2)))
+    return Group(Text(head, "bold"), Padding(floor, (0, 0, 0, 2)), Padding(table, (0, 0, 0, 2)))
 
 
 def _causes(answer: Mapping[str, Any]) -> RenderableType | None:

@@ -1,0 +1,124 @@
+"""Measured sweeps of real sensors. They are not part of the repository; where they are absent nothing is tested.
+
+What is known of them, and so can be asked, stands in their README: the direction effect, the zero made anew at each
+sweep, the order 4 and the glitches of the oven and room sets, the drive's ripple of one stepper.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from .command_line import explained
+
+REAL = Path(__file__).parents[1] / ".." / "shared" / "data" / "real"
+pytestmark = pytest.mark.skipif(not REAL.is_dir(), reason="the measured sweeps are not beside the repository")
+
+OVEN = ("oven_b_start1", "oven_b_start2")
+BENCH = (*OVEN, "room_repeat")
+OTHERS = (
+    "jig_hall_sensor2",
+    "jig_hall_sensor3",
+    "jig_hall_sensor5",
+    "stepper_as5047d_a",
+    "stepper_as5047d_b",
+    "stepper_as5047d_c",
+)
+
+
+@pytest.fixture(scope="session")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("real")
+
+
+@cache
+def answered(folder: Path, name: str) -> dict[str, Any]:
+    """The answer to a measured sweep, asked for once; its extended twin stands beside it."""
+    link = folder / f"{name}.csv"
+    link.write_bytes((REAL / f"{name}.csv").read_bytes())
+    return explained(link, "--extended", folder / f"{name}.toml")
+
+
+def names(answer: dict[str, Any]) -> set[str]:
+    """Every name that the answer gives, those it cannot tell apart included."""
+    return {n for cause in answer["causes"] for n in (cause["name"], *cause["indistinguishable_from"])}
+
+
+@pytest.mark.parametrize("name", [*BENCH, *OTHERS])
+def test_every_file_is_answered(name: str, folder: Path) -> None:
+    answer = answered(folder, name)
+    assert answer["sweep"]["used"] > 100
+    assert answer["extended"]["heldout_rms_deg"] <= answer["baseline"]["heldout_rms_deg"] * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("name", BENCH)
+def test_held_out_error_falls_at_least_four_times(name: str, folder: Path) -> None:
+    assert answered(folder, name)["extended"]["gain"] >= 4.0
+
+
+@pytest.mark.parametrize("name", BENCH)
+def test_direction_effect(name: str, folder: Path) -> None:
+    assert names(answered(folder, name)) & {"hysteresis", "backlash"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("oven_b_start1", marks=pytest.mark.xfail(strict=False, reason="named zero_drift or index_slip")),
+        "oven_b_start2",
+        pytest.param("room_repeat", marks=pytest.mark.xfail(strict=False, reason="named index_slip")),
+    ],
+)
+def test_zero_made_anew(name: str, folder: Path) -> None:
+    assert "reference_rezero" in names(answered(folder, name))
+
+
+@pytest.mark.parametrize("name", BENCH)
+def test_order_4(name: str, folder: Path) -> None:
+    assert names(answered(folder, name)) & {"saturation", "magnet_harmonic"}
+
+
+@pytest.mark.parametrize("name", OVEN)
+def test_glitches(name: str, folder: Path) -> None:
+    """Named, or described as wild readings."""
+    answer = answered(folder, name)
+    kinds = {entry["kind"] for entry in answer["unexplained"]["structure"]}
+    assert "bus_glitch" in names(answer) or kinds & {"noise", "local"}
+
+
+def test_ripple_of_the_drive(folder: Path) -> None:
+    ripple = [c for c in answered(folder, "stepper_as5047d_b")["causes"] if c["name"] == "drive_ripple"]
+    assert ripple
+    assert ripple[0]["parameters"]["order"]["value"] == 50.0
+
+
+@pytest.mark.parametrize("name", [n for n in OTHERS if n.startswith("jig")])
+def test_gain_ratio_far_outside_the_search_range(name: str, folder: Path) -> None:
+    ratio = answered(folder, name)["baseline"]["parameters"]["gain_ratio"]["value"]
+    assert 1.09 < max(ratio, 1.0 / ratio) < 1.21
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        pytest.param(
+            *OVEN,
+            marks=pytest.mark.xfail(strict=False, reason="no reference_rezero in the first twin: no zeros are fitted"),
+        ),
+        OVEN[::-1],
+    ],
+)
+def test_twin_of_one_recording_predicts_the_next(
+    first: str, second: str, folder: Path, request: pytest.FixtureRequest
+) -> None:
+    """Within half as much again of what the twin extended on the second recording itself leaves."""
+    if "study" not in str(request.config.getoption("markexpr")):
+        pytest.skip("minutes long: run with -m study")
+    own = answered(folder, second)["extended"]["rms_deg"]
+    answered(folder, first)
+    held = explained(folder / f"{second}.csv", "--twin", folder / f"{first}.toml")
+    assert held["baseline"]["rms_deg"] <= 1.5 * own

@@ -170,14 +170,18 @@ def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
     try:
         app()
-    except ValueError as error:
+    except (OSError, ValueError) as error:
         # twin loads numpy, which --help need not wait for.
         from twin.errors import UserError
 
-        if not isinstance(error, UserError):
+        if isinstance(error, OSError) and error.filename is not None:
+            said = f"{error.filename}: {error.strerror}; give another path"
+        elif isinstance(error, UserError):
+            said = str(error)
+        else:
             raise
         # Names of files and cells may hold line breaks and control characters; the message stays one line.
-        line = " ".join(str(error).split())
+        line = " ".join(said.split())
         print(f"halltwin: {''.join(c if c.isprintable() else '?' for c in line)}", file=sys.stderr)
         raise SystemExit(2) from None
 

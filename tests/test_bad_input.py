@@ -292,3 +292,8 @@ def test_part_of_a_turn_is_not_taken_for_radians() -> None:
         ripple = rng.uniform(0.02, 1.0) * np.sin(np.radians(rng.uniform(1.0, 20.0) * reference))
         measured = sweep_angles(reference, seed=seed) + ripple
         assert len(Sweep.from_columns({"reference_deg": reference, "measured_deg": measured})) == reference.size
+
+
+@pytest.mark.parametrize("command", ["spinning", "hardware"])
+def test_output_folder_that_cannot_be_made(command: str, good: Path) -> None:
+    assert "good.csv" in refused(command, "-o", good / "folder")

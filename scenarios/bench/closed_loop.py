@@ -1,0 +1,155 @@
+"""The closed loop, the paper's Fig. 16 as one run: measure, explain, compensate, measure again."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.compensation import Correction, correction_of, to_dict
+from scenarios.bench.faults import Opener
+from scenarios.bench.journal import Journal
+from scenarios.bench.measure import Measured, Measurement, measure
+from scenarios.bench.pretreatment import errors_deg
+from scenarios.bench.readings import Reading
+from twin.angles import Array, wrap_deg
+from twin.errors import UserError
+from twin.sweep import Sweep
+from twin.sweep_file import write_beside
+
+SCHEMA = "halltwin.closed_loop/1"
+AIM_DEG = 0.2
+"""What the compensated encoder reaches over the whole turn (paper, Fig. 16)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """Both measurements and what lay between them; errors are in degrees, in the shaft's sense."""
+
+    before: Measured
+    after: Measured
+    answer: dict[str, Any]
+    correction: Correction
+
+    @property
+    def before_deg(self) -> Array:
+        """Error of each reading before, its typical value taken off: an encoder as it comes has no common zero."""
+        return errors_deg(self.before.pretreated.kept)
+
+    @property
+    def after_deg(self) -> Array:
+        """Error of each reading after, as it is: the correction brought the zero."""
+        return direct_errors_deg(self.after.pretreated.kept)
+
+
+def part_path(output: Path, part: str, suffix: str) -> Path:
+    """The name of one of the files of a closed loop."""
+    name = output.name
+    for ending in (".csv.gz", ".csv"):
+        name = name.removesuffix(ending)
+    return output.with_name(f"{name}-{part}{suffix}")
+
+
+def direct_errors_deg(readings: Sequence[Reading]) -> Array:
+    """Measured minus reference [deg] (n,), nothing taken off."""
+    measured = np.array([one.measured_deg for one in readings])
+    return wrap_deg(measured - np.array([one.reference_deg for one in readings]))
+
+
+def run_loop(job: Measurement, open_bus: Opener, *, restart: bool, seed: int, say: Callable[[str], None]) -> Loop:
+    """Run the loop; all files lie beside ``job.output``. A first half that was finished is not measured again."""
+    from scenarios.answer import to_json
+    from scenarios.explain import explain
+    from twin.files import write_twin
+
+    first = _half(job, "before")
+    before = measure(
+        first,
+        Journal(first.output, first.plan, twin=first.twin, restart=restart),
+        open_bus,
+        prepare=lambda sequence: sequence.load(None),
+    )
+    say(f"measured {first.output.name}: {len(before.pretreated.kept)} readings")
+    found = explain(Sweep.read(first.output), seed=seed)
+    answer = to_json(found)
+    correction = correction_of(found.fit.chain)
+    twin_path, correction_path = part_path(job.output, "twin", ".toml"), part_path(job.output, "correction", ".toml")
+    write_twin(twin_path, found.fit.chain)
+    _write_toml(correction_path, to_dict(correction))
+    named = ", ".join(cause["name"] for cause in answer["causes"]) or "no cause beyond the paper's error model"
+    say(f"explained: {answer['verdict']}: {named}; correction of {correction.series.shape[1]} orders loaded")
+    second = _half(job, "after")
+    after = measure(
+        second,
+        Journal(second.output, second.plan, twin=second.twin, restart=restart),
+        open_bus,
+        prepare=lambda sequence: sequence.load(correction),
+    )
+    if not all(one.corrected for one in after.pretreated.kept):
+        raise UserError(f"{second.output}: the Hall encoder lost its correction on the way; run again with --restart")
+    loop = Loop(before, after, answer, correction)
+    report = part_path(job.output, "report", ".json")
+    write_beside(report, (json.dumps(summary(loop), indent=1) + "\n").encode())
+    return loop
+
+
+def summary(loop: Loop) -> dict[str, Any]:
+    """The report as plain values."""
+    return {
+        "schema": SCHEMA,
+        "verdict": loop.answer["verdict"],
+        "causes": loop.answer["causes"],
+        "orders": int(loop.correction.series.shape[1]),
+        "left_out": list(loop.correction.left_out),
+        "before": _figures(loop.before, loop.before_deg),
+        "after": _figures(loop.after, loop.after_deg),
+        "aim_deg": AIM_DEG,
+        "reached": bool(np.max(np.abs(loop.after_deg)) < AIM_DEG),
+    }
+
+
+def lines(loop: Loop) -> list[str]:
+    """The report as a person reads it."""
+    (rms, peak), (rms_after, peak_after) = (_size(errors) for errors in (loop.before_deg, loop.after_deg))
+    reached = "reached" if peak_after < AIM_DEG else "missed"
+    said = []
+    for cause in loop.answer["causes"]:
+        rivals = ", ".join(cause["indistinguishable_from"])
+        said.append(f"cause   {cause['name']}" + (f" (or {rivals})" if rivals else ""))
+    said += [
+        f"before  RMS {rms:.4f} deg   largest {peak:.4f} deg   (zero taken off)",
+        f"after   RMS {rms_after:.4f} deg   largest {peak_after:.4f} deg   (as read)",
+        f"aim     {AIM_DEG:g} deg over the whole circle: {reached}",
+    ]
+    said += [f"not in the correction: {name}; one angle reading cannot tell it" for name in loop.correction.left_out]
+    return said
+
+
+def _half(job: Measurement, part: str) -> Measurement:
+    record = None if job.record is None else job.record.with_name(f"{job.record.stem}-{part}{job.record.suffix}")
+    return replace(job, output=part_path(job.output, part, ".csv"), record=record)
+
+
+def _figures(measured: Measured, errors: Array) -> dict[str, Any]:
+    rms, peak = _size(errors)
+    return {
+        "readings": len(measured.pretreated.kept),
+        "rejected": {str(index): why for index, why in measured.pretreated.rejected.items()},
+        "rms_deg": rms,
+        "largest_deg": peak,
+        "bus": dict(sorted(measured.counts.items())),
+    }
+
+
+def _size(errors: Array) -> tuple[float, float]:
+    return float(np.sqrt(np.mean(errors**2))), float(np.max(np.abs(errors)))
+
+
+def _write_toml(path: Path, content: dict[str, Any]) -> None:
+    import tomli_w
+
+    write_beside(path, tomli_w.dumps(content).encode())

@@ -1,0 +1,223 @@
+"""halltwin bench: measure on a virtual or real bench, close the loop, replay a log, or be the bench for others."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from twin.errors import UserError
+
+if TYPE_CHECKING:
+    from scenarios.bench.faults import Fault, Opener
+    from scenarios.bench.measure import Measured, Measurement
+    from twin.chain import Chain
+
+DEFAULT_TWIN = "paper-encoder"
+HIDDEN = "saturation:k_percent=2"
+"""What the encoder of the closed loop hides unless told otherwise: a disk near saturation, which the preset lacks."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """The options of the command, as given."""
+
+    output: Path
+    twin: str | None = None
+    hide: Sequence[str] = ()
+    points: int = 360
+    turns: int = 1
+    both_directions: bool = False
+    speeds_rpm: Sequence[float] = (0.0,)
+    temperatures: str = ""
+    settle_s: float = 0.3
+    channels: bool = True
+    closed_loop: bool = False
+    plot: Path | None = None
+    record: Path | None = None
+    replay: Path | None = None
+    restart: bool = False
+    serve: float | None = None
+    interface: str = "virtual"
+    channel: str | None = None
+    bus_options: Sequence[str] = ()
+    faults: Sequence[str] = ()
+    timeout_s: float = 0.2
+    attempts: int = 15
+    manifest_deg: float = 20.0
+    real_time: bool = False
+    seed: int = 0
+
+
+def run(options: Options) -> None:
+    """Do what the options ask for. Raises UserError."""
+    for package, name in (("can", "python-can"), ("cantools", "cantools")):
+        if find_spec(package) is None:
+            raise UserError(f"the bench needs {name}; pip install 'halltwin[bench]'")
+    from scenarios.bench.buses import Interface, parse_options
+    from scenarios.bench.faults import parse
+
+    if options.replay is not None:
+        _replay(options)
+        return
+    faults = [fault for text in options.faults for fault in parse(text)]
+    open_bus = Interface(options.interface, options.channel, parse_options(options.bus_options)).opener()
+    if options.serve is not None:
+        _serve(options, open_bus, faults)
+        return
+    _measure(options, open_bus, faults)
+
+
+def hidden_encoder(twin: str | None, hide: Sequence[str]) -> Chain:
+    """The encoder on the virtual bench: a twin, and effects EFFECT:PARAMETER=VALUE[,...] that it hides."""
+    from twin.presets import read_twin_or_preset
+
+    chain = read_twin_or_preset(twin or DEFAULT_TWIN)
+    for text in hide:
+        key, _, given = text.partition(":")
+        try:
+            params = {name: float(value) for name, _, value in (part.partition("=") for part in given.split(","))}
+            chain = chain.with_effect(key, **params)
+        except (KeyError, ValueError) as error:
+            said = error.args[0] if error.args else error
+            raise UserError(f"--hide {text}: {said}; expected EFFECT:PARAMETER=VALUE, e.g. {HIDDEN}") from None
+    return chain
+
+
+def _measurement(options: Options) -> Measurement:
+    from scenarios.bench.link import check_log_name
+    from scenarios.bench.measure import Measurement
+    from scenarios.bench.plan import Plan
+    from scenarios.bench.sequence import Patience
+    from scenarios.protocol import numbers
+    from twin.limits import require_within
+
+    require_within("timeout", options.timeout_s, 1e-3, 3600.0, "s")
+    require_within("attempts", options.attempts, 1, 1e6, whole=True)
+    require_within("manifest", options.manifest_deg, 0.0, 180.0, "deg")
+    if options.record is not None:
+        check_log_name(options.record)
+    plan = Plan(
+        points=options.points,
+        turns=options.turns,
+        # The closed loop corrects to the middle between both directions, so it has to see both.
+        both_directions=options.both_directions or options.closed_loop,
+        speeds_rpm=tuple(options.speeds_rpm),
+        temperatures_c=tuple(numbers("temperatures", options.temperatures)),
+        settle_s=options.settle_s,
+    )
+    return Measurement(
+        plan=plan,
+        output=options.output,
+        channels=options.channels,
+        patience=Patience(timeout_s=options.timeout_s, attempts=options.attempts),
+        record=options.record,
+        manifest_deg=options.manifest_deg,
+    )
+
+
+def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> None:
+    from scenarios.bench.buses import with_bench_faults
+    from scenarios.bench.closed_loop import lines, run_loop
+    from scenarios.bench.journal import Journal
+    from scenarios.bench.measure import measure
+
+    if options.plot is not None:
+        from scenarios.plotting import style
+
+        style(options.plot)
+        if not options.closed_loop:
+            raise UserError("--plot draws the closed loop; give --closed-loop, or draw the sweep with halltwin report")
+    job = _measurement(options)
+    own_bus = with_bench_faults(open_bus, faults, options.seed)
+    if options.closed_loop:
+        # Noise is drawn anew for each pose, so both measurements may share a bench and a seed.
+        with _bench(options, open_bus, faults, start=0) as twin:
+            job = replace(job, twin=twin)
+            loop = run_loop(job, own_bus, restart=options.restart, seed=options.seed, say=print)
+        for line in lines(loop):
+            print(line)
+        if options.plot is not None:
+            from scenarios.bench.closed_loop_plot import plot_loop
+
+            plot_loop(options.plot, loop)
+            print(f"wrote {options.plot}")
+        return
+    twin = _twin_name(options)
+    journal = Journal(job.output, job.plan, twin=twin, restart=options.restart)
+    with _bench(options, open_bus, faults, start=len(journal.readings)):
+        measured = measure(job, journal, own_bus)
+    _report(job.output, measured)
+
+
+@contextmanager
+def _bench(options: Options, open_bus: Opener, faults: Sequence[Fault], *, start: int) -> Iterator[str]:
+    """The virtual bench where the bus is virtual and nobody else can be on it; yields the name of its encoder."""
+    if options.interface != "virtual":
+        if options.twin is not None or options.hide or any(fault.node != "bench" for fault in faults):
+            raise UserError(
+                f"--twin, --hide and --fault of a node are for the virtual bench; on {options.interface} "
+                "the nodes are there already: give them where the nodes run (--serve)"
+            )
+        yield _twin_name(options)
+        return
+    from scenarios.bench.virtual import Setup, running
+
+    # A continued run draws other noise than the one it continues.
+    setup = Setup(chain=_chain(options), faults=faults, seed=(options.seed, start), real_time=options.real_time)
+    with running(setup, open_bus):
+        yield _twin_name(options)
+
+
+def _chain(options: Options) -> Chain:
+    hides = options.hide or ((HIDDEN,) if options.closed_loop and options.twin is None else ())
+    return hidden_encoder(options.twin, hides)
+
+
+def _twin_name(options: Options) -> str:
+    if options.interface != "virtual":
+        return f"on {options.interface}"
+    return " ".join([options.twin or DEFAULT_TWIN, *options.hide, f"seed {options.seed}"])
+
+
+def _serve(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> None:
+    """Be the bench for another process, for a time; 0: until interrupted."""
+    from scenarios.bench.virtual import Setup, running
+
+    if options.interface == "virtual":
+        raise UserError("--serve: the virtual interface ends at this process; give another, e.g. udp_multicast, vcan")
+    setup = Setup(chain=_chain(options), faults=faults, seed=(options.seed, 0), real_time=options.real_time)
+    with running(setup, open_bus):
+        print(f"the virtual bench is on {options.interface}; Ctrl-C ends it", flush=True)
+        _wait(options.serve or float("inf"), time.sleep)
+
+
+def _wait(seconds: float, sleep: Callable[[float], None]) -> None:
+    end = time.monotonic() + seconds
+    try:
+        while (left := end - time.monotonic()) > 0.0:
+            sleep(min(left, 1.0))
+    except KeyboardInterrupt:
+        return
+
+
+def _replay(options: Options) -> None:
+    from scenarios.bench.replay import replay
+
+    assert options.replay is not None
+    found = replay(options.replay, options.output, channels=options.channels, manifest_deg=options.manifest_deg)
+    _report(options.output, found)
+
+
+def _report(output: Path, measured: Measured) -> None:
+    kept, rejected, counts = measured.pretreated.kept, measured.pretreated.rejected, measured.counts
+    already = f", {measured.continued} of them from the run before" if measured.continued else ""
+    print(f"wrote {output}: {len(kept)} readings{already}, {len(rejected)} rejected")
+    for index, why in rejected.items():
+        print(f"- reading {index + 1} rejected: {why}")
+    faults = [f"{count} {kind}" for kind, count in sorted(counts.items()) if kind != "frames"]
+    print(f"bus: {counts['frames']} frames; {', '.join(faults) or 'no faults'}")

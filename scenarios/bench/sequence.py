@@ -1,0 +1,160 @@
+"""The sequence: drive to an angle, let it settle, ask all nodes for what they read, repeat."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+from diagnosis.compensation import Correction
+from scenarios.bench.link import Link
+from scenarios.bench.loading import ACTIVE, RECEIVING, items, numbers
+from scenarios.bench.messages import Frame, messages
+from scenarios.bench.nodes import AT_REST, MOVING, PASSED
+from scenarios.bench.plan import Plan, Stop, resolution_deg
+from scenarios.bench.readings import Assembler, Event, Reading
+from twin.errors import UserError
+
+NODE_WORDS = {
+    "Stepper": "the stepper's controller",
+    "Reference": "the reference encoder",
+    "Hall": "the Hall encoder",
+    "Chamber": "the climate chamber",
+}
+
+
+class NodeGone(UserError):
+    """A node did not answer in all attempts; the message says which one and what it was asked for."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Patience:
+    """How long to wait for an answer [s], how often to ask a silent node, and how long a busy one may be busy [s]."""
+
+    timeout_s: float = 0.2
+    attempts: int = 15
+    longest_s: float = 7200.0
+
+
+@dataclass(eq=False)
+class Sequence:
+    """Runs a plan over a link."""
+
+    link: Link
+    assembler: Assembler
+    patience: Patience
+
+    def prepare(self, plan: Plan, first: Stop) -> None:
+        """Settings of the drive, and the run-in before the first reading."""
+        settings = {"Settle": round(plan.settle_s * 1000.0), "Acceleration": round(plan.acceleration_rpm_per_s)}
+        self._ask("MotionSettings", "MotionStatus", settings, lambda frame: True)
+        self.drive(plan.run_in_deg(first), plan.drive_rpm)
+
+    def take(self, plan: Plan, stops: Iterable[Stop], keep: Callable[[Reading], None]) -> None:
+        """Take the readings one after the other; ``keep`` gets each as soon as it is complete."""
+        temperature: float | None = None
+        for stop in stops:
+            if stop.temperature_c is not None and stop.temperature_c != temperature:
+                temperature = stop.temperature_c
+                self._heat(temperature)
+            if stop.speed_rpm:
+                self.drive(stop.angle_deg, stop.speed_rpm, passing=True)
+            else:
+                self.drive(stop.angle_deg, plan.drive_rpm)
+            keep(self._read(stop))
+
+    def drive(self, angle_deg: float, speed_rpm: float, *, passing: bool = False) -> None:
+        """Go to an angle and stand still, or pass it at this speed."""
+        done = PASSED if passing else AT_REST
+        self._ask(
+            "MotionCommand",
+            "MotionStatus",
+            {"Target": resolution_deg(angle_deg), "Speed": speed_rpm, "Passing": passing},
+            lambda frame: frame.values["State"] == done,
+            busy=lambda frame: frame.values["State"] == MOVING,
+        )
+
+    def load(self, correction: Correction | None) -> None:
+        """Load a correction into the Hall encoder, or take it out again."""
+        transfer = self.link.next_sequence() % 256
+        listed = items(numbers(correction))
+        for item, value in enumerate(listed):
+            wanted = ACTIVE if item == len(listed) - 1 else RECEIVING
+            given = {"Transfer": transfer, "Item": item}
+            answer = self._ask("CorrectionPart", "CorrectionStatus", {**given, "Value": value}, _matches(given))
+            if answer.values["State"] != wanted:
+                raise UserError(f"the Hall encoder refused the correction at item {item} of {len(listed)}")
+
+    def _heat(self, temperature_c: float) -> None:
+        self._ask(
+            "TemperatureCommand",
+            "ChamberStatus",
+            {"Setpoint": temperature_c},
+            lambda frame: bool(frame.values["Reached"]),
+            busy=lambda frame: not frame.values["Reached"],
+        )
+
+    def _read(self, stop: Stop) -> Reading:
+        """One reading; a frame that is missing or not to be trusted is asked for again, together with the others."""
+        label = {
+            "Index": stop.index,
+            "Turn": stop.turn,
+            "Backwards": stop.direction < 0,
+            "Speed": stop.speed_rpm,
+        }
+        before = len(self.assembler.readings)
+        for attempt in range(self.patience.attempts):
+            if attempt:
+                self._repeat("Sync", attempt)
+            self.link.send("Sync", {"Sequence": self.link.next_sequence(), **label})
+            end = time.monotonic() + self.patience.timeout_s
+            while (left := end - time.monotonic()) > 0.0:
+                self.link.receive(left)
+                if len(self.assembler.readings) > before:
+                    return self.assembler.readings[-1]
+        raise self._gone({messages().sender(name) for name in self.assembler.missing}, "Sync")
+
+    def _ask(
+        self,
+        name: str,
+        answer: str,
+        values: Mapping[str, float],
+        done: Callable[[Frame], bool],
+        *,
+        busy: Callable[[Frame], bool] = lambda frame: False,
+    ) -> Frame:
+        """Send a request until its answer comes. A node that says it is busy is asked on, a silent one is given up."""
+        numbered = name != "CorrectionPart"
+        asked: set[float] = set()
+        silent = 0
+        give_up = time.monotonic() + self.patience.longest_s
+        while silent < self.patience.attempts and time.monotonic() < give_up:
+            if silent:
+                self._repeat(name, silent)
+            silent += 1
+            sequence = self.link.next_sequence()
+            asked.add(sequence)
+            self.link.send(name, {**values, **({"Sequence": sequence} if numbered else {})})
+            end = time.monotonic() + self.patience.timeout_s
+            while (left := end - time.monotonic()) > 0.0:
+                frame = self.link.receive(left)
+                if frame is None or frame.name != answer or (numbered and frame.values["Sequence"] not in asked):
+                    continue
+                if done(frame):
+                    return frame
+                if busy(frame):
+                    silent = 0
+        raise self._gone({messages().sender(answer)}, name)
+
+    def _repeat(self, name: str, attempt: int) -> None:
+        self.assembler.counts["asked again"] += 1
+        self.assembler.on_event(Event(f"attempt {attempt + 1}", name, None))
+
+    def _gone(self, nodes: set[str], name: str) -> NodeGone:
+        waited = self.patience.attempts * self.patience.timeout_s
+        said = " and ".join(NODE_WORDS[node] for node in sorted(nodes))
+        return NodeGone(f"{said} did not answer {name} in {self.patience.attempts} attempts ({waited:g} s)")
+
+
+def _matches(given: dict[str, int]) -> Callable[[Frame], bool]:
+    return lambda frame: all(frame.values[key] == value for key, value in given.items())

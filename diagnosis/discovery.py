@@ -10,10 +10,10 @@ import numpy as np
 
 from diagnosis import footprints
 from diagnosis.evidence import Evidence, collect
-from diagnosis.proof import held_out_residuals, rms_deg
 from diagnosis.joint_fit import BASELINE, Fit, Free, Setting, evaluate, free_of, solve, tidy
 from diagnosis.linear import Linear
 from diagnosis.noise_model import noise_family
+from diagnosis.proof import held_out_residuals, rms_deg
 from diagnosis.screening import log_probability
 from diagnosis.search import ALPHA, SWAP_MARGIN, drop, judge, likelihood, search, settle
 from twin.angles import TAU, Array, wrap
@@ -134,6 +134,7 @@ def discover(
     baseline_held = rms_deg(held[0], use)
     extended_held = rms_deg(held[-1], use)
     everything = [_with_figures(c, fit, held, use) for c in everything]
+    fit = replace(fit, chain=_with_noise(fit, step, everything))
     floor = np.degrees(evidence.repeat_rms) if evidence.repeat_rms else extended_held
     invisible = {
         e.name: e.missing(evidence.motion.provides)
@@ -292,10 +293,10 @@ def _with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | 
     sigma = footprints.robust_rms(footprints.local_residual(fit.residual[0]))
     if bits is not None and step / np.sqrt(12.0) > 0.1 * sigma and "output_quantisation" not in chain.values:
         chain = chain.with_values({"output_quantisation": {"bits": float(bits)}})
-    if chain is fit.chain:
+    coarse = stair_step(chain, step)
+    if coarse == 0.0:
         return fit
     # Before the stairs are modelled they add step/sqrt(12) to what the noise leaves.
-    coarse = stair_step(chain, step)
     rest = float(np.mean(fit.residual[0][fit.evidence.usable] ** 2)) - coarse**2 / 12.0
     blur = float(np.sqrt(max(rest, (0.05 * coarse) ** 2)))
     fit = solve(evaluate(chain, fit.free, fit.evidence, replace(fit.setting, blur=blur)))
@@ -413,6 +414,28 @@ def _without_stairs(fit: Fit, key: str) -> Array:
     """Angle residual (n,) [rad] against the smooth angle ahead of one effect's stairs."""
     smooth = Linear(fit.chain.without(key), fit.evidence.motion, blur=fit.setting.blur, observables=1)
     return wrap(fit.evidence.measured - smooth.angle)
+
+
+def _with_noise(fit: Fit, step: float, causes: Sequence[Named]) -> Chain:
+    """The extended chain with the noise that is left and the rare events found, so that it simulates alike."""
+    use = fit.evidence.usable
+    left = float(np.mean(fit.residual[0][use] ** 2))
+    if "output_quantisation" in fit.chain.values:
+        left = fit.setting.blur**2 if fit.setting.blur > 0.0 else left - step**2 / 12.0
+    for _, effect, own in fit.chain.active("channels"):
+        if effect.spread is not None:
+            left -= float(np.mean(effect.spread(fit.linear.sensor_angle, own)))
+    correlation, share = fit.setting.family.correlation[fit.setting.member]
+    rms_deg_left = float(np.degrees(np.sqrt(max(left, 0.0))))
+    values: dict[str, dict[str, Any]] = {
+        "noise": {"rms_deg": rms_deg_left, "correlation": correlation, "correlated_share": share}
+    }
+    for cause in causes:
+        if cause.name == "bus_glitch":
+            values["bus_glitch"] = {"count": float(len(cause.rows))}
+        elif cause.name == "stale_frames":
+            values["stale_frames"] = {"fraction_percent": 100.0 * len(cause.rows) / max(fit.evidence.group.size, 1)}
+    return fit.chain.with_values(values)
 
 
 def _merge(entries: list[Named]) -> list[Named]:

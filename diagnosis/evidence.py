@@ -11,6 +11,10 @@ from twin.effect import BoolArray
 from twin.motion import Motion
 from twin.sweep import Sweep
 
+MOST_ROWS = 12_000
+"""Longer records are averaged over blocks of readings, as long as a turn keeps the points that follow."""
+DENSE_POINTS = 360
+
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
@@ -75,12 +79,24 @@ def collect(sweep: Sweep) -> Evidence:
 
 
 def _repeats(motion: Motion) -> IntArray:
-    """For each row the number of its group; groups of one unless the bench stood still between most readings."""
+    """For each row the number of its group; groups of one unless the bench stood still between most readings.
+
+    A record far denser than any structure searched for is averaged over short blocks.
+    """
     step = np.abs(np.diff(motion.shaft_rad))
     n = len(motion)
     still = step < 0.2 * np.quantile(step, 0.95)
     if np.mean(still) < 0.4:
-        return np.arange(n)
+        block = min(-(-n // MOST_ROWS), int(motion.points_per_turn // DENSE_POINTS))
+        if block < 2:
+            return np.arange(n)
+        # A block ends where the direction, the turn or the pace changes.
+        pace = np.abs(np.diff(motion.speed_rad_s)) > 0.05 * max(float(np.max(np.abs(motion.speed_rad_s))), 1e-9)
+        ends = (np.diff(motion.turn) != 0) | (np.diff(motion.direction) != 0) | pace
+        part = np.concatenate([[0], np.cumsum(ends)])
+        start = np.concatenate([[0], np.flatnonzero(ends) + 1])
+        inside = (np.arange(n) - start[part]) // block
+        return np.concatenate([[0], np.cumsum((np.diff(part) != 0) | (np.diff(inside) != 0))])
     same = still & (np.diff(motion.turn) == 0) & (np.diff(motion.direction) == 0)
     return np.concatenate([[0], np.cumsum(~same)])
 

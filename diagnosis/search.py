@@ -23,6 +23,8 @@ SWAP_MARGIN = 2.0
 SAME_FIT = 9.0
 """Difference of twice the log likelihood, three sigma, below which two causes cannot be told apart."""
 MOST_CAUSES = 8
+FAIR_SHARE = 0.15
+"""Share of a cause's first gain that another effect must reach to be tried in its place later."""
 REPEATABLE = frozenset({"drive_ripple", "magnet_harmonic"})
 
 
@@ -155,18 +157,19 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
     effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
     threshold = float(np.log(alpha / max(len(effects), 1)))
     keys = list(keys)
+    contenders: dict[str, list[Effect]] = {}
     fit, base = settle(fit)
     if keys:
-        fit, keys = improve(fit, effects, keys, threshold)
+        fit, keys = improve(fit, effects, keys, threshold, contenders)
         fit, base = settle(fit)
     while len(keys) < MOST_CAUSES:
         step = best_addition(fit, base, effects, keys, threshold)
         if step is None:
             break
-        fit, key = step
+        fit, key, contenders[step[1]] = step
         keys.append(key)
         fit, base = settle(fit)
-        fit, keys = improve(fit, effects, keys, threshold)
+        fit, keys = improve(fit, effects, keys, threshold, contenders)
         fit, base = settle(fit)
     return Found(fit, tuple(keys), len(effects))
 
@@ -201,8 +204,11 @@ def multiples(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> lis
 
 def best_addition(
     fit: Fit, base: Base, effects: Sequence[Effect], keys: Sequence[str], threshold: float
-) -> tuple[Fit, str] | None:
-    """The joint fit with the best significant candidate, contenders compared by exact fits; None if there is none."""
+) -> tuple[Fit, str, list[Effect]] | None:
+    """The joint fit with the best significant candidate, contenders compared by exact fits; None if there is none.
+
+    With it come the effects that explain a fair part of what it does: those that may take its place later.
+    """
     ranked = [c for c in candidates(base, effects, keys) if c.log_p + handicap(c.effect) < threshold]
     if not ranked:
         return None
@@ -213,11 +219,18 @@ def best_addition(
     (log_p, trial, key), chosen = min(trials, key=lambda t: t[0][0] + handicap(t[1].effect))
     if log_p + handicap(chosen.effect) > threshold:
         return None
-    return trial, key
+    fair = [c.effect for c in ranked if c.gain > FAIR_SHARE * chosen.gain]
+    return trial, key, list({effect.name: effect for effect in fair}.values())
 
 
-def improve(fit: Fit, effects: Sequence[Effect], keys: list[str], threshold: float) -> tuple[Fit, list[str]]:
-    """Prune what no longer pays, then try every swap; repeat while something changes."""
+def improve(
+    fit: Fit,
+    effects: Sequence[Effect],
+    keys: list[str],
+    threshold: float,
+    contenders: dict[str, list[Effect]],
+) -> tuple[Fit, list[str]]:
+    """Prune what no longer pays, then try every swap with what contended for its place; repeat while all changes."""
     for _ in range(3):
         changed = False
         for key in list(keys):
@@ -237,11 +250,12 @@ def improve(fit: Fit, effects: Sequence[Effect], keys: list[str], threshold: flo
                 fit, keys, changed = without, others, True
                 continue
             score = log_p + handicap(effect)
-            for rival in candidates(base, effects, others)[:3]:
+            for rival in candidates(base, contenders.get(key, effects), others)[:3]:
                 if rival.effect.name == effect.name or rival.log_p + handicap(rival.effect) > score + 8.0:
                     continue
                 rival_p, trial, rival_key = exact(without, before, rival, base)
                 if rival_p + handicap(rival.effect) < score - SWAP_MARGIN:
+                    contenders[rival_key] = contenders.get(key, list(effects))
                     fit, keys, changed = trial, [*others, rival_key], True
                     break
         if not changed:

@@ -50,6 +50,7 @@ def to_json(found: Discovery) -> dict[str, Any]:
                 "error_rms_deg": _rms(np.degrees(raw_error(sweep))),
                 "columns": list(sweep.columns),
                 "output_bits": found.bits,
+                "held_against": "the paper's error model" if found.given is None else "given twin",
             },
             "baseline": {
                 "parameters": baseline_parameters(found.baseline),

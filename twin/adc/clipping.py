@@ -17,7 +17,7 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
-    return [{"level_percent": float(level)} for level in np.linspace(84.0, 116.0, 81)]
+    return [{"level_percent": float(level)} for level in np.linspace(84.0, 116.0, 33)]
 
 
 CLIPPING = Effect(

@@ -23,7 +23,7 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     return [
         {"width_deg": width, "centre_deg": float(centre)}
         for width in widths
-        for centre in np.arange(0.0, 360.0, max(width, 4.0))
+        for centre in np.arange(0.0, 360.0, max(1.3 * width, 4.0))
     ]
 
 

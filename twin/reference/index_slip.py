@@ -17,7 +17,7 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
-    rows = np.unique(np.linspace(2, len(motion) - 2, min(len(motion) - 3, 160)).astype(int))
+    rows = np.unique(np.linspace(2, len(motion) - 2, min(len(motion) - 3, 64)).astype(int))
     return [{"time_s": float(motion.time_s[row])} for row in rows]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,9 +13,9 @@ import numpy as np
 
 from diagnosis.compensation import Correction, correction_of, to_dict
 from scenarios.bench.faults import Opener
-from scenarios.bench.journal import Journal
+from scenarios.bench.journal import Journal, finished_readings, running_path
 from scenarios.bench.measure import Measured, Measurement, measure
-from scenarios.bench.pretreatment import errors_deg
+from scenarios.bench.pretreatment import errors_deg, pretreat
 from scenarios.bench.readings import Reading
 from twin.angles import Array, wrap_deg
 from twin.errors import UserError
@@ -61,18 +62,24 @@ def direct_errors_deg(readings: Sequence[Reading]) -> Array:
 
 
 def run_loop(job: Measurement, open_bus: Opener, *, restart: bool, seed: int, say: Callable[[str], None]) -> Loop:
-    """Run the loop; all files lie beside ``job.output``. A first half that was finished is not measured again."""
+    """Run the loop; all files lie beside ``job.output``. A run that was broken off in its second half goes on there."""
     from scenarios.answer import to_json
     from scenarios.explain import explain
     from twin.files import write_twin
 
     first = _half(job, "before")
-    before = measure(
-        first,
-        Journal(first.output, first.plan, twin=first.twin, restart=restart),
-        open_bus,
-        prepare=lambda sequence: sequence.load(None),
-    )
+    second = _half(job, "after")
+    kept = finished_readings(first.output) if running_path(second.output).exists() and not restart else []
+    if kept:
+        # The second half was broken off: the readings before belong to the correction that it was measured with.
+        before = Measured(pretreat(kept, manifest_deg=job.manifest_deg), Counter(), len(kept))
+    else:
+        before = measure(
+            first,
+            Journal(first.output, first.plan, twin=first.twin, restart=restart),
+            open_bus,
+            prepare=lambda sequence: sequence.load(None),
+        )
     say(f"measured {first.output.name}: {len(before.pretreated.kept)} readings")
     found = explain(Sweep.read(first.output), seed=seed)
     answer = to_json(found)
@@ -82,7 +89,6 @@ def run_loop(job: Measurement, open_bus: Opener, *, restart: bool, seed: int, sa
     _write_toml(correction_path, to_dict(correction))
     named = ", ".join(cause["name"] for cause in answer["causes"]) or "no cause beyond the paper's error model"
     say(f"explained: {answer['verdict']}: {named}; correction of {correction.series.shape[1]} orders loaded")
-    second = _half(job, "after")
     after = measure(
         second,
         Journal(second.output, second.plan, twin=second.twin, restart=restart),

@@ -11,7 +11,7 @@ from typing import Protocol
 import can
 import numpy as np
 
-from scenarios.bench.messages import messages, with_counter
+from scenarios.bench.messages import messages, with_byte_flipped, with_counter
 from twin.errors import UserError
 from twin.limits import require_within
 
@@ -19,8 +19,11 @@ NODES = ("stepper", "reference", "hall", "chamber")
 AFTER_FRAMES = 200
 """Faults that happen once begin after a node has sent this many frames."""
 _SHARES = ("lost", "duplicated", "checksum")
+_HALL = ("wild", "spi")
 _ONCE = {"silent": 1.0, "gone": AFTER_FRAMES, "stuck": 20.0, "bus_off": 0.5}
 _DEFAULT_SHARE = 0.01
+_ANGLE_HIGH_BYTE, _QUARTER_TURN = 3, 0x40
+"""The bit of HallAngle that is worth 90 deg."""
 
 
 class Bus(Protocol):
@@ -36,9 +39,12 @@ Opener = Callable[[], Bus]
 
 @dataclass(frozen=True)
 class Fault:
-    """``lost``, ``duplicated``, ``checksum``: share of a node's frames. Once each, from its 200th frame on:
-    ``silent`` (seconds), ``stuck`` (frames under one counter), ``bus_off`` (seconds).
-    ``gone``: for good, after this many frames."""
+    """One fault of one node.
+
+    ``lost``, ``duplicated``, ``checksum``: share of its frames. ``wild``, ``spi``: share of the Hall encoder's angles
+    that are 90 deg off under a right checksum, or whose SPI frame has a wrong bit. Once each, from its 200th frame on:
+    ``silent`` (seconds), ``stuck`` (frames under one counter), ``bus_off`` (seconds). ``gone``: after so many frames.
+    """
 
     kind: str
     node: str
@@ -49,9 +55,10 @@ def parse(text: str) -> tuple[Fault, ...]:
     """KIND[:NODE][=VALUE], without a node for all of them. Raises UserError."""
     head, _, given = text.partition("=")
     kind, _, node = head.partition(":")
-    if kind not in (*_SHARES, *_ONCE):
-        raise UserError(f"fault {text!r}: unknown kind; expected one of {', '.join((*_SHARES, *_ONCE))}")
-    known = (*NODES, "bench") if kind in (*_SHARES, "bus_off") else NODES
+    kinds = (*_SHARES, *_HALL, *_ONCE)
+    if kind not in kinds:
+        raise UserError(f"fault {text!r}: unknown kind; expected one of {', '.join(kinds)}")
+    known = ("hall",) if kind in _HALL else (*NODES, "bench") if kind in (*_SHARES, "bus_off") else NODES
     if node and node not in known:
         raise UserError(f"fault {text!r}: unknown node; expected one of {', '.join(known)}")
     if not node and kind in _ONCE:
@@ -60,7 +67,7 @@ def parse(text: str) -> tuple[Fault, ...]:
         value = float(given) if given else _ONCE.get(kind, _DEFAULT_SHARE)
     except ValueError:
         raise UserError(f"fault {text!r}: {given!r} is not a number") from None
-    require_within(f"fault {kind}", value, 0.0, 1.0 if kind in _SHARES else 1e9)
+    require_within(f"fault {kind}", value, 0.0, 1e9 if kind in _ONCE else 1.0)
     return tuple(Fault(kind, one, value) for one in ((node,) if node else known))
 
 
@@ -88,11 +95,14 @@ class FaultyBus:
         if self._mute():
             return
         message = self._counted(msg)
-        draw = dict(zip(_SHARES, self.rng.random(len(_SHARES)), strict=True))
+        drawn = (*_SHARES, "wild") if messages().name_of(msg) == "HallAngle" else _SHARES
+        draw = dict(zip(drawn, self.rng.random(len(drawn)), strict=True))
         hit = [fault.kind for fault in self.faults if draw.get(fault.kind, 1.0) < fault.value]
         self.done.update(hit)
         if "lost" in hit:
             return
+        if "wild" in hit:
+            message = with_byte_flipped(message, _ANGLE_HIGH_BYTE, _QUARTER_TURN)
         if "checksum" in hit:
             data = bytearray(message.data)
             data[int(self.rng.integers(len(data)))] ^= 1 << int(self.rng.integers(8))

@@ -41,11 +41,15 @@ def word_bits(chain: Chain) -> int:
 class HallNode(Node):
     """Latches the twin's reading, carries it over SPI, corrects it where a correction is loaded, and sends it."""
 
-    def __init__(self, bus: FaultyBus, world: World, chain: Chain, seed: tuple[int, ...]) -> None:
+    def __init__(
+        self, bus: FaultyBus, world: World, chain: Chain, seed: tuple[int, ...], *, spi_faults: float = 0.0
+    ) -> None:
+        """``spi_faults``: share of SPI frames with a bit flipped on the way."""
         super().__init__("hall", bus)
         self._world, self._chain, self._seed = world, chain, seed
         self._bits = word_bits(chain)
         self._read_out = 0
+        self._spi_faults, self._spi_rng = spi_faults, np.random.default_rng((*seed, 5))
         self._loader = Loader()
 
     def handlers(self) -> Mapping[str, Callable[[Frame], None]]:
@@ -84,6 +88,10 @@ class HallNode(Node):
         """The angle word as the micro-controller has it, left aligned to 16 bits; whether the frame was faulty."""
         frame = spi_frame(measured_rad, self._bits, self._read_out)
         self._read_out += 1
+        if self._spi_rng.random() < self._spi_faults:
+            self.bus.done["spi"] += 1
+            frame = frame.copy()
+            frame[0, self._spi_rng.integers(frame.shape[1])] ^= 1 << self._spi_rng.integers(8)
         words, sound, _ = spi_words(frame, self._bits)
         return int(words[0]) << (SPI_WORD_BITS - self._bits), not bool(sound[0])
 

@@ -13,7 +13,7 @@ from typing import IO, Any
 from scenarios.bench.plan import Plan
 from scenarios.bench.readings import Event, Reading
 from twin.errors import UserError
-from twin.sweep_file import check_writable
+from twin.sweep_file import check_writable, write_beside
 
 SCHEMA = "halltwin.bench/1"
 
@@ -61,12 +61,23 @@ class Journal:
         return self.path.rename(finished_path(self._sweep))
 
     def close(self) -> None:
-        """Leave the journal for a later run."""
+        """Leave the journal for a later run, where there is something to go on from."""
         self._file.close()
+        if not self.readings:
+            self.path.unlink(missing_ok=True)
 
     def _line(self, content: dict[str, Any]) -> None:
         self._file.write(json.dumps(content) + "\n")
         self._file.flush()
+
+
+def finished_readings(sweep: Path) -> list[Reading]:
+    """The readings in the log of a finished sweep; none where there is no such log."""
+    path = finished_path(sweep)
+    if not path.exists():
+        return []
+    content = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+    return [Reading(**entry["reading"]) for entry in content if "reading" in entry]
 
 
 def _taken_up(path: Path, head: dict[str, Any]) -> list[Reading]:
@@ -88,5 +99,5 @@ def _taken_up(path: Path, head: dict[str, Any]) -> list[Reading]:
                 f"{path}: belongs to another measurement (its {key} is {content[0].get(key)!r}, not {value!r}); "
                 "give the same options to go on with it, or --restart"
             )
-    path.write_text(whole + "\n", encoding="utf-8")
+    write_beside(path, (whole + "\n").encode())
     return [Reading(**entry["reading"]) for entry in content if "reading" in entry]

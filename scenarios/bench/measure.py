@@ -82,8 +82,10 @@ def measure(
                 f"{error}; {len(journal.readings)} of {job.plan.readings} readings are kept in {journal.path}: "
                 "mend it and run again with the same options to go on"
             ) from None
-        except BaseException:
+        except BaseException as error:
             journal.close()
+            if isinstance(error, KeyboardInterrupt) and journal.readings:
+                print(f"{len(journal.readings)} readings are kept in {journal.path}: run again to go on")
             raise
         finally:
             link.close()

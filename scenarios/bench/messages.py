@@ -66,9 +66,10 @@ class Messages:
         counter = values.get("Counter")
         return Frame(declared.name, values, None if counter is None else int(counter), sound)
 
-    def identifiers(self, *names: str) -> list[dict[str, int]]:
-        """Receive filters of python-can for these messages."""
-        return [{"can_id": self.by_name[name].frame_id, "can_mask": 0x7FF} for name in names]
+    def name_of(self, message: can.Message) -> str | None:
+        """The name of a frame's message, without decoding it."""
+        declared = self.by_identifier.get(message.arbitration_id)
+        return None if declared is None else str(declared.name)
 
     def sender(self, name: str) -> str:
         """The node that sends a message."""
@@ -103,8 +104,14 @@ def checksum(identifier: int, data: bytes | bytearray) -> int:
 
 def with_counter(message: can.Message, counter: int) -> can.Message:
     """The same frame under another counter, with its checksum made right: what a stuck node would send."""
+    held = message.data[_COUNTER_BYTE] >> _COUNTER_SHIFT
+    return with_byte_flipped(message, _COUNTER_BYTE, (held ^ counter % COUNTS) << _COUNTER_SHIFT)
+
+
+def with_byte_flipped(message: can.Message, place: int, bits: int) -> can.Message:
+    """The same frame with these bits of a byte flipped, and its checksum made right."""
     data = bytearray(message.data)
-    data[_COUNTER_BYTE] = data[_COUNTER_BYTE] & 0x0F | counter % COUNTS << _COUNTER_SHIFT
+    data[place] ^= bits
     data[_CHECKSUM_BYTE] = checksum(message.arbitration_id, data)
     return can.Message(arbitration_id=message.arbitration_id, data=data, is_extended_id=False)
 

@@ -66,7 +66,8 @@ class StepperNode(Node):
         if frame.values["Passing"]:
             # At speed the rotor runs through its detents: their error averages out, and there is no settling.
             speed = float(np.sign(distance)) * speed_rpm * RPM
-            self._world.turn_to(commanded, distance / speed, speed, busy=busy)
+            ramp_s = self._drive.ramp_s(speed_rpm) if self._world.speed_rad_s == 0.0 else 0.0
+            self._world.turn_to(commanded, distance / speed + ramp_s, speed, busy=busy)
         else:
             duration = self._drive.duration(distance, speed_rpm)
             self._world.turn_to(self._drive.stands(commanded), duration, busy=busy)

@@ -89,6 +89,10 @@ class Plan:
         """The angle to start from, so that the first reading is approached as those after it."""
         return first.angle_deg - first.direction * RUN_IN_DEG
 
+    def ramp_deg(self, speed_rpm: float) -> float:
+        """Travel between standstill and this speed, with a margin: 6 deg/s is one turn a minute."""
+        return 0.0 if speed_rpm == 0.0 else 1.2 * 6.0 * speed_rpm**2 / (2.0 * self.acceleration_rpm_per_s) + 1.0
+
     def digest(self) -> str:
         """A short name of this plan: a journal of another one is not continued."""
         content = {key: list(v) if isinstance(v, tuple | list) else v for key, v in asdict(self).items()}

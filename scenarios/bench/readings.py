@@ -15,6 +15,8 @@ import can
 from scenarios.bench.messages import COUNTS, Frame, messages
 
 SENSOR_PARTS = ("ReferenceAngle", "ReferenceTime", "HallAngle", "ChamberStatus")
+REFUSED = ("checksum", "counter stands still", "fault flag")
+"""Kinds of events that say of a frame that it cannot be trusted."""
 _CLOCK_S = 2.0**32 * 1e-5
 
 
@@ -132,7 +134,8 @@ class Assembler:
             reference_deg=seen["Angle"],
             measured_deg=parts["HallAngle"]["Angle"],
             direction=way,
-            speed_rpm=way * label["Speed"],
+            # Not -0.
+            speed_rpm=way * label["Speed"] + 0.0,
             turn=int(label["Turn"]),
             temperature_c=parts["ChamberStatus"]["Temperature"],
             vx=None if channels is None or corrected else channels["Vx"],

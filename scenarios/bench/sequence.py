@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
@@ -12,7 +13,7 @@ from scenarios.bench.loading import ACTIVE, RECEIVING, items, numbers
 from scenarios.bench.messages import Frame, messages
 from scenarios.bench.nodes import AT_REST, MOVING, PASSED
 from scenarios.bench.plan import Plan, Stop, resolution_deg
-from scenarios.bench.readings import Assembler, Event, Reading
+from scenarios.bench.readings import REFUSED, Assembler, Event, Reading
 from twin.errors import UserError
 
 NODE_WORDS = {
@@ -53,7 +54,11 @@ class Sequence:
     def take(self, plan: Plan, stops: Iterable[Stop], keep: Callable[[Reading], None]) -> None:
         """Take the readings one after the other; ``keep`` gets each as soon as it is complete."""
         temperature: float | None = None
+        last: Stop | None = None
         for stop in stops:
+            if last is None or (stop.speed_rpm, stop.direction) != (last.speed_rpm, last.direction):
+                self._change_leg(plan, last, stop)
+            last = stop
             if stop.temperature_c is not None and stop.temperature_c != temperature:
                 temperature = stop.temperature_c
                 self._heat(temperature)
@@ -62,6 +67,18 @@ class Sequence:
             else:
                 self.drive(stop.angle_deg, plan.drive_rpm)
             keep(self._read(stop))
+        if last is not None and last.speed_rpm:
+            self._run_out(plan, last)
+
+    def _change_leg(self, plan: Plan, last: Stop | None, stop: Stop) -> None:
+        """From one leg to the next; angles that are passed need room to speed up before and to slow down behind."""
+        if last is not None and last.speed_rpm:
+            self._run_out(plan, last)
+        if stop.speed_rpm:
+            self.drive(stop.angle_deg - stop.direction * plan.ramp_deg(stop.speed_rpm), plan.drive_rpm)
+
+    def _run_out(self, plan: Plan, last: Stop) -> None:
+        self.drive(last.angle_deg + last.direction * plan.ramp_deg(last.speed_rpm), last.speed_rpm)
 
     def drive(self, angle_deg: float, speed_rpm: float, *, passing: bool = False) -> None:
         """Go to an angle and stand still, or pass it at this speed."""
@@ -102,7 +119,7 @@ class Sequence:
             "Backwards": stop.direction < 0,
             "Speed": stop.speed_rpm,
         }
-        before = len(self.assembler.readings)
+        before, refused = len(self.assembler.readings), self.assembler.counts.copy()
         for attempt in range(self.patience.attempts):
             if attempt:
                 self._repeat("Sync", attempt)
@@ -112,7 +129,7 @@ class Sequence:
                 self.link.receive(left)
                 if len(self.assembler.readings) > before:
                     return self.assembler.readings[-1]
-        raise self._gone({messages().sender(name) for name in self.assembler.missing}, "Sync")
+        raise self._gone({messages().sender(name) for name in self.assembler.missing}, "Sync", refused)
 
     def _ask(
         self,
@@ -126,7 +143,7 @@ class Sequence:
         """Send a request until its answer comes. A node that says it is busy is asked on, a silent one is given up."""
         numbered = name != "CorrectionPart"
         asked: set[float] = set()
-        silent = 0
+        silent, refused = 0, self.assembler.counts.copy()
         give_up = time.monotonic() + self.patience.longest_s
         while silent < self.patience.attempts and time.monotonic() < give_up:
             if silent:
@@ -144,16 +161,18 @@ class Sequence:
                     return frame
                 if busy(frame):
                     silent = 0
-        raise self._gone({messages().sender(answer)}, name)
+        raise self._gone({messages().sender(answer)}, name, refused)
 
     def _repeat(self, name: str, attempt: int) -> None:
         self.assembler.counts["asked again"] += 1
         self.assembler.on_event(Event(f"attempt {attempt + 1}", name, None))
 
-    def _gone(self, nodes: set[str], name: str) -> NodeGone:
+    def _gone(self, nodes: set[str], name: str, before: Counter[str]) -> NodeGone:
         waited = self.patience.attempts * self.patience.timeout_s
         said = " and ".join(NODE_WORDS[node] for node in sorted(nodes))
-        return NodeGone(f"{said} did not answer {name} in {self.patience.attempts} attempts ({waited:g} s)")
+        refused = ", ".join(f"{n} x {kind}" for kind, n in (self.assembler.counts - before).items() if kind in REFUSED)
+        how = f"gave no answer that can be trusted ({refused})" if refused else "did not answer"
+        return NodeGone(f"{said} {how}: {name}, {self.patience.attempts} attempts, {waited:g} s")
 
 
 def _matches(given: dict[str, int]) -> Callable[[Frame], bool]:

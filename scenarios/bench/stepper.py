@@ -45,6 +45,10 @@ class Stepper:
         period = stepper_order(self.steps)
         return float(commanded_rad + np.radians(self.error_deg) * np.sin(period * commanded_rad))
 
+    def ramp_s(self, speed_rpm: float) -> float:
+        """What getting up to this speed takes longer [s] than if the shaft had it at once."""
+        return speed_rpm / self.acceleration_rpm_per_s / 2.0
+
     def duration(self, distance_rad: float, speed_rpm: float) -> float:
         """Time [s] of a motion from rest to rest: ramp up, constant speed, ramp down, settling."""
         acceleration, speed = self.acceleration_rpm_per_s * RPM, speed_rpm * RPM

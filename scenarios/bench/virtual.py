@@ -47,10 +47,11 @@ def running(setup: Setup, open_bus: Opener) -> Iterator[dict[str, Counter[str]]]
         return made
 
     world = World(real_time=setup.real_time)
+    spi = sum(fault.value for fault in setup.faults if fault.kind == "spi")
     nodes: list[Node] = [
         StepperNode(bus("stepper"), world, setup.drive),
         ReferenceNode(bus("reference"), world, setup.chain, setup.encoder, setup.seed),
-        HallNode(bus("hall"), world, setup.chain, setup.seed),
+        HallNode(bus("hall"), world, setup.chain, setup.seed, spi_faults=spi),
         ChamberNode(bus("chamber"), world),
     ]
     for node in nodes:

@@ -127,7 +127,13 @@ def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, floa
         shape, gain, coefficient = _zoom(base, effect, shapes, shape, name, gain, coefficient)
     terms = coefficient.size
     values = {**effect.null(), **shape, **_parameters(effect, fit.linear.terms(effect), coefficient, motion)}
-    log_p = float(log_probability(np.array(gain), terms, base.dof)) + np.log(looks)
+    if effect.roles("per turn"):
+        # Draws from a distribution of their own: integrating them out costs each about half the log of its evidence
+        # (Laplace), and what is left to test is one scatter.
+        marginal = gain - terms * (1.0 + np.log(max(gain / terms, 1.0)))
+        log_p = float(log_probability(np.array(marginal), 1, base.dof))
+    else:
+        log_p = float(log_probability(np.array(gain), terms, base.dof)) + np.log(looks)
     return Candidate(effect, values, gain, terms, looks, log_p)
 
 

@@ -177,6 +177,15 @@ def _structure(found: Discovery, key: str) -> dict[str, Any]:
     values = found.fit.chain.values[key]
     answer: dict[str, Any] = {"kind": _KINDS.get(base_name(key), "order")}
     answer.update({name: float(value) for name, value in values.items() if np.ndim(value) == 0})
+    series = {
+        int(name[3:-4]): float(np.hypot(values[name], values.get(f"sin{name[3:-4]}_deg", 0.0)))
+        for name in values
+        if name.startswith("cos") and name.endswith("_deg")
+    }
+    if series:
+        # A pattern of several orders is described by its strongest one.
+        answer["order"] = float(max(series, key=lambda order: series[order]))
+        answer["amplitude_deg"] = max(series.values())
     return answer
 
 

@@ -33,6 +33,10 @@ def _always(motion: Motion, values: Parameters) -> Array:
     return np.ones(len(motion))
 
 
+def _direction(motion: Motion, values: Parameters) -> Array:
+    return motion.direction
+
+
 def _temperature(motion: Motion, values: Parameters) -> Array:
     warm = motion.temperature_c - 25.0
     return np.asarray(warm / max(float(np.max(np.abs(warm))), 1e-9))
@@ -88,27 +92,41 @@ UNNAMED_ORDER = Effect(
     signature="a line at an order that no cause sets",
 )
 
-DIRECTION_ORDERS = 4
+
+def _pattern_params(orders: Sequence[int], times: str) -> dict[str, Param]:
+    return {
+        f"{wave}{k}_deg": Param(
+            unit="deg", null=0.0, lower=-90.0, upper=90.0, doc=f"{wave} of order {k}, times {times}"
+        )
+        for k in orders
+        for wave in (("cos", "sin") if k else ("cos",))
+    }
 
 
-def _direction_pattern(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    pattern = np.zeros(len(motion))
-    for k in range(1, DIRECTION_ORDERS + 1):
-        for wave, turned in (("cos", np.cos(k * motion.shaft_rad)), ("sin", np.sin(k * motion.shaft_rad))):
-            pattern = pattern + radians(values[f"{wave}{k}_deg"]) * turned
-    return signal + motion.direction * pattern
+def _pattern(orders: Sequence[int], weight: Weight) -> Forward:
+    """A Fourier series over the shaft angle that scales with a condition."""
 
+    def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+        pattern: Array = np.zeros(len(motion))
+        for k in orders:
+            pattern = pattern + radians(values[f"cos{k}_deg"]) * np.cos(k * motion.shaft_rad)
+            if k:
+                pattern = pattern + radians(values[f"sin{k}_deg"]) * np.sin(k * motion.shaft_rad)
+        return signal + weight(motion, values) * pattern
+
+    return forward
+
+
+DIRECTION_ORDERS = (1, 2, 3, 4)
+# Orders 1 and 2 times the temperature are the drifts of offset, gain and phase.
+TEMPERATURE_ORDERS = (0, 3, 4, 5, 6)
 
 UNNAMED_DIRECTION = Effect(
     name="unnamed_direction",
     stage="empirical",
     acts_on="angle",
-    params={
-        f"{wave}{k}_deg": Param(unit="deg", null=0.0, lower=-90.0, upper=90.0, doc=f"{wave} of order {k}, times d")
-        for k in range(1, DIRECTION_ORDERS + 1)
-        for wave in ("cos", "sin")
-    },
-    forward=_direction_pattern,
+    params=_pattern_params(DIRECTION_ORDERS, "d"),
+    forward=_pattern(DIRECTION_ORDERS, _direction),
     needs=frozenset({"both directions"}),
     source="Fourier series times the direction",
     signature="a pattern over the turn whose sign turns with the direction",
@@ -118,13 +136,11 @@ UNNAMED_TEMPERATURE = Effect(
     name="unnamed_temperature",
     stage="empirical",
     acts_on="angle",
-    params=_order_params(64.0),
-    forward=_weighted(_temperature),
-    # Orders 1 and 2 times the temperature are the drifts of offset, gain and phase.
-    shapes=_low_orders((0, 3, 4, 5, 6, 7, 8)),
+    params=_pattern_params(TEMPERATURE_ORDERS, "(T - 25 C) over its largest value"),
+    forward=_pattern(TEMPERATURE_ORDERS, _temperature),
     needs=frozenset({"temperature_c", "two temperatures"}),
-    source="Fourier component times (T - 25 C)",
-    signature="a low order that scales with temperature; its amplitude is the one farthest from 25 C",
+    source="Fourier series times (T - 25 C)",
+    signature="a pattern over the turn that scales with temperature; its size is the one farthest from 25 C",
 )
 
 UNNAMED_SPEED = Effect(

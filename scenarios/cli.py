@@ -17,6 +17,10 @@ app = typer.Typer(
 )
 
 Seed = Annotated[int, typer.Option(min=0, help="Seed of everything random; the same seed gives the same bytes.")]
+Workers = Annotated[int | None, typer.Option(help="Worker processes; without it one for each core.")]
+Scheduler = Annotated[
+    str | None, typer.Option(help="Hand the work to a Dask cluster: its address, or 'local' to start one.")
+]
 
 
 @app.command()
@@ -164,6 +168,55 @@ def hardware(
     from scenarios.hardware import run_command
 
     run_command(twin, output, seed=seed)
+
+
+@app.command()
+def generate(
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder of the study; run again to go on.")],
+    sweeps: Annotated[int, typer.Option("-n", "--sweeps", help="How many sweeps.")] = 10_000,
+    twin: Annotated[str, typer.Option(help="Twin TOML or preset that sweeps are drawn around.")] = "paper-encoder",
+    cause: Annotated[list[str] | None, typer.Option(help="Draw only this cause; may be repeated.")] = None,
+    most_causes: Annotated[int, typer.Option(help="Most causes in a sweep; none is as likely as any number.")] = 3,
+    strength: Annotated[str, typer.Option(help="Strengths in deg, log-uniform.")] = "0.02:0.3",
+    noise: Annotated[str, typer.Option(help="RMS noise in deg, log-uniform.")] = "0.003:0.05",
+    turns: Annotated[int, typer.Option(help="Turns in each direction.")] = 1,
+    points: Annotated[int, typer.Option(help="Readings a turn.")] = 360,
+    both_directions: Annotated[bool, typer.Option("--both-directions", help="And back over the same angles.")] = False,
+    speed_rpm: Annotated[list[float] | None, typer.Option(help="Speed; may be repeated. 0: stop and measure.")] = None,
+    temperatures: Annotated[str, typer.Option(help="Temperatures in C, e.g. 25,60,85.")] = "",
+    channels: Annotated[bool, typer.Option("--channels", help="Store the two channels as well.")] = False,
+    chunk: Annotated[int, typer.Option(help="Sweeps a chunk.")] = 1000,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    seed: Seed = 0,
+) -> None:
+    """Write labelled training sweeps of a twin: error curves, causes, strengths and parameters, as a Zarr store."""
+    from scenarios.engine import Machines
+    from scenarios.intervals import interval
+    from scenarios.protocol import Protocol, numbers
+    from scenarios.training import run
+    from scenarios.training_draw import Ranges
+
+    protocol = Protocol(
+        turns=turns,
+        points=points,
+        both_directions=both_directions,
+        speeds_rpm=speed_rpm or [0.0],
+        temperatures_c=numbers("temperatures", temperatures),
+    )
+    ranges = Ranges(strength_deg=interval("strength", strength), noise_deg=interval("noise", noise), most=most_causes)
+    run(
+        twin,
+        output,
+        sweeps=sweeps,
+        chunk=chunk,
+        channels=channels,
+        protocol=protocol,
+        ranges=ranges,
+        causes=cause or (),
+        machines=Machines(workers=workers, scheduler=scheduler),
+        seed=seed,
+    )
 
 
 @app.command()

@@ -1,0 +1,77 @@
+"""Small studies that the engine's tests run, in their own processes too: ``python -m tests.scenarios.study_jobs``."""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.engine import Machines, run_study
+from scenarios.study_folder import StudyFolder
+
+CHUNKS = 12
+
+
+@dataclass(frozen=True)
+class Draws:
+    """Each chunk is drawn from its own stream; ``pause_s`` makes a chunk last."""
+
+    seed: int
+    pause_s: float = 0.0
+
+    def write(self, folder: StudyFolder, chunk: int) -> None:
+        rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(chunk,)))
+        time.sleep(self.pause_s)
+        folder.save(chunk, {"value": rng.standard_normal(1000)})
+
+
+@dataclass(frozen=True)
+class FillsDisk:
+    """The disk is full from chunk 3 on."""
+
+    def write(self, folder: StudyFolder, chunk: int) -> None:
+        if chunk >= 3:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        folder.save(chunk, {"value": np.arange(3)})
+
+
+@dataclass(frozen=True)
+class KillsItsWorker:
+    """The first worker to reach chunk 2 dies there; the next one does it."""
+
+    seed: int
+
+    def write(self, folder: StudyFolder, chunk: int) -> None:
+        died = folder.path.parent / "died"
+        if chunk == 2 and not died.exists():
+            died.touch()
+            os._exit(9)
+        Draws(self.seed).write(folder, chunk)
+
+
+def study(path: Path, *, seed: int = 0, pause_s: float = 0.0, machines: Machines | None = None) -> StudyFolder:
+    """Begin or go on with a study of draws."""
+    folder = StudyFolder.open(path, study="draws", seed=seed, settings={"chunks": CHUNKS})
+    run_study(
+        Draws(seed, pause_s),
+        folder,
+        chunks=CHUNKS,
+        items=CHUNKS,
+        unit="chunks",
+        machines=machines or Machines(workers=1),
+    )
+    return folder
+
+
+def content(path: Path) -> dict[str, bytes]:
+    """Every file below a folder."""
+    return {str(item.relative_to(path)): item.read_bytes() for item in path.rglob("*") if item.is_file()}
+
+
+if __name__ == "__main__":
+    study(Path(sys.argv[1]), pause_s=float(sys.argv[2]))

@@ -1,0 +1,125 @@
+"""The engine of studies: the same bytes whoever does the work, resumed where it was killed, other studies refused."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from scenarios import study_folder
+from scenarios.engine import Machines, run_study
+from scenarios.study_folder import StudyFolder
+from tests.scenarios.study_jobs import CHUNKS, FillsDisk, KillsItsWorker, content, study
+from twin.errors import UserError
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_bytes_do_not_depend_on_the_number_of_workers(tmp_path: Path) -> None:
+    study(tmp_path / "one", machines=Machines(workers=1))
+    study(tmp_path / "two", machines=Machines(workers=2))
+    assert content(tmp_path / "one") == content(tmp_path / "two")
+    assert len(study(tmp_path / "one").load(CHUNKS)["value"]) == 1000 * CHUNKS
+
+
+def test_killed_at_random_moments_and_resumed_is_as_undisturbed(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    command = [sys.executable, "-m", "tests.scenarios.study_jobs", str(tmp_path / "killed"), "0.05"]
+    for _ in range(3):
+        process = subprocess.Popen(command, cwd=ROOT)
+        time.sleep(rng.uniform(0.3, 1.6))
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+    subprocess.run(command, cwd=ROOT, check=True)
+    study(tmp_path / "calm")
+    assert content(tmp_path / "killed") == content(tmp_path / "calm")
+
+
+def test_only_missing_chunks_are_done_again(tmp_path: Path) -> None:
+    folder = study(tmp_path / "s")
+    before = content(tmp_path / "s")
+    (folder.path / "done" / "000004").unlink()
+    (folder.path / "chunks" / "000004.npz").write_bytes(b"half a chunk")
+    untouched = (folder.path / "chunks" / "000003.npz").stat().st_mtime_ns
+    study(tmp_path / "s")
+    assert content(tmp_path / "s") == before
+    assert (folder.path / "chunks" / "000003.npz").stat().st_mtime_ns == untouched
+
+
+def test_what_a_killed_run_left_half_written_is_taken_away(tmp_path: Path) -> None:
+    folder = study(tmp_path / "s")
+    for name in (".000001.npz.77.part", "0.abc.partial"):
+        (folder.path / "chunks" / name).write_bytes(b"half")
+    before = {name for name in content(tmp_path / "s") if "part" not in name}
+    study(tmp_path / "s")
+    assert set(content(tmp_path / "s")) == before
+
+
+def test_another_seed_version_or_setting_is_refused_and_nothing_lost(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study(tmp_path / "s")
+    before = content(tmp_path / "s")
+    with pytest.raises(UserError, match="begun with seed 0, this run has 5"):
+        study(tmp_path / "s", seed=5)
+    with pytest.raises(UserError, match="begun with chunks 12, this run has 13"):
+        StudyFolder.open(tmp_path / "s", study="draws", seed=0, settings={"chunks": 13})
+    with pytest.raises(UserError, match="begun with study"):
+        StudyFolder.open(tmp_path / "s", study="others", seed=0, settings={"chunks": CHUNKS})
+    monkeypatch.setattr(study_folder, "version", lambda: "99.0")
+    with pytest.raises(UserError, match=r'this run has "99.0"'):
+        study(tmp_path / "s")
+    assert content(tmp_path / "s") == before
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", json.dumps({"seed": 0})])
+def test_a_broken_record_is_refused(tmp_path: Path, text: str) -> None:
+    folder = study_folder.StudyFolder(tmp_path)
+    (folder.path / "study.json").write_text(text)
+    with pytest.raises(UserError):
+        StudyFolder.open(tmp_path, study="draws", seed=0, settings={})
+
+
+def test_a_folder_that_is_no_study_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "precious.txt").write_text("mine")
+    with pytest.raises(UserError, match="is no study"):
+        study(tmp_path)
+    assert content(tmp_path) == {"precious.txt": b"mine"}
+
+
+def test_a_full_disk_stops_with_a_line_and_keeps_what_is_done(tmp_path: Path) -> None:
+    folder = StudyFolder.open(tmp_path / "s", study="draws", seed=0, settings={})
+    with pytest.raises(UserError, match=r"the disk is full; \d of 12 chunks are complete and kept"):
+        run_study(FillsDisk(), folder, chunks=12, items=12, unit="chunks", machines=Machines(workers=1))
+    assert [folder.is_done(chunk) for chunk in range(4)] == [True, True, True, False]
+
+
+def test_a_killed_worker_of_the_pool_is_a_line(tmp_path: Path) -> None:
+    folder = StudyFolder.open(tmp_path / "s", study="draws", seed=0, settings={})
+    with pytest.raises(UserError, match="a worker process was killed"):
+        run_study(KillsItsWorker(0), folder, chunks=12, items=12, unit="chunks", machines=Machines(workers=1))
+    run_study(KillsItsWorker(0), folder, chunks=12, items=12, unit="chunks", machines=Machines(workers=1))
+    assert all(folder.is_done(chunk) for chunk in range(12))
+
+
+def test_a_dask_cluster_that_loses_a_worker_gives_the_same_bytes(tmp_path: Path) -> None:
+    pytest.importorskip("distributed", reason="needs the extra 'sweeps'")
+    folder = StudyFolder.open(tmp_path / "s", study="draws", seed=0, settings={"chunks": CHUNKS})
+    machines = Machines(workers=2, scheduler="local")
+    run_study(KillsItsWorker(0), folder, chunks=CHUNKS, items=CHUNKS, unit="chunks", machines=machines)
+    assert (tmp_path / "died").exists()
+    study(tmp_path / "calm")
+    assert content(tmp_path / "s") == content(tmp_path / "calm")
+
+
+def test_no_scheduler_at_an_address_is_a_line(tmp_path: Path) -> None:
+    pytest.importorskip("distributed", reason="needs the extra 'sweeps'")
+    with pytest.raises(UserError, match="--scheduler nowhere"):
+        study(tmp_path / "s", machines=Machines(scheduler="nowhere"))

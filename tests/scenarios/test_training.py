@@ -1,0 +1,91 @@
+"""Training sweeps: sweep k depends on seed and k alone, labels say what acts, one store whoever writes it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from scenarios.engine import Machines
+from scenarios.protocol import Protocol
+from scenarios.training import Training, generate, parameter_names, recipe_of
+from scenarios.training_draw import YARDSTICK_DEG, Ranges
+from tests.scenarios.study_jobs import content
+from twin.errors import UserError
+
+BENCH = Protocol(turns=2, points=40, both_directions=True, speeds_rpm=(60.0,))
+
+
+def training(
+    seed: int = 0, *, causes: tuple[str, ...] = (), chunk: int = 16, sweeps: int = 64, **ranges: object
+) -> Training:
+    recipe = recipe_of("paper-encoder", protocol=BENCH, ranges=replace(Ranges(), **ranges), causes=causes, seed=seed)
+    return Training(recipe=recipe, sweeps=sweeps, chunk=chunk, channels=True)
+
+
+def test_a_sweep_depends_on_seed_and_number_alone() -> None:
+    by_16, by_5 = training(), training(chunk=5, sweeps=1000)
+    whole = by_16.arrays(1)
+    for chunk, first in ((4, 20), (5, 25)):
+        part = by_5.arrays(chunk)
+        for name, values in whole.items():
+            assert values[first - 16 : first - 11].tobytes() == part[name].tobytes(), name
+    assert not np.array_equal(training(1).arrays(0)["error_deg"], training(0).arrays(0)["error_deg"])
+
+
+def test_labels_strengths_and_parameters_agree() -> None:
+    job = training()
+    block = job.arrays(0)
+    assert block["error_deg"].dtype == np.float32
+    assert np.array_equal(block["labels"] == 1, block["strength_deg"] > 0.0)
+    assert block["labels"].sum(axis=1).max() <= 3
+    names = parameter_names(job.recipe)
+    column = names.index(("hysteresis", "lag_deg"))
+    cause = job.recipe.causes.index("hysteresis")
+    assert np.array_equal(block["parameters"][:, column] != 0.0, block["labels"][:, cause] == 1)
+
+
+@pytest.mark.parametrize(
+    "cause", ["hysteresis", "magnet_harmonic", "latency", "output_quantisation", "reference_jitter"]
+)
+def test_a_strength_is_the_size_of_the_error_it_makes(cause: str) -> None:
+    sizes = {"most": 1, "noise_deg": (1e-6, 1.1e-6)}
+    strong = training(causes=(cause,), strength_deg=(YARDSTICK_DEG, 1.001 * YARDSTICK_DEG), **sizes).arrays(0)
+    absent = training(causes=(cause,), strength_deg=(1e-6, 1.1e-6), **sizes).arrays(0)
+    acts = strong["labels"][:, 0] == 1
+    assert 0 < acts.sum() < 16
+    difference = (strong["error_deg"] - absent["error_deg"])[acts]
+    assert 0.05 < np.sqrt(np.mean(difference**2)) < 0.15
+    assert np.array_equal(strong["error_deg"][~acts], absent["error_deg"][~acts])
+
+
+def test_the_store_is_the_same_for_one_and_two_workers_and_a_cluster(tmp_path: Path) -> None:
+    for needed in ("xarray", "zarr", "distributed"):
+        pytest.importorskip(needed, reason="needs the extra 'sweeps'")
+    job = training()
+    machines = {
+        "one": Machines(workers=1),
+        "two": Machines(workers=2),
+        "dask": Machines(workers=2, scheduler="local"),
+    }
+    for name, where in machines.items():
+        generate(job, tmp_path / name, where)
+    assert content(tmp_path / "one") == content(tmp_path / "two") == content(tmp_path / "dask")
+    (tmp_path / "one" / "done" / "000002").unlink()
+    generate(job, tmp_path / "one", Machines(workers=1))
+    assert content(tmp_path / "one") == content(tmp_path / "two")
+
+    import zarr
+
+    group = zarr.open_group(tmp_path / "one" / "sweeps.zarr", mode="r")
+    assert np.array_equal(group["error_deg"][16:32], job.arrays(1)["error_deg"])
+    assert group["error_deg"].chunks == (16, len(job.recipe.motion))
+    assert group.attrs["causes"] == list(job.recipe.causes)
+    assert 'schema = "halltwin.twin/1"' in group.attrs["twin_toml"]
+
+
+def test_a_cause_the_protocol_cannot_show_is_refused() -> None:
+    with pytest.raises(UserError, match="'gain_drift' cannot be drawn with this protocol"):
+        training(causes=("gain_drift",))

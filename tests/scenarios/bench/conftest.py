@@ -1,0 +1,23 @@
+"""One undisturbed run for all tests."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("can", reason="python-can is not installed: pip install 'halltwin[bench]'")
+pytest.importorskip("cantools", reason="cantools is not installed: pip install 'halltwin[bench]'")
+
+from tests.scenarios.bench.rig import run_bench
+
+
+@pytest.fixture(scope="session")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """Sweep and bus log of a run without faults."""
+    folder = tmp_path_factory.mktemp("bench")
+    sweep, log = folder / "sweep.csv", folder / "bus.log"
+    outcome = run_bench(sweep, record=log)
+    assert len(outcome.measured.pretreated.kept) == 180
+    assert set(outcome.measured.counts) == {"frames"}
+    return sweep, log

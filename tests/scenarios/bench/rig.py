@@ -1,0 +1,67 @@
+"""A virtual bench for tests: an encoder without noise, so that every column but the time must come out to the bit."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.bench.buses import Interface, with_bench_faults
+from scenarios.bench.command import hidden_encoder
+from scenarios.bench.faults import parse
+from scenarios.bench.journal import Journal
+from scenarios.bench.measure import Measured, Measurement, measure
+from scenarios.bench.plan import Plan
+from scenarios.bench.sequence import Patience
+from scenarios.bench.virtual import Setup, running
+from twin.chain import Chain
+from twin.sweep_file import read_columns
+
+PLAN = Plan(points=90, both_directions=True)
+
+
+def quiet_encoder() -> Chain:
+    """The default encoder without what is random."""
+    return hidden_encoder(None, ()).without("noise")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run gave, and the faults that were done to it, by node."""
+
+    measured: Measured
+    faults: dict[str, Counter[str]]
+
+
+def run_bench(
+    output: Path,
+    *,
+    faults: Sequence[str] = (),
+    plan: Plan = PLAN,
+    record: Path | None = None,
+    patience: Patience | None = None,
+) -> Outcome:
+    """One measurement on the quiet encoder."""
+    parsed = [fault for text in faults for fault in parse(text)]
+    open_bus = Interface().opener()
+    job = Measurement(
+        plan=plan, output=output, record=record, patience=patience or Patience(timeout_s=0.05, attempts=60)
+    )
+    setup = Setup(chain=quiet_encoder(), faults=parsed)
+    with running(setup, open_bus) as done:
+        journal = Journal(output, plan, twin=job.twin, restart=False)
+        found = measure(job, journal, with_bench_faults(open_bus, parsed, 0))
+    return Outcome(found, done)
+
+
+def assert_same_readings(found: Path, wanted: Path, *, without: Sequence[int] = ()) -> None:
+    """Every column but the time to the bit; ``without`` are readings that were rejected."""
+    first, second = read_columns(found), read_columns(wanted)
+    assert first.keys() == second.keys()
+    keep = np.setdiff1d(np.arange(second["reference_deg"].size), list(without))
+    for name in second.keys() - {"time_s"}:
+        np.testing.assert_array_equal(first[name], second[name][keep], err_msg=name)
+    assert np.all(np.diff(first["time_s"]) > 0.0)

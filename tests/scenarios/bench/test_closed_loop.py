@@ -1,0 +1,37 @@
+"""Measure, explain, compensate, measure again: one run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from scenarios.bench.command import DEFAULT_TWIN, Options, run
+from twin.angles import wrap_deg
+from twin.presets import read_preset
+from twin.sweep import Sweep
+
+
+def test_the_closed_loop_names_the_hidden_effect_and_corrects_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "saturation" not in read_preset(DEFAULT_TWIN).values
+    pytest.importorskip("matplotlib")
+    picture = tmp_path / "loop.png"
+    run(Options(output=tmp_path / "loop.csv", closed_loop=True, points=120, plot=picture))
+    report = json.loads((tmp_path / "loop-report.json").read_text())
+    assert "saturation" in [cause["name"] for cause in report["causes"]]
+    assert report["before"]["largest_deg"] > 0.8
+    assert report["after"]["largest_deg"] < 0.2
+    assert report["reached"]
+    after = Sweep.read(tmp_path / "loop-after.csv")
+    assert np.max(np.abs(wrap_deg(after.measured_deg - after.reference_deg))) < 0.2
+    # The corrected angle is not computed from the channels alone, so they are not recorded beside it.
+    assert after.vx is None
+    assert len(after) == 240
+    assert picture.stat().st_size > 10_000
+    assert "reached" in capsys.readouterr().out
+    assert (tmp_path / "loop-twin.toml").exists()
+    assert (tmp_path / "loop-correction.toml").exists()

@@ -16,6 +16,7 @@ from twin.motion import Motion
 
 SPIKE_SIGMA = 7.0
 LONGEST_SPIKE = 4
+FEWEST_WORDS = 40
 
 
 def robust_rms(values: Array) -> float:
@@ -61,11 +62,15 @@ def spikes(residual: Array, motion: Motion, step: float) -> tuple[BoolArray, flo
 
 def grid_bits(measured: Array) -> int | None:
     """The smallest word length (6 to 20 bits) on whose grid all readings (n,) [rad] lie; None: no such grid."""
+    words = np.unique(np.round(measured % TAU, 9)).size
+    if words < FEWEST_WORDS:
+        # A few angles lie on a coarse grid by the bench's choice, not by the word's length.
+        return None
     for bits in range(6, 21):
         step = TAU / 2.0**bits
-        off = np.abs(measured / step - np.round(measured / step))
-        # Six decimals of a degree, and room for the last digit.
-        if np.max(off) < max(0.02, 2e-8 / step) and 2e-8 / step < 0.2:
+        off = float(np.max(np.abs(measured / step - np.round(measured / step)))) * step
+        # As many digits as files have: six decimals of a degree, or three.
+        if any(off < digits < step / 12.0 for digits in (np.radians(1.2e-6), np.radians(6e-4))):
             return bits
     return None
 
@@ -136,7 +141,7 @@ def white_rows(fit: Fit) -> Array:
 
 def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
     """Which declared shapes of the variance gain over constant variance, each at its best strength."""
-    if stairs_rule(fit):
+    if stairs_rule(fit) or float(np.mean(fit.residual[0] ** 2)) < 1e-12:
         return []
     white = white_rows(fit)
     use = fit.evidence.usable
@@ -186,6 +191,8 @@ def _expected_variance(fit: Fit, square: Array) -> Array:
     if fit.linear.stair_variance is None:
         return np.ones(square.size)
     stairs = fit.linear.stair_variance[fit.evidence.usable]
+    if not np.mean(stairs) > 0.0:
+        return np.ones(square.size)
     stairs = stairs / np.mean(stairs)
     profiles = [1.0 - share + share * stairs for share in np.linspace(0.0, 0.95, 12)]
     return min(profiles, key=lambda v: square.size * np.log(np.mean(square / v)) + np.sum(np.log(v)))
@@ -218,7 +225,7 @@ def _half_chi_square(gain: float) -> float:
 
 def bursts(fit: Fit) -> SpreadFinding | None:
     """The stretch of rows with the most outstanding variance, if its noise is at least half as large again."""
-    if stairs_rule(fit):
+    if stairs_rule(fit) or float(np.mean(fit.residual[0] ** 2)) < 1e-12:
         return None
     white = white_rows(fit)
     use = fit.evidence.usable

@@ -25,6 +25,8 @@ SAME_FIT = 9.0
 MOST_CAUSES = 8
 FAIR_SHARE = 0.15
 """Share of a cause's first gain that another effect must reach to be tried in its place later."""
+SMALLEST_RMS_RAD = 1e-6
+"""Residual RMS below which nothing is searched for: 6e-5 deg, less than a step of a 22-bit word."""
 REPEATABLE = frozenset({"drive_ripple", "magnet_harmonic"})
 
 
@@ -158,12 +160,13 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
     threshold = float(np.log(alpha / max(len(effects), 1)))
     keys = list(keys)
     contenders: dict[str, list[Effect]] = {}
+    barred: set[str] = set()
     fit, base = settle(fit)
     if keys:
         fit, keys = improve(fit, effects, keys, threshold, contenders)
         fit, base = settle(fit)
-    while len(keys) < MOST_CAUSES:
-        step = best_addition(fit, base, effects, keys, threshold)
+    while len(keys) < MOST_CAUSES and _stands_out(fit):
+        step = best_addition(fit, base, [e for e in effects if e.name not in barred], keys, threshold)
         if step is None:
             break
         fit, key, contenders[step[1]] = step
@@ -171,7 +174,15 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
         fit, base = settle(fit)
         fit, keys = improve(fit, effects, keys, threshold, contenders)
         fit, base = settle(fit)
+        if step[1] not in keys:
+            # Pruned or swapped out at once: offered again, it would only go round.
+            barred.add(base_name(step[1]))
     return Found(fit, tuple(keys), len(effects))
+
+
+def _stands_out(fit: Fit) -> bool:
+    """Whether anything is left that a file's digits could carry: below, the last digit itself is the structure."""
+    return float(np.mean(fit.residual[0][fit.evidence.usable] ** 2)) > SMALLEST_RMS_RAD**2
 
 
 def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:

@@ -37,6 +37,9 @@ def marks(measured: Array, residual: Array, noise: float, step: float, motion: M
     power = np.round(np.log2(TAU / np.maximum(size, 1e-12)))
     near = np.abs(size - TAU / 2.0**power) < 4.0 * sigma
     mask = far & near & (power >= 1)
+    if np.count_nonzero(mask) > 0.05 * mask.size:
+        # So many are no rare event, whatever their size.
+        return np.zeros_like(mask), 0.0
     width = np.minimum(8.0 * sigma / np.maximum(size[mask], 1e-12) / np.log(2.0), 1.0)
     # An outlier that is no power of two speaks as much against bit flips as one that is speaks for them.
     others = int(np.count_nonzero(far & ~mask))

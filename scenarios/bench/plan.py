@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -22,7 +25,7 @@ RUN_IN_DEG = 400.0
 
 @dataclass(frozen=True)
 class Stop:
-    """One reading to take. ``angle_deg`` counts over turns; ``speed_rpm`` 0 is a stop, else the angle is passed."""
+    """One reading to take. ``angle_deg`` counts over turns; at ``speed_rpm`` 0 the shaft stops, else it passes by."""
 
     index: int
     angle_deg: float
@@ -56,9 +59,10 @@ class Plan:
         for speed in (*self.speeds_rpm, self.drive_rpm):
             if speed % SPEED_STEP_RPM:
                 raise UserError(f"speed {speed:g} rpm: the drive's command counts in steps of {SPEED_STEP_RPM:g} rpm")
-        if self.readings > MOST_READINGS or self.legs * self.turns > MOST_TURNS:
+        turns = self.legs * self.turns
+        if turns * self.points + 2 * self.legs > MOST_READINGS or turns > MOST_TURNS:
             raise UserError(
-                f"plan: {self.readings} readings in {self.legs * self.turns} turns; "
+                f"plan: {turns * self.points} readings in {turns} turns; "
                 f"expected at most {MOST_READINGS} and {MOST_TURNS}: measure several sweeps"
             )
 
@@ -67,27 +71,43 @@ class Plan:
         """Stretches of one direction, speed and temperature."""
         return (1 + self.both_directions) * len(self.speeds_rpm) * max(len(self.temperatures_c), 1)
 
-    @property
+    @cached_property
     def readings(self) -> int:
         """Readings in all."""
-        return self.legs * self.turns * self.points
+        return sum(1 for _ in self.stops())
 
     def stops(self) -> Iterator[Stop]:
-        """The readings in order; the way back goes over the same angles."""
-        index = leg = 0
-        angles = [360.0 * k / self.points for k in range(self.turns * self.points)]
-        for temperature in self.temperatures_c or (None,):
-            for speed in self.speeds_rpm:
-                for way in (1, -1) if self.both_directions else (1,):
-                    for place, angle in enumerate(angles if way > 0 else angles[::-1]):
-                        turn = leg * self.turns + place // self.points
-                        yield Stop(index, angle, way, turn, speed, temperature)
-                        index += 1
-                    leg += 1
+        """The readings in order.
+
+        In one direction the shaft goes ever on; the way back goes over the same angles. Angles that are passed have a
+        stop before and behind them, where the shaft speeds up and slows down: so the sweep holds every reversal,
+        and with it the path that a hysteresis depends on.
+        """
+        index, offset, at, before = 0, 0.0, 0.0, 0
+        for leg, (temperature, speed, way) in enumerate(self._legs()):
+            ramp = self.ramp_deg(speed)
+            if way == before:
+                offset += 360.0 * math.ceil((at + ramp - offset) / 360.0)
+            angles = [offset + 360.0 * k / self.points for k in range(self.turns * self.points)][::way]
+            listed = [(angle, way, leg * self.turns + k // self.points, speed) for k, angle in enumerate(angles)]
+            if ramp:
+                up, out = angles[0] - way * ramp, angles[-1] + way * ramp
+                if not before or up != at:
+                    listed.insert(0, (up, way if not before else int(math.copysign(1, up - at)), listed[0][2], 0.0))
+                listed.append((out, way, listed[-1][2], 0.0))
+            for angle, direction, turn, rpm in listed:
+                yield Stop(index, angle, direction, turn, rpm, temperature)
+                index += 1
+            at, before = listed[-1][0], way
+
+    def _legs(self) -> Iterator[tuple[float | None, float, int]]:
+        """Temperature, speed and direction of each leg."""
+        ways = (1, -1) if self.both_directions else (1,)
+        return itertools.product(self.temperatures_c or (None,), self.speeds_rpm, ways)
 
     def run_in_deg(self, first: Stop) -> float:
         """The angle to start from, so that the first reading is approached as those after it."""
-        return first.angle_deg - first.direction * RUN_IN_DEG
+        return first.angle_deg - first.direction * max(RUN_IN_DEG, self.ramp_deg(first.speed_rpm))
 
     def ramp_deg(self, speed_rpm: float) -> float:
         """Travel between standstill and this speed, with a margin: 6 deg/s is one turn a minute."""

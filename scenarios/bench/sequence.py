@@ -54,11 +54,7 @@ class Sequence:
     def take(self, plan: Plan, stops: Iterable[Stop], keep: Callable[[Reading], None]) -> None:
         """Take the readings one after the other; ``keep`` gets each as soon as it is complete."""
         temperature: float | None = None
-        last: Stop | None = None
         for stop in stops:
-            if last is None or (stop.speed_rpm, stop.direction) != (last.speed_rpm, last.direction):
-                self._change_leg(plan, last, stop)
-            last = stop
             if stop.temperature_c is not None and stop.temperature_c != temperature:
                 temperature = stop.temperature_c
                 self._heat(temperature)
@@ -67,18 +63,6 @@ class Sequence:
             else:
                 self.drive(stop.angle_deg, plan.drive_rpm)
             keep(self._read(stop))
-        if last is not None and last.speed_rpm:
-            self._run_out(plan, last)
-
-    def _change_leg(self, plan: Plan, last: Stop | None, stop: Stop) -> None:
-        """From one leg to the next; angles that are passed need room to speed up before and to slow down behind."""
-        if last is not None and last.speed_rpm:
-            self._run_out(plan, last)
-        if stop.speed_rpm:
-            self.drive(stop.angle_deg - stop.direction * plan.ramp_deg(stop.speed_rpm), plan.drive_rpm)
-
-    def _run_out(self, plan: Plan, last: Stop) -> None:
-        self.drive(last.angle_deg + last.direction * plan.ramp_deg(last.speed_rpm), last.speed_rpm)
 
     def drive(self, angle_deg: float, speed_rpm: float, *, passing: bool = False) -> None:
         """Go to an angle and stand still, or pass it at this speed."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -123,6 +124,24 @@ def test_a_plan_goes_back_over_the_same_angles() -> None:
     assert {stop.temperature_c for stop in stops[:32]} == {20.0}
 
 
+def test_a_plan_holds_every_reversal() -> None:
+    plan = Plan(points=8, both_directions=True, speeds_rpm=(0.0, 60.0, 300.0))
+    stops = list(plan.stops())
+    assert len(stops) == plan.readings
+    for one, other in itertools.pairwise(stops):
+        travel = other.angle_deg - one.angle_deg
+        assert travel == 0.0 or np.sign(travel) == other.direction
+    for stop in stops:
+        assert stop.speed_rpm == 0.0 or 0.0 <= stop.angle_deg < 360.0
+
+
+def test_a_plan_in_one_direction_never_goes_back() -> None:
+    stops = list(Plan(points=8, speeds_rpm=(0.0, 300.0, 60.0), temperatures_c=(20.0, 60.0)).stops())
+    assert {stop.direction for stop in stops} == {1}
+    assert np.all(np.diff([stop.angle_deg for stop in stops]) > 0.0)
+    assert [stop.angle_deg % 360.0 for stop in stops[:8]] == [45.0 * k for k in range(8)]
+
+
 @pytest.mark.parametrize(
     "wrong",
     [
@@ -179,7 +198,8 @@ def test_speeds_and_temperatures_are_recorded(tmp_path: Path) -> None:
     assert sweep.speed_rpm is not None
     assert sweep.temperature_c is not None
     assert sweep.time_s is not None
-    assert len(sweep) == 48
+    # Twelve readings in each of four legs, and the stops before and behind those that are passed.
+    assert len(sweep) == 52
     assert set(sweep.speed_rpm) == {0.0, 300.0}
     np.testing.assert_allclose(sorted(set(np.round(sweep.temperature_c))), [25.0, 60.0])
     moving = sweep.speed_rpm > 0.0

@@ -38,7 +38,8 @@ BASELINE = (
 class Setting:
     """How residuals are weighed: the family member in force, the blur of stairs, the radius against the angle.
 
-    ``radius_weight`` multiplies the radius' whitened squares; ``radius_member`` is its own family member.
+    ``radius_weight`` multiplies the radius' whitened squares; ``radius_member`` is its own family member. ``members``
+    are the family members that the noise may be; none given: all of them.
     """
 
     family: NoiseFamily
@@ -46,6 +47,12 @@ class Setting:
     blur: float = 0.0
     radius_member: int = 0
     radius_weight: float = 0.0
+    members: tuple[int, ...] = ()
+
+    @property
+    def plausible(self) -> tuple[int, ...]:
+        """The members that likelihoods are maximised over."""
+        return self.members or tuple(range(len(self.family.labels)))
 
 
 @dataclass(frozen=True, eq=False)

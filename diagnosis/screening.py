@@ -60,6 +60,14 @@ class Base:
         roots, residuals, rows, likelihood = [], [], [], []
         dof = fit.rows * fit.evidence.observables - len(fit.free) + fit.prior_residual.size
         for member in range(len(family.labels)):
+            if member not in fit.setting.plausible:
+                roots.append(
+                    np.zeros_like(roots[-1]) if roots else np.zeros((fit.evidence.observables, len(fit.evidence)))
+                )
+                residuals.append(np.zeros(0))
+                rows.append(np.zeros((0, 0)))
+                likelihood.append(-np.inf)
+                continue
             roots.append(root_weights(fit.setting, fit.evidence.observables, member))
             r, j = fit.whitened(member)
             scale = np.linalg.norm(j, axis=1, keepdims=True)
@@ -189,8 +197,10 @@ def _gains_of_columns(base: Base, effect: Effect, columns: Array) -> tuple[Array
     best_gain = np.full(count, -np.inf)
     best_coefficient = np.zeros((count, terms))
     top = float(base.likelihood.max())
-    for member in sorted({base.member, *COARSE}):
+    for member in sorted({base.member, *COARSE} if len(fit.setting.plausible) > len(COARSE) else fit.setting.plausible):
         likelihood = base.likelihood[member]
+        if likelihood == -np.inf:
+            continue
         white = (cosine * base.roots[member]).reshape(count * terms, -1)
         q = base.rows[member]
         r = base.residuals[member]

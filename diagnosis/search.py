@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, tidy
+from diagnosis.noise_choice import plausible_members
 from diagnosis.screening import Base, Candidate, log_probability, screen, screen_one
 from twin.catalogue import base_name, find
 from twin.chain import Chain
@@ -67,7 +68,7 @@ def likelihood(fit: Fit) -> float:
     dof = fit.rows * fit.evidence.observables - len(base)
     prior = float(np.sum(np.log(np.abs(fit.prior_jacobian[turns].sum(axis=1))))) if turns else 0.0
     best = -np.inf
-    for member in range(len(family.labels)):
+    for member in fit.setting.plausible:
         r, j = fit.whitened(member)
         _, log_det = np.linalg.slogdet(j[integrated] @ j[integrated].T + 1e-300 * np.eye(len(integrated)))
         best = max(best, -0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + family.log_det[member] + log_det))
@@ -92,6 +93,7 @@ def replace_chain(fit: Fit, chain: Chain) -> Fit:
 
 def settle(fit: Fit) -> tuple[Fit, Base]:
     """Let the fit take the noise that fits it best, the radius its own noise, and solve again."""
+    fit = replace(fit, setting=replace(fit.setting, members=plausible_members(fit)))
     for _ in range(3):
         base = Base.of(fit)
         setting = replace(fit.setting, member=base.member, **_radius_setting(fit))

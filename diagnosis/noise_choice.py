@@ -1,0 +1,71 @@
+"""Which noises are plausible: judged with all that could be locked to the angle set aside.
+
+Structure that repeats with the angle, left by several causes at once, looks like coloured noise to any one cause. Over
+several turns it can be told from noise without naming it: it is projected out, and what is left chooses the noise.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnosis.noise_model import to_cosine
+from twin.angles import Array
+from twin.motion import Motion
+
+if TYPE_CHECKING:
+    from diagnosis.joint_fit import Fit
+
+FEWEST_TURNS = 3.5
+REACH = 4.0
+"""Members whose log likelihood lies within this of the best are plausible."""
+
+
+def plausible_members(fit: Fit) -> tuple[int, ...]:
+    """The family members that the noise may be, given the fit's residual."""
+    everyone = tuple(range(len(fit.setting.family.labels)))
+    motion = fit.evidence.motion
+    if motion.turns < FEWEST_TURNS:
+        return everyone
+    aside = locked_shapes(motion)
+    if fit.rows < 4 * (len(aside) + len(fit.free)):
+        return everyone
+    columns = np.concatenate([fit.cosine_jacobian[:, 0], to_cosine(fit.evidence, aside)])
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=1, keepdims=True), 1e-300)
+    residual = fit.cosine_residual[0]
+    family = fit.setting.family
+    dof = fit.rows - len(columns)
+    score = np.empty(len(everyone))
+    for member in everyone:
+        weight = family.weights[member]
+        white = columns * weight
+        gram = white @ columns.T + 1e-9 * np.trace(white @ columns.T) / len(columns) * np.eye(len(columns))
+        along = white @ residual
+        left = float(residual @ (weight * residual) - along @ np.linalg.solve(gram, along))
+        _, log_det = np.linalg.slogdet(gram)
+        score[member] = -0.5 * (dof * np.log(max(left, 1e-300)) + family.log_det[member] + log_det)
+    return tuple(int(k) for k in np.flatnonzero(score > score.max() - REACH))
+
+
+def locked_shapes(motion: Motion) -> Array:
+    """Shapes (q, n) that repeat with the angle: orders 3 to 12, and low orders times direction, temperature, speed."""
+    highest = int(min(12, motion.points_per_turn / 2.5))
+    ones = np.ones(len(motion))
+    shapes: list[Array] = []
+
+    def series(orders: range, weight: Array) -> None:
+        for k in orders:
+            shapes.append(weight * np.cos(k * motion.shaft_rad))
+            if k:
+                shapes.append(weight * np.sin(k * motion.shaft_rad))
+
+    series(range(3, highest + 1), ones)
+    low = range(0, min(8, highest) + 1)
+    if "both directions" in motion.provides:
+        series(low, motion.direction)
+    if "two temperatures" in motion.provides:
+        series(low, (motion.temperature_c - 25.0) / 50.0)
+    if "two speeds" in motion.provides:
+        series(range(0, min(4, highest) + 1), motion.speed_rad_s / float(np.max(np.abs(motion.speed_rad_s))))
+    return np.stack(shapes)

@@ -36,6 +36,7 @@ class Options:
     temperatures: str = ""
     settle_s: float = 0.3
     channels: bool = True
+    chamber: bool = True
     closed_loop: bool = False
     plot: Path | None = None
     record: Path | None = None
@@ -101,6 +102,8 @@ def _measurement(options: Options) -> Measurement:
     require_within("manifest", options.manifest_deg, 0.0, 180.0, "deg")
     if options.record is not None:
         check_log_name(options.record)
+    if options.temperatures and not options.chamber:
+        raise UserError("--temperatures needs the climate chamber; leave --no-chamber out")
     plan = Plan(
         points=options.points,
         turns=options.turns,
@@ -114,6 +117,7 @@ def _measurement(options: Options) -> Measurement:
         plan=plan,
         output=options.output,
         channels=options.channels,
+        chamber=options.chamber,
         patience=Patience(timeout_s=options.timeout_s, attempts=options.attempts),
         record=options.record,
         manifest_deg=options.manifest_deg,
@@ -209,7 +213,13 @@ def _replay(options: Options) -> None:
     from scenarios.bench.replay import replay
 
     assert options.replay is not None
-    found = replay(options.replay, options.output, channels=options.channels, manifest_deg=options.manifest_deg)
+    found = replay(
+        options.replay,
+        options.output,
+        channels=options.channels,
+        chamber=options.chamber,
+        manifest_deg=options.manifest_deg,
+    )
     _report(options.output, found)
 
 

@@ -26,6 +26,7 @@ class Measurement:
     output: Path
     twin: str = "a real bench"
     channels: bool = True
+    chamber: bool = True
     patience: Patience = field(default_factory=Patience)
     record: Path | None = None
     manifest_deg: float = MANIFEST_DEG
@@ -56,7 +57,7 @@ def measure(
             f"{journal.path}: holds {continued} readings of a broken run, and a log would lack them; "
             "go on without --record, or --restart"
         )
-    assembler = Assembler(channels=job.channels, on_event=journal.note)
+    assembler = Assembler(channels=job.channels, chamber=job.chamber, on_event=journal.note)
     if stops:
         try:
             link = Link(open_bus, assembler, job.record)

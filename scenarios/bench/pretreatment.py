@@ -62,8 +62,8 @@ def errors_deg(readings: Sequence[Reading]) -> Array:
 
 
 def write_sweep(path: Path, readings: Sequence[Reading]) -> None:
-    """The sweep file of readings: the columns that the plan gives, channels where every reading has them."""
-    columns = {
+    """The sweep file of readings: the columns that every reading has."""
+    columns: dict[str, Sequence[float | None]] = {
         "time_s": [one.time_s for one in readings],
         "reference_deg": [one.reference_deg for one in readings],
         "measured_deg": [one.measured_deg for one in readings],
@@ -71,11 +71,11 @@ def write_sweep(path: Path, readings: Sequence[Reading]) -> None:
         "speed_rpm": [one.speed_rpm for one in readings],
         "turn": [one.turn for one in readings],
         "temperature_c": [one.temperature_c for one in readings],
+        "vx": [one.vx for one in readings],
+        "vy": [one.vy for one in readings],
     }
-    arrays = {name: np.array(values, dtype=np.float64) for name, values in columns.items()}
-    if all(one.vx is not None for one in readings):
-        arrays["vx"] = np.array([one.vx for one in readings], dtype=np.float64)
-        arrays["vy"] = np.array([one.vy for one in readings], dtype=np.float64)
+    recorded = {name: values for name, values in columns.items() if None not in values}
+    arrays = {name: np.array(values, dtype=np.float64) for name, values in recorded.items()}
     if not np.any(arrays["speed_rpm"]):
         del arrays["speed_rpm"]
     write_columns(path, arrays)

@@ -14,7 +14,8 @@ import can
 
 from scenarios.bench.messages import COUNTS, Frame, messages
 
-SENSOR_PARTS = ("ReferenceAngle", "ReferenceTime", "HallAngle", "ChamberStatus")
+SENSOR_PARTS = ("ReferenceAngle", "ReferenceTime", "HallAngle")
+OPTIONAL_PARTS = ("HallChannels", "ChamberStatus")
 REFUSED = ("checksum", "counter stands still", "fault flag")
 """Kinds of events that say of a frame that it cannot be trusted."""
 _CLOCK_S = 2.0**32 * 1e-5
@@ -31,7 +32,7 @@ class Reading:
     direction: int
     speed_rpm: float
     turn: int
-    temperature_c: float
+    temperature_c: float | None
     vx: float | None
     vy: float | None
     index_seen: bool
@@ -51,10 +52,12 @@ class Event:
 class Assembler:
     """Takes every frame, sent and received, in order; ``readings`` grows by those that are complete.
 
-    ``channels``: a reading is complete only with the two channels, as long as no correction is active.
+    ``channels``: a reading is complete only with the two channels, as long as no correction is active; ``chamber``:
+    only with the temperature.
     """
 
     channels: bool = True
+    chamber: bool = True
     on_event: Callable[[Event], None] = lambda event: None
     readings: list[Reading] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
@@ -78,7 +81,7 @@ class Assembler:
             return None
         if frame.name == "Sync":
             self.label, self._parts = dict(frame.values), {}
-        elif frame.name in SENSOR_PARTS or frame.name == "HallChannels":
+        elif frame.name in (*SENSOR_PARTS, *OPTIONAL_PARTS):
             self._take(frame)
         return frame
 
@@ -86,7 +89,7 @@ class Assembler:
     def missing(self) -> tuple[str, ...]:
         """The messages that the reading asked for last still lacks."""
         angle = self._parts.get("HallAngle")
-        wanted = list(SENSOR_PARTS)
+        wanted = [*SENSOR_PARTS, *(["ChamberStatus"] if self.chamber else [])]
         if self.channels and not (angle is not None and angle.values["Corrected"]):
             wanted.append("HallChannels")
         return tuple(name for name in wanted if name not in self._parts)
@@ -127,6 +130,7 @@ class Assembler:
         way = -1 if label["Backwards"] else 1
         seen: dict[str, Any] = {**parts["ReferenceAngle"]}
         channels = parts.get("HallChannels") if self.channels else None
+        chamber = parts.get("ChamberStatus") if self.chamber else None
         corrected = bool(parts["HallAngle"]["Corrected"])
         return Reading(
             index=int(label["Index"]),
@@ -137,7 +141,7 @@ class Assembler:
             # Not -0.
             speed_rpm=way * label["Speed"] + 0.0,
             turn=int(label["Turn"]),
-            temperature_c=parts["ChamberStatus"]["Temperature"],
+            temperature_c=None if chamber is None else chamber["Temperature"],
             vx=None if channels is None or corrected else channels["Vx"],
             vy=None if channels is None or corrected else channels["Vy"],
             index_seen=bool(seen["IndexSeen"]),

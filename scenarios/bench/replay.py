@@ -12,7 +12,9 @@ from twin.errors import UserError
 from twin.sweep_file import check_writable
 
 
-def replay(log: Path, output: Path, *, channels: bool = True, manifest_deg: float = MANIFEST_DEG) -> Measured:
+def replay(
+    log: Path, output: Path, *, channels: bool = True, chamber: bool = True, manifest_deg: float = MANIFEST_DEG
+) -> Measured:
     """Write the sweep of a log in one of python-can's formats. Raises UserError."""
     import can
 
@@ -20,7 +22,7 @@ def replay(log: Path, output: Path, *, channels: bool = True, manifest_deg: floa
     check_writable(output)
     if not log.is_file():
         raise UserError(f"{log}: no such file; give a log that --record wrote, or another of python-can's formats")
-    assembler = Assembler(channels=channels)
+    assembler = Assembler(channels=channels, chamber=chamber)
     try:
         with can.LogReader(str(log)) as reader:
             for message in reader:
@@ -31,7 +33,7 @@ def replay(log: Path, output: Path, *, channels: bool = True, manifest_deg: floa
     if not assembler.readings:
         raise UserError(
             f"{log.name}: holds {assembler.counts['frames']} frames of the bench and no complete reading"
-            + ("; with --no-channels, if the encoder does not send them" if channels else "")
+            "; try --no-channels or --no-chamber, where these were not on the bus"
         )
     pretreated = pretreat(assembler.readings, manifest_deg=manifest_deg)
     write_sweep(output, pretreated.kept)

@@ -63,6 +63,7 @@ def running(setup: Setup, open_bus: Opener) -> Iterator[dict[str, Counter[str]]]
             node.stop()
         for node in nodes:
             node.join(timeout=20.0 * POLL_S)
-    for node in nodes:
-        if node.failure is not None:
-            raise node.failure
+        # Instead of the silence that a node's own mistake led to.
+        for node in nodes:
+            if node.failure is not None:
+                raise node.failure

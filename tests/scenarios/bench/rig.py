@@ -48,7 +48,7 @@ def run_bench(
     parsed = [fault for text in faults for fault in parse(text)]
     open_bus = Interface().opener()
     job = Measurement(
-        plan=plan, output=output, record=record, patience=patience or Patience(timeout_s=0.05, attempts=60)
+        plan=plan, output=output, record=record, patience=patience or Patience(timeout_s=0.03, attempts=100)
     )
     setup = Setup(chain=quiet_encoder(), faults=parsed)
     with running(setup, open_bus) as done:

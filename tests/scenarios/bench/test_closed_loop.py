@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,27 @@ import pytest
 
 from scenarios.bench.command import DEFAULT_TWIN, Options, run
 from twin.angles import wrap_deg
+from twin.errors import UserError
 from twin.presets import read_preset
 from twin.sweep import Sweep
+
+
+def test_a_loop_broken_off_in_its_second_half_goes_on_there(tmp_path: Path) -> None:
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    for folder in (whole, broken):
+        folder.mkdir()
+    options = Options(output=whole / "loop.csv", closed_loop=True, points=24, attempts=2, timeout_s=0.1)
+    run(options)
+    # The first half takes 98 frames of the encoder, the loading one for each number, the second half one a reading.
+    cut = replace(options, output=broken / "loop.csv")
+    with pytest.raises(UserError, match="Hall encoder did not answer"):
+        run(replace(cut, faults=["gone:hall=140"]))
+    first = (broken / "loop-before.csv").read_bytes()
+    assert (broken / "loop-after.csv.journal.jsonl").exists()
+    run(cut)
+    assert (broken / "loop-before.csv").read_bytes() == first == (whole / "loop-before.csv").read_bytes()
+    assert (broken / "loop-correction.toml").read_bytes() == (whole / "loop-correction.toml").read_bytes()
+    assert len(Sweep.read(broken / "loop-after.csv")) == 48
 
 
 def test_the_closed_loop_names_the_hidden_effect_and_corrects_it(

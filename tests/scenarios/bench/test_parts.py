@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from diagnosis.compensation import Correction
 from scenarios.bench.buses import parse_options
-from scenarios.bench.command import hidden_encoder
+from scenarios.bench.command import Options, hidden_encoder, run
 from scenarios.bench.hall_node import check_playable, corrected_word, spi_frame
 from scenarios.bench.loading import ACTIVE, RECEIVING, REFUSED, Loader, items, numbers
 from scenarios.bench.messages import checksum, messages, with_counter
@@ -209,6 +209,16 @@ def test_speeds_and_temperatures_are_recorded(tmp_path: Path) -> None:
     assert late - still == pytest.approx(-0.9, abs=0.05)
     between = np.diff(sweep.time_s)[moving[1:] & moving[:-1] & (np.diff(sweep.temperature_c) == 0)]
     np.testing.assert_allclose(between, 30.0 / 1800.0, atol=2e-5)
+
+
+def test_a_bench_without_a_chamber_records_no_temperature(tmp_path: Path) -> None:
+    output, log, again = (tmp_path / name for name in ("sweep.csv", "bus.asc", "again.csv"))
+    run(Options(output=output, points=12, chamber=False, channels=False, record=log))
+    assert list(Sweep.read(output).columns) == ["time_s", "reference_deg", "measured_deg", "direction", "turn"]
+    run(Options(output=again, replay=log, chamber=False, channels=False))
+    assert again.read_bytes() == output.read_bytes()
+    with pytest.raises(UserError, match="needs the climate chamber"):
+        run(Options(output=output, chamber=False, temperatures="25,60"))
 
 
 def test_a_mistake_is_one_line_and_two(tmp_path: Path) -> None:

@@ -237,6 +237,7 @@ def bench(
     temperatures: Annotated[str, typer.Option(help="Temperatures in C, e.g. 25,60,85.")] = "",
     settle: Annotated[float, typer.Option(help="Time in s from the last step to a reading.")] = 0.3,
     channels: Annotated[bool, typer.Option(help="The encoder sends vx and vy as well.")] = True,
+    chamber: Annotated[bool, typer.Option(help="A climate chamber on the bus tells the temperature.")] = True,
     interface: Annotated[str, typer.Option(help="Interface of python-can.")] = "virtual",
     channel: Annotated[str | None, typer.Option(help="Its channel, e.g. can0.")] = None,
     bus_option: Annotated[
@@ -270,6 +271,7 @@ def bench(
             temperatures=temperatures,
             settle_s=settle,
             channels=channels,
+            chamber=chamber,
             closed_loop=closed_loop,
             plot=plot,
             record=record,

@@ -291,6 +291,68 @@ def bench(
     )
 
 
+@app.command()
+def design(
+    max_error: Annotated[float, typer.Option(help="Largest angle error in deg.")] = 0.5,
+    tolerance: Annotated[
+        str, typer.Option(help="Mounting tolerances: off_axis, tilt, magnet_off_axis, magnet_tilt, air_gap, stray.")
+    ] = "off_axis=0.3mm, tilt=1deg",
+    temperature: Annotated[str, typer.Option(help="Temperatures in C.")] = "-40:125",
+    window: Annotated[str, typer.Option(help="Field that the sensor works in, in mT.")] = "30:90",
+    twin: Annotated[str, typer.Option(help="Twin TOML or preset of the sensor, with a magnet.")] = "imc-14bit",
+    shape: Annotated[str, typer.Option(help="cylinder, ring or block.")] = "cylinder",
+    grade: Annotated[list[str] | None, typer.Option(help="Grade of the magnet; may be repeated.")] = None,
+    diameter: Annotated[str, typer.Option(help="mm: low:high:step, or numbers with commas.")] = "3:10:0.5",
+    height: Annotated[str, typer.Option(help="mm.")] = "2.5",
+    remanence: Annotated[str, typer.Option(help="T, in place of the grade's; 0: the grade's.")] = "0",
+    bore: Annotated[float, typer.Option(help="Inner diameter of a ring in mm.")] = 2.0,
+    air_gap: Annotated[str, typer.Option(help="mm.")] = "0.5:4:0.25",
+    off_axis: Annotated[str, typer.Option(help="Sensor off the shaft's axis, mm.")] = "0",
+    tilt: Annotated[str, typer.Option(help="Sensor's tilt, deg.")] = "0",
+    magnet_off_axis: Annotated[str, typer.Option(help="Magnet off the shaft's axis, mm.")] = "0",
+    magnet_tilt: Annotated[str, typer.Option(help="Magnet's tilt, deg.")] = "0",
+    stray: Annotated[str, typer.Option(help="Stray field, mT.")] = "0",
+    sampling: Annotated[str, typer.Option(help="grid of all values, or lhs or sobol between them.")] = "grid",
+    count: Annotated[int, typer.Option(help="Designs of lhs or sobol.")] = 256,
+    mountings: Annotated[int, typer.Option(help="Mountings drawn for each design.")] = 200,
+    min_yield: Annotated[float, typer.Option(help="Share of mountings that must keep error and window.")] = 0.99,
+    best: Annotated[int, typer.Option(help="How many designs to list.")] = 10,
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder of the study; again to go on.")] = Path(
+        "design"
+    ),
+    plot: Annotated[bool, typer.Option(help="Draw the map.")] = True,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    seed: Seed = 0,
+) -> None:
+    """Find magnets and distances that keep an error over temperature and mounting tolerances, and map them."""
+    from scenarios.design import run
+    from scenarios.design_options import demand_of, space_of
+    from scenarios.engine import Machines
+
+    axes = {
+        "diameter_mm": diameter,
+        "height_mm": height,
+        "remanence_T": remanence,
+        "air_gap_mm": air_gap,
+        "off_axis_mm": off_axis,
+        "tilt_deg": tilt,
+        "magnet_off_axis_mm": magnet_off_axis,
+        "magnet_tilt_deg": magnet_tilt,
+        "stray_mT": stray,
+    }
+    run(
+        twin,
+        output,
+        space=space_of(axes, shape, tuple(grade or ("N35H",)), bore, sampling, count, seed),
+        demand=demand_of(max_error, window, temperature, tolerance, mountings, min_yield),
+        best=best,
+        plot=plot,
+        machines=Machines(workers=workers, scheduler=scheduler),
+        seed=seed,
+    )
+
+
 def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
     try:

@@ -1,0 +1,162 @@
+"""Many designs through one chain: magnets and placements as arrays, the sensor's effects scaled to each one's field."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from twin.angles import Array, channels_of
+from twin.chain import Chain
+from twin.effect import BoolArray
+from twin.magnet.assembly import NOMINAL_C, Assembly
+from twin.magnet.field import Series, basis, series_by_group
+from twin.magnet.placement import Placement, designs_of
+from twin.motion import Motion
+
+TOLERANCE = 1e-7
+"""Of the field's series, relative to the smallest |B|: 6e-6 deg."""
+
+FIELD_POWER: dict[str, tuple[float, tuple[str, ...]]] = {
+    "offset": (-1.0, ("x_percent", "y_percent")),
+    "offset_drift": (-1.0, ("x_percent_per_K", "y_percent_per_K")),
+    "mains_pickup": (-1.0, ("x_percent", "y_percent")),
+    "noise": (-1.0, ("rms_deg",)),
+    "hysteresis": (-1.0, ("lag_deg",)),
+    "quadratic_nonlinearity": (1.0, ("q_percent",)),
+    "saturation": (2.0, ("k_percent",)),
+}
+"""How an effect's strength goes with the field: what the plates, the pickup and the concentrator's remanence add is
+constant in mT, so relative to the signal it falls; non-linearities grow by their order. The rest does not change; the
+converter's range is taken to follow the signal, as parts with automatic gain do."""
+
+
+@dataclass(frozen=True, eq=False)
+class Designs(Assembly):
+    """An assembly whose magnet and placement hold (designs,) numbers each; signals become (designs, 2, n)."""
+
+    def __post_init__(self) -> None:
+        """Many designs are what this is for."""
+
+    @property
+    def count(self) -> int:
+        """How many designs there are."""
+        return int(np.prod(designs_of(self.magnet, self.placement)))
+
+    @cached_property
+    def groups(self) -> tuple[tuple[BoolArray, Series], ...]:
+        """Designs of equal cost: a mask (designs,) and their series at 25 C [mT], stray field included."""
+        return tuple(series_by_group(self.magnet, self.placement, temperature_c=NOMINAL_C, tolerance=TOLERANCE))
+
+    @cached_property
+    def nominal_mT(self) -> Any:
+        """Field (designs,) [mT] on the axis, untilted, without stray field, at 25 C."""
+        ideal = Placement(air_gap_mm=np.broadcast_to(self.placement.air_gap_mm, (self.count,)))
+        out = np.empty(self.count)
+        for rows, series in series_by_group(self.magnet, ideal, temperature_c=NOMINAL_C):
+            out[rows] = series.coefficients[:, 0, 1]
+        return out
+
+    @cached_property
+    def stray_in_sensor_mT(self) -> Array:
+        """The stray field in the sensor's axes (designs, 3) [mT]."""
+        axes = self.placement.sensor_axes
+        seen = np.einsum("...j,...jk->...k", self.placement.stray_mT, axes)
+        return np.broadcast_to(seen, (self.count, 3))
+
+    def warm(self, temperature_c: Array) -> Array:
+        """Magnetisation at these temperatures (n,) over that at 25 C: (designs, n)."""
+        columns: dict[str, Any] = {
+            name: None if (value := getattr(self.magnet, name)) is None else np.asarray(value)[..., None]
+            for name in ("remanence_T", "percent_per_K")
+        }
+        magnet = replace(self.magnet, **columns)
+        share = magnet.remanence_at(temperature_c) / magnet.remanence_at(NOMINAL_C)
+        return np.broadcast_to(share, (self.count, np.size(temperature_c)))
+
+    def channels(self, angle_rad: Array, motion: Motion) -> Array:
+        """x and y (designs, 2, n) of nominal amplitude 1 at field angles [rad] (2, n) or (designs, 2, n)."""
+        angle = np.broadcast_to(angle_rad, (self.count, *angle_rad.shape[-2:]))
+        warm, stray = self.warm(motion.temperature_c), self.stray_in_sensor_mT[:, :, None]
+        out = np.empty(angle.shape)
+        for rows, series in self.groups:
+            for axis in (0, 1):
+                out[rows, axis] = _along(series.coefficients[:, axis], angle[rows, axis])
+        out = (out - stray[:, :2]) * warm[:, None] + stray[:, :2]
+        amplitude: Array = self.nominal_mT[:, None, None]
+        return channels_of(out[:, :1], out[:, 1:]) / amplitude
+
+    def in_plane_mT(self, angle_rad: Array) -> Array:
+        """The magnet's own in-plane field (designs, n) [mT] at 25 C over shaft angles (n,)."""
+        out = np.empty((self.count, angle_rad.size))
+        for rows, series in self.groups:
+            own = series.coefficients[:, :2].copy()
+            own[:, :, 0] -= self.stray_in_sensor_mT[rows, :2]
+            out[rows] = np.linalg.norm(own @ basis(angle_rad, series.orders), axis=1)
+        return out
+
+    def spread(self, count: int, change: Callable[[Placement], Placement]) -> Designs:
+        """Each design ``count`` times in a row, then with its placement changed."""
+        return Designs(_each(self.magnet, count, self.count), change(_each(self.placement, count, self.count)))
+
+
+def _along(terms: Array, angle: Array) -> Array:
+    """One component (designs, n) of series (designs, 2 orders + 1) at each design's own angles (designs, n)."""
+    # Horner's rule in exp(i theta), as Series.component has it for one design.
+    z = np.exp(1j * angle)
+    total = np.zeros(angle.shape, dtype=np.complex128)
+    for order in range((terms.shape[1] - 1) // 2, 0, -1):
+        total = (total + (terms[:, 2 * order - 1] - 1j * terms[:, 2 * order])[:, None]) * z
+    return np.asarray(terms[:, :1] + total.real)
+
+
+def _each(part: Any, count: int, designs: int) -> Any:
+    changes = {}
+    for item in fields(part):
+        value = getattr(part, item.name)
+        if value is not None and not isinstance(value, str):
+            changes[item.name] = np.repeat(np.broadcast_to(np.asarray(value, dtype=np.float64), (designs,)), count)
+    return replace(part, **changes)
+
+
+def scaled_values(chain: Chain, ratio: Array | float) -> dict[str, dict[str, Any]]:
+    """The chain's parameters at ``ratio`` (designs,) times the field that they were stated at; see FIELD_POWER."""
+    values: dict[str, dict[str, Any]] = {}
+    for key, params in chain.values.items():
+        power, names = FIELD_POWER.get(key, (0.0, ()))
+        values[key] = {name: value * ratio**power if name in names else value for name, value in params.items()}
+    return values
+
+
+def errors_deg(chain: Chain, designs: Designs, motion: Motion) -> Array:
+    """Expected angle error (designs, n) [deg] of the chain with each design's magnet, its zero set at 25 C.
+
+    ``chain`` has a magnet: its nominal field is what the chain's parameters are stated at.
+    """
+    assert chain.magnet is not None
+    ratio = designs.nominal_mT / chain.magnet.nominal_mT
+    own = replace(chain, values=scaled_values(chain, ratio), magnet=designs)
+    return _zeroed(own.error(motion), motion)
+
+
+def cause_errors(chain: Chain, designs: Designs, motion: Motion) -> Iterator[tuple[str, Array]]:
+    """Cause and its error alone (designs, n) [deg]: the magnet's field first, then each effect on an ideal field."""
+    assert chain.magnet is not None
+    bare = replace(chain, values={}, magnet=designs)
+    yield "field", _zeroed(bare.error(motion), motion)
+    values = scaled_values(chain, designs.nominal_mT / chain.magnet.nominal_mT)
+    for key, params in values.items():
+        if key in ("noise", "adc_quantisation", "zero"):
+            continue
+        alone = replace(chain, values={key: params}, magnet=None)
+        error = np.broadcast_to(alone.error(motion), (designs.count, len(motion)))
+        yield key, _zeroed(error, motion)
+
+
+def _zeroed(error_rad: Array, motion: Motion) -> Array:
+    calibrated = np.abs(motion.temperature_c - NOMINAL_C) < 1e-9
+    mean = np.angle(np.mean(np.exp(1j * error_rad[..., calibrated]), axis=-1, keepdims=True))
+    return np.asarray(np.degrees((error_rad - mean + np.pi) % (2.0 * np.pi) - np.pi))

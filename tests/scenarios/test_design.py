@@ -1,0 +1,126 @@
+"""Design studies: known relations, the winner by other means, and the same bytes whoever does the work."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from scenarios.design import explore, run, study_of
+from scenarios.design_check import check_design, magpylib_mT
+from scenarios.design_options import demand_of, space_of
+from scenarios.design_space import AXES
+from scenarios.design_study import DesignStudy, ranking
+from scenarios.engine import Machines
+from tests.scenarios.study_jobs import content
+from twin.errors import UserError
+from twin.magnet.magnet import Magnet
+from twin.magnet.placement import Placement
+
+DEFAULT = {"diameter_mm": "6", "height_mm": "2.5", "air_gap_mm": "2"}
+
+
+def study(*, sampling: str = "grid", count: int = 0, shape: str = "cylinder", **axes: str) -> DesignStudy:
+    whole = {name: axes.get(name, DEFAULT.get(name, "0")) for name in AXES}
+    space = space_of(whole, shape, ("N35H",), 2.0, sampling, count, 0)
+    demand = demand_of(0.5, "30:90", "-40:125", "off_axis=0.3mm, tilt=1deg", 20, 0.9)
+    return study_of("imc-14bit", space, demand, seed=0)
+
+
+def figures(chosen: DesignStudy) -> dict[str, Any]:
+    table, which = chosen.space.table()
+    return chosen.figures(chosen.space.assemble(table, which), np.arange(len(table)))
+
+
+def test_the_fields_error_grows_with_the_square_of_the_off_axis() -> None:
+    found = figures(study(off_axis_mm="0.05,0.1,0.2,0.4"))
+    slope = np.diff(np.log(found["error_deg.field"])) / np.log(2.0)
+    np.testing.assert_allclose(slope, 2.0, atol=0.03)
+
+
+@pytest.mark.parametrize("shape", ["cylinder", "ring", "block"])
+def test_the_field_falls_with_the_gap_as_magpylib_says(shape: Any) -> None:
+    found = figures(study(shape=shape, air_gap_mm="0.5:4:0.5"))
+    for gap, field in zip(np.arange(0.5, 4.1, 0.5), found["field_mT"], strict=True):
+        magnet = Magnet(shape=shape)
+        assert field == pytest.approx(magpylib_mT(magnet, Placement(air_gap_mm=float(gap))), rel=1e-6)
+    if shape != "ring":
+        # In front of a ring's bore the field rises first.
+        assert np.all(np.diff(found["field_mT"]) < 0)
+
+
+def test_the_stray_fields_error_goes_inversely_with_the_field() -> None:
+    found = figures(study(air_gap_mm="0.5:3:0.5"))
+    product = found["stray_error_deg"] * found["field_low_mT"]
+    np.testing.assert_allclose(product, np.degrees(1.0), rtol=1e-3)
+    # Through the chain too: a stray field of 1 mT adds what the figure says, to its square.
+    bare, with_stray = (hot_field_error(study(stray_mT=one)) for one in ("0", "1"))
+    assert bare == pytest.approx(0.0, abs=1e-6)
+    assert with_stray == pytest.approx(float(found["stray_error_deg"][3]), rel=0.05)
+
+
+def hot_field_error(chosen: DesignStudy) -> float:
+    """Largest error [deg] of the field alone at the highest temperature, where the field is weakest."""
+    hot = replace(chosen.demand, temperature_c=(25.0, 125.0))
+    return float(figures(replace(chosen, demand=hot))["error_deg.field"][0])
+
+
+def test_noise_limited_bits_follow_the_field() -> None:
+    found = figures(study(air_gap_mm="1,2,3"))
+    np.testing.assert_allclose(np.diff(found["resolution_bits"]), np.diff(np.log2(found["field_low_mT"])), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "axes", [{}, {"off_axis_mm": "0.3", "tilt_deg": "2"}, {"magnet_tilt_deg": "2", "shape": "ring"}]
+)
+def test_a_design_is_its_own_twin_simulated(axes: dict[str, str]) -> None:
+    chosen = study(**axes)  # type: ignore[arg-type]
+    table, which = chosen.space.table()
+    check = check_design(chosen, table[0], which[0])
+    # What is left are the converter's rounding and the noise, averaged over 16 records and at its largest.
+    assert check.simulated_error_deg == pytest.approx(check.error_deg, abs=0.03)
+    assert check.field_mT == pytest.approx(check.magpylib_mT, rel=1e-6)
+
+
+def test_the_study_gives_the_same_bytes_with_one_and_two_workers(tmp_path: Path) -> None:
+    chosen = study(sampling="sobol", count=33, diameter_mm="4,10", air_gap_mm="1,3", magnet_tilt_deg="0,2")
+    found = explore(chosen, tmp_path / "one", Machines(workers=1))
+    explore(chosen, tmp_path / "two", Machines(workers=2))
+    assert content(tmp_path / "one") == content(tmp_path / "two")
+    assert len(found["yield"]) == 33
+    order = ranking(found, chosen.demand)
+    assert np.all(np.diff(found["yield"][order]) <= 0)
+
+
+def test_the_command_lists_draws_and_checks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    chosen = study(diameter_mm="6,8", air_gap_mm="2,2.5")
+    machines = Machines(workers=1)
+    run(
+        "imc-14bit",
+        tmp_path / "s",
+        space=chosen.space,
+        demand=chosen.demand,
+        best=3,
+        plot=True,
+        machines=machines,
+        seed=0,
+    )
+    out = capsys.readouterr().out
+    assert "of 4 designs keep 0.5 deg" in " ".join(out.split())
+    assert "magpylib has" in " ".join(out.split())
+    for name in ("map.png", "designs.csv", "best.json", "best.toml"):
+        assert (tmp_path / "s" / name).stat().st_size > 0
+
+
+def test_what_cannot_be_is_refused() -> None:
+    with pytest.raises(UserError, match="has no"):
+        demand_of(0.5, "30:90", "-40:125", "offaxis=0.3mm", 20, 0.9)
+    with pytest.raises(UserError, match="low:high"):
+        demand_of(0.5, "90:30", "-40:125", "", 20, 0.9)
+    with pytest.raises(UserError, match="has no \\[magnet\\]"):
+        study_of("paper-encoder", study().space, study().demand, seed=0)
+    with pytest.raises(UserError, match="air_gap_mm is 0 mm"):
+        study(air_gap_mm="0")

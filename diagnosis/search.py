@@ -137,8 +137,9 @@ def drop(fit: Fit, key: str) -> Fit:
 
 
 def exact(fit: Fit, before: float, candidate: Candidate, base: Base) -> tuple[float, Fit, str]:
-    """Log probability of the candidate's exact gain, its joint fit and its key."""
+    """Log probability of the candidate's exact gain, its joint fit with the noise that it leaves, and its key."""
     trial, key = add(fit, candidate)
+    trial, _ = settle(trial)
     gain = 2.0 * (likelihood(trial) - before)
     terms = degrees(candidate.effect, candidate.terms)
     log_p = float(log_probability(np.array(gain), terms, base.dof)) + float(np.log(candidate.looks))

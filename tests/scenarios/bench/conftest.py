@@ -19,6 +19,6 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     folder = tmp_path_factory.mktemp("bench")
     sweep, log = folder / "sweep.csv", folder / "bus.log"
     outcome = run_bench(sweep, record=log, patience=Patience(timeout_s=5.0))
-    assert len(outcome.measured.pretreated.kept) == 180
+    assert len(outcome.measured.pretreated.kept) == 128
     assert set(outcome.measured.counts) == {"frames"}
     return sweep, log

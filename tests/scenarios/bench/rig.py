@@ -20,7 +20,7 @@ from scenarios.bench.virtual import Setup, running
 from twin.chain import Chain
 from twin.sweep_file import read_columns
 
-PLAN = Plan(points=90, both_directions=True)
+PLAN = Plan(points=64, both_directions=True)
 
 
 def quiet_encoder() -> Chain:

@@ -20,12 +20,12 @@ def test_a_loop_broken_off_in_its_second_half_goes_on_there(tmp_path: Path) -> N
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     for folder in (whole, broken):
         folder.mkdir()
-    options = Options(output=whole / "loop.csv", closed_loop=True, points=24, attempts=2, timeout_s=0.1)
+    options = Options(output=whole / "loop.csv", closed_loop=True, points=24, timeout_s=0.1)
     run(options)
     # The first half takes 98 frames of the encoder, the loading one for each number, the second half one a reading.
     cut = replace(options, output=broken / "loop.csv")
     with pytest.raises(UserError, match="Hall encoder did not answer"):
-        run(replace(cut, faults=["gone:hall=140"]))
+        run(replace(cut, faults=["gone:hall=140"], attempts=5))
     first = (broken / "loop-before.csv").read_bytes()
     assert (broken / "loop-after.csv.journal.jsonl").exists()
     run(cut)

@@ -47,7 +47,7 @@ def test_a_sweep_between_two_processes(tmp_path: Path, undisturbed: tuple[Path, 
         try:
             assert nodes.stdout is not None
             assert "virtual bench is on udp_multicast" in nodes.stdout.readline()
-            run(Options(output=sweep, interface="udp_multicast", bus_options=BUS, points=90, both_directions=True))
+            run(Options(output=sweep, interface="udp_multicast", bus_options=BUS, points=64, both_directions=True))
         finally:
             nodes.terminate()
     assert_same_readings(sweep, undisturbed[0])

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from scenarios.cli_studies import design, generate, recover
+
 app = typer.Typer(
     name="halltwin",
     help="A digital twin of a Hall angle sensor that says what its own simulation gets wrong, and why.",
@@ -17,10 +19,6 @@ app = typer.Typer(
 )
 
 Seed = Annotated[int, typer.Option(min=0, help="Seed of everything random; the same seed gives the same bytes.")]
-Workers = Annotated[int | None, typer.Option(help="Worker processes; without it one for each core.")]
-Scheduler = Annotated[
-    str | None, typer.Option(help="Hand the work to a Dask cluster: its address, or 'local' to start one.")
-]
 
 
 @app.command()
@@ -171,55 +169,6 @@ def hardware(
 
 
 @app.command()
-def generate(
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder of the study; run again to go on.")],
-    sweeps: Annotated[int, typer.Option("-n", "--sweeps", help="How many sweeps.")] = 10_000,
-    twin: Annotated[str, typer.Option(help="Twin TOML or preset that sweeps are drawn around.")] = "paper-encoder",
-    cause: Annotated[list[str] | None, typer.Option(help="Draw only this cause; may be repeated.")] = None,
-    most_causes: Annotated[int, typer.Option(help="Most causes in a sweep; none is as likely as any number.")] = 3,
-    strength: Annotated[str, typer.Option(help="Strengths in deg, log-uniform.")] = "0.02:0.3",
-    noise: Annotated[str, typer.Option(help="RMS noise in deg, log-uniform.")] = "0.003:0.05",
-    turns: Annotated[int, typer.Option(help="Turns in each direction.")] = 1,
-    points: Annotated[int, typer.Option(help="Readings a turn.")] = 360,
-    both_directions: Annotated[bool, typer.Option("--both-directions", help="And back over the same angles.")] = False,
-    speed_rpm: Annotated[list[float] | None, typer.Option(help="Speed; may be repeated. 0: stop and measure.")] = None,
-    temperatures: Annotated[str, typer.Option(help="Temperatures in C, e.g. 25,60,85.")] = "",
-    channels: Annotated[bool, typer.Option("--channels", help="Store the two channels as well.")] = False,
-    chunk: Annotated[int, typer.Option(help="Sweeps a chunk.")] = 1000,
-    workers: Workers = None,
-    scheduler: Scheduler = None,
-    seed: Seed = 0,
-) -> None:
-    """Write labelled training sweeps of a twin: error curves, causes, strengths and parameters, as a Zarr store."""
-    from scenarios.engine import Machines
-    from scenarios.intervals import interval
-    from scenarios.protocol import Protocol, numbers
-    from scenarios.training import run
-    from scenarios.training_draw import Ranges
-
-    protocol = Protocol(
-        turns=turns,
-        points=points,
-        both_directions=both_directions,
-        speeds_rpm=speed_rpm or [0.0],
-        temperatures_c=numbers("temperatures", temperatures),
-    )
-    ranges = Ranges(strength_deg=interval("strength", strength), noise_deg=interval("noise", noise), most=most_causes)
-    run(
-        twin,
-        output,
-        sweeps=sweeps,
-        chunk=chunk,
-        channels=channels,
-        protocol=protocol,
-        ranges=ranges,
-        causes=cause or (),
-        machines=Machines(workers=workers, scheduler=scheduler),
-        seed=seed,
-    )
-
-
-@app.command()
 def bench(
     output: Annotated[Path, typer.Option("-o", "--output", help="Sweep to write: CSV or .csv.gz.")] = Path("bench.csv"),
     closed_loop: Annotated[
@@ -291,66 +240,8 @@ def bench(
     )
 
 
-@app.command()
-def design(
-    max_error: Annotated[float, typer.Option(help="Largest angle error in deg.")] = 0.5,
-    tolerance: Annotated[
-        str, typer.Option(help="Mounting tolerances: off_axis, tilt, magnet_off_axis, magnet_tilt, air_gap, stray.")
-    ] = "off_axis=0.3mm, tilt=1deg",
-    temperature: Annotated[str, typer.Option(help="Temperatures in C.")] = "-40:125",
-    window: Annotated[str, typer.Option(help="Field that the sensor works in, in mT.")] = "30:90",
-    twin: Annotated[str, typer.Option(help="Twin TOML or preset of the sensor, with a magnet.")] = "imc-14bit",
-    shape: Annotated[str, typer.Option(help="cylinder, ring or block.")] = "cylinder",
-    grade: Annotated[list[str] | None, typer.Option(help="Grade of the magnet; may be repeated.")] = None,
-    diameter: Annotated[str, typer.Option(help="mm: low:high:step, or numbers with commas.")] = "3:10:0.5",
-    height: Annotated[str, typer.Option(help="mm.")] = "2.5",
-    remanence: Annotated[str, typer.Option(help="T, in place of the grade's; 0: the grade's.")] = "0",
-    bore: Annotated[float, typer.Option(help="Inner diameter of a ring in mm.")] = 2.0,
-    air_gap: Annotated[str, typer.Option(help="mm.")] = "0.5:4:0.25",
-    off_axis: Annotated[str, typer.Option(help="Sensor off the shaft's axis, mm.")] = "0",
-    tilt: Annotated[str, typer.Option(help="Sensor's tilt, deg.")] = "0",
-    magnet_off_axis: Annotated[str, typer.Option(help="Magnet off the shaft's axis, mm.")] = "0",
-    magnet_tilt: Annotated[str, typer.Option(help="Magnet's tilt, deg.")] = "0",
-    stray: Annotated[str, typer.Option(help="Stray field, mT.")] = "0",
-    sampling: Annotated[str, typer.Option(help="grid of all values, or lhs or sobol between them.")] = "grid",
-    count: Annotated[int, typer.Option(help="Designs of lhs or sobol.")] = 256,
-    mountings: Annotated[int, typer.Option(help="Mountings drawn for each design.")] = 200,
-    min_yield: Annotated[float, typer.Option(help="Share of mountings that must keep error and window.")] = 0.99,
-    best: Annotated[int, typer.Option(help="How many designs to list.")] = 10,
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder of the study; again to go on.")] = Path(
-        "design"
-    ),
-    plot: Annotated[bool, typer.Option(help="Draw the map.")] = True,
-    workers: Workers = None,
-    scheduler: Scheduler = None,
-    seed: Seed = 0,
-) -> None:
-    """Find magnets and distances that keep an error over temperature and mounting tolerances, and map them."""
-    from scenarios.design import run
-    from scenarios.design_options import demand_of, space_of
-    from scenarios.engine import Machines
-
-    axes = {
-        "diameter_mm": diameter,
-        "height_mm": height,
-        "remanence_T": remanence,
-        "air_gap_mm": air_gap,
-        "off_axis_mm": off_axis,
-        "tilt_deg": tilt,
-        "magnet_off_axis_mm": magnet_off_axis,
-        "magnet_tilt_deg": magnet_tilt,
-        "stray_mT": stray,
-    }
-    run(
-        twin,
-        output,
-        space=space_of(axes, shape, tuple(grade or ("N35H",)), bore, sampling, count, seed),
-        demand=demand_of(max_error, window, temperature, tolerance, mountings, min_yield),
-        best=best,
-        plot=plot,
-        machines=Machines(workers=workers, scheduler=scheduler),
-        seed=seed,
-    )
+for study in (generate, design, recover):
+    app.command()(study)
 
 
 def main() -> None:

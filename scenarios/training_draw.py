@@ -18,9 +18,9 @@ from twin.effect import BoolArray, Effect
 from twin.motion import Motion
 
 YARDSTICK_DEG = 0.1
-_PER_CAUSE = 4
+CAUSE_UNIFORMS = 4
 """Uniform numbers for a cause's parameters: the most that any needs."""
-_BASELINE = 6
+BASELINE_UNIFORMS = 6
 _SPLIT = (0.8, 0.9)
 """Shares of a million sweeps below which a sweep is for training, then for validation; the rest is for testing."""
 _FULL_SCALE_PERCENT = 250.0
@@ -62,7 +62,7 @@ class Draw:
 
 def uniforms_needed(causes: tuple[str, ...]) -> int:
     """Length of a sweep's row of uniform numbers."""
-    return 3 + _BASELINE + len(causes) * (2 + _PER_CAUSE)
+    return 3 + BASELINE_UNIFORMS + len(causes) * (2 + CAUSE_UNIFORMS)
 
 
 def drawable(motion: Motion) -> tuple[str, ...]:
@@ -78,21 +78,21 @@ def drawable(motion: Motion) -> tuple[str, ...]:
 def draw(uniforms: Array, base: Chain, causes: tuple[str, ...], motion: Motion, ranges: Ranges) -> Draw:
     """Turn rows of uniform numbers (batch, :func:`uniforms_needed`) into sweeps around a twin."""
     batch, count = len(uniforms), len(causes)
-    head, rest = uniforms[:, : 3 + _BASELINE], uniforms[:, 3 + _BASELINE :]
+    head, rest = uniforms[:, : 3 + BASELINE_UNIFORMS], uniforms[:, 3 + BASELINE_UNIFORMS :]
     noise = _log_uniform(head[:, 0], ranges.noise_deg)
     how_many = np.floor(head[:, 1] * (min(ranges.most, count) + 1))
     order, strength_u = rest[:, :count], rest[:, count : 2 * count]
     labels = np.argsort(np.argsort(order, axis=1), axis=1) < how_many[:, None]
     strength = np.where(labels, _log_uniform(strength_u, ranges.strength_deg), 0.0)
-    values = _baseline(head[:, 3:], base)
+    values = baseline_values(head[:, 3:], base)
     values["noise"] = {"rms_deg": noise}
-    own = rest[:, 2 * count :].reshape(batch, count, _PER_CAUSE)
+    own = rest[:, 2 * count :].reshape(batch, count, CAUSE_UNIFORMS)
     for column, name in enumerate(causes):
         rows = labels[:, column]
         effect = find(name)
         kept = {**effect.null(), **base.values.get(name, {})}
         params = {key: np.full(batch, value, dtype=np.float64) for key, value in kept.items() if key != "zeros_deg"}
-        for key, drawn in _parameters(effect, strength[rows, column], own[rows, column], motion).items():
+        for key, drawn in parameters_of(effect, strength[rows, column], own[rows, column], motion).items():
             params[key][rows] = drawn
         values[name] = params
     return Draw(values, labels, strength, noise, np.searchsorted(_SPLIT, head[:, 2], side="right").astype(np.float64))
@@ -103,7 +103,8 @@ def stripped(twin: Chain, causes: tuple[str, ...]) -> Chain:
     return twin.without(*(name for name in causes if find(name).footprint != "values"))
 
 
-def _baseline(uniforms: Array, base: Chain) -> Drawn:
+def baseline_values(uniforms: Array, base: Chain) -> Drawn:
+    """The paper's error factors (batch,) around the twin's, from uniform numbers (batch, 6)."""
     out: Drawn = {}
     for column, (key, half) in enumerate(BASELINE_SPREAD.items()):
         name, param = key.split(".")
@@ -121,7 +122,8 @@ def _log_uniform(u: Array, bounds: tuple[float, float]) -> Array:
 # ---- one cause's parameters ------------------------------------------------------------------------------------------
 
 
-def _parameters(effect: Effect, strength: Array, u: Array, motion: Motion) -> Mapping[str, Array]:
+def parameters_of(effect: Effect, strength: Array, u: Array, motion: Motion) -> Mapping[str, Array]:
+    """A cause's parameters (k,) for strengths [deg] (k,) and uniform numbers (k, 4)."""
     special = _SPECIAL.get(effect.name)
     return special(strength, u, motion) if special is not None else _generic(effect, strength, u)
 

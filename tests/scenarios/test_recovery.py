@@ -1,0 +1,76 @@
+"""Recovery studies: the bound is the bound, a small study reaches it, and what cannot show is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diagnosis.error_model import Readings, from_twin_values
+from scenarios.engine import Machines
+from scenarios.recovery import check, recover, run
+from scenarios.recovery_cells import BASELINE, SLOTS, Cell, Grid, bounds, simulate
+from tests.scenarios.study_jobs import content
+from twin.errors import UserError
+
+GRID = Grid(
+    causes=(BASELINE,),
+    noises_deg=(0.01, 0.05),
+    points=(45,),
+    turns=(1,),
+    amplitudes_deg=(0.05,),
+    fits=60,
+    sweeps=1,
+    seed=0,
+)
+
+
+def test_the_bound_is_that_of_the_error_models_own_slopes() -> None:
+    cell = Cell(cause=BASELINE, noise_deg=0.02, points=72, turns=1, amplitude_deg=0.0)
+    motion = cell.motion()
+    chain, sweep = simulate(cell, motion, np.random.default_rng(0))
+    ours = bounds(chain, cell, motion)
+    point = from_twin_values(chain.values)
+    readings = Readings.of(np.radians(sweep.reference_deg), np.radians(sweep.measured_deg))
+    _, slopes = readings.linearised(point[None])
+    information = slopes[0] @ slopes[0].T / np.radians(cell.noise_deg) ** 2
+    theirs = np.sqrt(np.diagonal(np.linalg.inv(information)))
+    in_twin_units = theirs * np.array([100.0, 100.0, 1.0, np.degrees(1.0), 100.0, np.degrees(1.0)])
+    np.testing.assert_allclose(ours, in_twin_units, rtol=0.03)
+
+
+def test_a_cause_costs_the_baseline_some_of_its_bound() -> None:
+    plain = Cell(cause=BASELINE, noise_deg=0.02, points=72, turns=1, amplitude_deg=0.05)
+    other = replace(plain, cause="saturation")
+    motion = plain.motion()
+    chain, _ = simulate(other, motion, np.random.default_rng(0))
+    with_cause = bounds(chain, other, motion)
+    assert with_cause.size == SLOTS + 1
+    assert np.all(with_cause[:SLOTS] >= bounds(chain, plain, motion) * (1.0 - 1e-9))
+
+
+def test_the_baseline_reaches_its_bound_and_any_number_of_workers_says_so(tmp_path: Path) -> None:
+    found = recover(GRID, tmp_path / "one", Machines(workers=1))
+    recover(GRID, tmp_path / "two", Machines(workers=2))
+    assert content(tmp_path / "one") == content(tmp_path / "two")
+    for entry in found:
+        for parameter in entry["parameters"].values():
+            assert parameter["recovered"] == 60
+            assert 0.7 < parameter["rms_over_bound"] < 1.35
+            assert abs(parameter["bias_over_bound"]) < 0.5
+            assert parameter["coverage"] > 0.85
+
+
+def test_the_command_asks_about_causes_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    grid = replace(GRID, causes=(BASELINE, "clean", "saturation"), noises_deg=(0.01,), amplitudes_deg=(0.2,), fits=8)
+    run(grid, tmp_path / "s", plot=True, machines=Machines(workers=2))
+    assert "saturation" in capsys.readouterr().out
+    for name in ("recovery.json", "baseline.png", "causes.png"):
+        assert (tmp_path / "s" / name).stat().st_size > 0
+
+
+def test_a_cause_that_cannot_show_is_refused() -> None:
+    with pytest.raises(UserError, match="'gain_drift' does not show at 45 points"):
+        check(replace(GRID, causes=("gain_drift",)))

@@ -97,7 +97,7 @@ class FaultyBus:
         message = self._counted(msg)
         drawn = (*_SHARES, "wild") if messages().name_of(msg) == "HallAngle" else _SHARES
         draw = dict(zip(drawn, self.rng.random(len(drawn)), strict=True))
-        hit = [fault.kind for fault in self.faults if draw.get(fault.kind, 1.0) < fault.value]
+        hit = [fault.kind for fault in self.faults if fault.kind in draw and draw[fault.kind] < fault.value]
         self.done.update(hit)
         if "lost" in hit:
             return

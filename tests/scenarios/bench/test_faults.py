@@ -40,6 +40,8 @@ def test_what_a_passing_fault_concerns_is_asked_for_again(
     # The faults of the bench's own bus are seen from what the bench noticed.
     assert fault.startswith("bus_off:bench") or sum(done[kind] for done in outcome.faults.values()) > 0
     assert outcome.measured.counts[noticed] > 0
+    if kind == "stuck":
+        assert outcome.measured.counts[noticed] == sum(done[kind] for done in outcome.faults.values())
     assert not outcome.measured.pretreated.rejected
     assert_same_readings(tmp_path / "sweep.csv", undisturbed[0])
 

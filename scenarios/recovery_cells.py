@@ -188,5 +188,6 @@ def _free(cell: Cell) -> list[tuple[str, str]]:
     if cell.cause in (BASELINE, CLEAN):
         return []
     effect: Effect = find(cell.cause)
-    names = [*effect.roles("strength"), *effect.roles("phase"), *effect.fitted_shapes]
+    along = () if effect.line is None else (effect.line.param,)
+    names = dict.fromkeys([*effect.roles("strength"), *effect.roles("phase"), *effect.fitted_shapes, *along])
     return [(effect.name, name) for name in names if not effect.params[name].counts]

@@ -28,6 +28,7 @@ BURST_LOG_P = float(np.log(1e-6))
 """A stretch of noise must be this improbable: its test takes the noise to be Gaussian, which is true only nearly."""
 STAIRS_GAIN = 25.0
 """Twice the log likelihood, five sigma, that the output's stairs must gain to be named."""
+SLACK = 1.004
 _NUDGE = 1e-9
 """A baseline parameter exactly at null is skipped by the chain and could not be fitted: it starts this far off."""
 
@@ -211,11 +212,19 @@ def _first_fit(evidence: Evidence, start: Chain, given: Chain | None) -> Fit:
         return solve(evaluate(awake(start), BASELINE, evidence, setting))
     free: list[Free] = [BASELINE[0]]
     chain = start
-    if "reference_rezero" in chain.values and turns > 1:
-        chain = chain.with_values({"reference_rezero": {"zeros_deg": np.full(turns, _NUDGE), "spread_deg": 0.0}})
+    rezeroed = "reference_rezero" in chain.values and turns > 1
+    chain = chain.without("reference_rezero")
+    if rezeroed:
         free += free_of(find("reference_rezero"), "reference_rezero", turns=turns, channels=False)
     chain = chain.with_values({"zero": {"zero_deg": 0.0, **chain.values.get("zero", {})}})
     chain = aligned(chain, evidence.motion, evidence.measured)
+    if rezeroed:
+        # Each turn's zero from its own readings: zeros that all begin alike would be held there by their own scatter.
+        motion = chain.shaft(evidence.motion)
+        off = wrap(evidence.measured - chain.readings(motion))
+        sense = chain.sensor_sense * chain.output_sense
+        zeros = [-sense * np.degrees(np.median(off[motion.turn == turn])) for turn in range(turns)]
+        chain = chain.with_values({"reference_rezero": {"zeros_deg": np.array(zeros), "spread_deg": 0.0}})
     fit = solve(evaluate(chain, tuple(free), evidence, setting))
     return solve(evaluate(fit.chain, fit.free, evidence, setting))
 
@@ -381,7 +390,9 @@ def _prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fi
                 continue
             # Not the last step: its turn may come only with what was added after it.
             alone = held_out_residuals(fit, [*(k for k in ordered if k != key), key])
-            if rms_deg(alone[-1], use) >= rms_deg(alone[-2], use):
+            # The RMS counts correlated noise in full: a strong cause that leaves it as it is shows elsewhere.
+            slack = SLACK if causes[place].log_p < np.log(1e-10) else 1.0
+            if rms_deg(alone[-1], use) >= slack * rms_deg(alone[-2], use):
                 idle = key
                 break
         if idle is None:

@@ -23,7 +23,7 @@ REACH = 4.0
 
 
 def plausible_members(fit: Fit) -> tuple[int, ...]:
-    """The family members that the noise may be, given the fit's residual."""
+    """The family members that the noise may be, given the fit's residual; all where there are too few turns to tell."""
     everyone = tuple(range(len(fit.setting.family.labels)))
     motion = fit.evidence.motion
     if motion.turns < FEWEST_TURNS:
@@ -49,7 +49,7 @@ def plausible_members(fit: Fit) -> tuple[int, ...]:
 
 
 def locked_shapes(motion: Motion) -> Array:
-    """Shapes (q, n) that repeat with the angle: orders 3 to 12, and low orders times direction, temperature, speed."""
+    """Shapes (q, n) to set aside: orders 3 to 12, low orders times direction, temperature, speed; a slow drift."""
     highest = int(min(12, motion.points_per_turn / 2.5))
     ones = np.ones(len(motion))
     shapes: list[Array] = []
@@ -62,6 +62,9 @@ def locked_shapes(motion: Motion) -> Array:
 
     series(range(3, highest + 1), ones)
     low = range(0, min(8, highest) + 1)
+    # A slow drift of the zero is no noise either: the noise's colour is told by what is faster.
+    share = np.linspace(0.0, 1.0, len(motion))
+    shapes.extend(np.cos(np.pi * mode * share) for mode in (1, 2, 3))
     if "both directions" in motion.provides:
         series(low, motion.direction)
     if "two temperatures" in motion.provides:

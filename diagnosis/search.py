@@ -55,8 +55,8 @@ class Found:
     looked_at: int
 
 
-def likelihood(fit: Fit) -> float:
-    """Restricted log likelihood of a fit at its best noise.
+def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
+    """Restricted log likelihood of a fit at the best noise of ``members`` (its own plausible ones if not given).
 
     The baseline's coefficients are integrated out, and so are the turns' own zeros, which are draws from a
     distribution with the scatter that they show: a common cause of many turns' zeros gains by making them scatter less.
@@ -68,7 +68,7 @@ def likelihood(fit: Fit) -> float:
     dof = fit.rows * fit.evidence.observables - len(base)
     prior = float(np.sum(np.log(np.abs(fit.prior_jacobian[turns].sum(axis=1))))) if turns else 0.0
     best = -np.inf
-    for member in fit.setting.plausible:
+    for member in members or fit.setting.plausible:
         r, j = fit.whitened(member)
         _, log_det = np.linalg.slogdet(j[integrated] @ j[integrated].T + 1e-300 * np.eye(len(integrated)))
         best = max(best, -0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + family.log_det[member] + log_det))
@@ -136,14 +136,26 @@ def drop(fit: Fit, key: str) -> Fit:
     return refit(fit.chain.without(key), [f for f in fit.free if f.key != key], fit)
 
 
-def exact(fit: Fit, before: float, candidate: Candidate, base: Base) -> tuple[float, Fit, str]:
-    """Log probability of the candidate's exact gain, its joint fit with the noise that it leaves, and its key."""
-    trial, key = add(fit, candidate)
-    trial, _ = settle(trial)
-    gain = 2.0 * (likelihood(trial) - before)
-    terms = degrees(candidate.effect, candidate.terms)
-    log_p = float(log_probability(np.array(gain), terms, base.dof)) + float(np.log(candidate.looks))
-    return log_p, trial, key
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A candidate fitted exactly: its joint fit, its key, and the noise that is plausible with it."""
+
+    candidate: Candidate
+    fit: Fit
+    key: str
+    members: tuple[int, ...]
+
+    @classmethod
+    def of(cls, fit: Fit, candidate: Candidate) -> Trial:
+        """Add the candidate to the fit."""
+        trial, key = add(fit, candidate)
+        return cls(candidate, trial, key, plausible_members(trial))
+
+    def log_p(self, before: Fit, members: tuple[int, ...], dof: int) -> float:
+        """Log probability that noise of these members gains as much."""
+        gain = 2.0 * (likelihood(self.fit, members) - likelihood(before, members))
+        terms = degrees(self.candidate.effect, self.candidate.terms)
+        return float(log_probability(np.array(gain), terms, dof)) + float(np.log(self.candidate.looks))
 
 
 def handicap(effect: Effect) -> float:
@@ -226,13 +238,16 @@ def best_addition(
     ranked = [c for c in candidates(base, effects, keys) if c.log_p + handicap(c.effect) < threshold]
     if not ranked:
         return None
-    before = likelihood(fit)
     top = ranked[0].log_p + handicap(ranked[0].effect)
     near = [c for c in ranked if c.log_p + handicap(c.effect) < top + max(8.0, -0.1 * top)][:5]
-    trials = [(exact(fit, before, c, base), c) for c in near]
-    (log_p, trial, key), chosen = min(trials, key=lambda t: t[0][0] + handicap(t[1].effect))
-    if log_p + handicap(chosen.effect) > threshold:
+    trials = [Trial.of(fit, c) for c in near]
+    # All are judged by the same noises: those that any of them leaves.
+    members = tuple(sorted(set().union(*(t.members for t in trials))))
+    judged = [(t.log_p(fit, members, base.dof) + handicap(t.candidate.effect), k) for k, t in enumerate(trials)]
+    score, place = min(judged)
+    if score > threshold:
         return None
+    trial, key, chosen = trials[place].fit, trials[place].key, trials[place].candidate
     fair = [c.effect for c in ranked if c.gain > FAIR_SHARE * chosen.gain]
     return trial, key, list({effect.name: effect for effect in fair}.values())
 
@@ -264,13 +279,19 @@ def improve(
                 fit, keys, changed = without, others, True
                 continue
             score = log_p + handicap(effect)
-            for rival in candidates(base, contenders.get(key, effects), others)[:3]:
+            ranked = candidates(base, contenders.get(key, effects), others)
+            # The zeros of the turns cost a scatter, not a coefficient each: first order undervalues them.
+            for rival in [*ranked[:3], *(c for c in ranked[3:] if c.effect.roles("per turn"))]:
                 if rival.effect.name == effect.name or rival.log_p + handicap(rival.effect) > score + 8.0:
                     continue
-                rival_p, trial, rival_key = exact(without, before, rival, base)
-                if rival_p + handicap(rival.effect) < score - SWAP_MARGIN:
-                    contenders[rival_key] = contenders.get(key, list(effects))
-                    fit, keys, changed = trial, [*others, rival_key], True
+                trial = Trial.of(without, rival)
+                members = tuple(sorted({*plausible_members(fit), *trial.members}))
+                own_gain = 2.0 * (likelihood(fit, members) - likelihood(without, members))
+                own_p = float(log_probability(np.array(own_gain), terms, base.dof)) + float(np.log(looks))
+                lead = own_p + handicap(effect) - trial.log_p(without, members, base.dof) - handicap(rival.effect)
+                if lead > SWAP_MARGIN:
+                    contenders[trial.key] = contenders.get(key, list(effects))
+                    fit, keys, changed = trial.fit, [*others, trial.key], True
                     break
         if not changed:
             break
@@ -280,6 +301,7 @@ def improve(
 def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:
     """What a cause gains in the final fit, and which named effects in its place would fit as well."""
     effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
+    # Without it the noise stays what it is with it: else structure that comes back would pass for noise.
     without = drop(fit, key)
     base = Base.of(without)
     before = likelihood(without)
@@ -296,9 +318,13 @@ def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) ->
             if other.name == effect.name or other.name in present or other.name.startswith("unnamed"):
                 continue
             rival = screen_one(base, other)
-            if rival is None or rival.gain < 0.5 * gain - SAME_FIT:
+            if rival is None or rival.gain < 0.3 * gain - SAME_FIT:
                 continue
             trial, _ = add(without, rival)
-            if 2.0 * (likelihood(trial) - before) > gain - SAME_FIT:
+            rival_gain = 2.0 * (likelihood(trial) - before)
+            if other.roles("per turn"):
+                # A step between two turns is a special case of a zero for each turn: what fits counts, not its price.
+                rival_gain = max(rival_gain, rival.gain)
+            if rival_gain > gain - SAME_FIT:
                 rivals.append(other.name)
     return Cause(key, gain, log_p, tuple(rivals))

@@ -55,4 +55,4 @@ def show(found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: 
 
 
 def _size(design: Array) -> str:
-    return f"{design[0]:g} x {design[1]:g} mm"
+    return f"{design[0]:.3g} x {design[1]:.3g} mm"

@@ -33,6 +33,7 @@ def to_json(found: Discovery) -> dict[str, Any]:
     residual = np.degrees(raw_residual(found.baseline, sweep))
     extended = np.degrees(raw_residual(found.fit, sweep))
     kept = ~found.masked if found.masked.any() and not found.masked.all() else np.ones_like(found.masked)
+    wild = wild_rows(found)
     gain = found.baseline_held_deg / max(found.extended_held_deg, 1e-12)
     unnamed = [key for cause in found.causes if cause.name == "unnamed" for key in cause.keys]
     answer: dict[str, Any] = _rounded(
@@ -50,6 +51,8 @@ def to_json(found: Discovery) -> dict[str, Any]:
                 "error_rms_deg": _rms(np.degrees(raw_error(sweep))),
                 "columns": list(sweep.columns),
                 "output_bits": found.bits,
+                "wild": len(wild),
+                "wild_rows": wild[:100],
                 "held_against": "the paper's error model" if found.given is None else "given twin",
             },
             "baseline": {
@@ -203,6 +206,12 @@ def advice(cause: Named) -> str:
     if {"zero_drift", "index_slip"} & rivals:
         return "record more turns, with time stamps"
     return "record vx, vy, both directions and a second speed"
+
+
+def wild_rows(found: Discovery) -> list[int]:
+    """Numbers of the readings that stand alone far out of their neighbours and that no cause has claimed."""
+    evidence = found.fit.evidence
+    return [int(row) + 1 for row in np.flatnonzero(~evidence.usable[evidence.group] & ~found.masked)]
 
 
 def raw_error(sweep: Sweep) -> Any:

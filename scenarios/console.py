@@ -49,7 +49,8 @@ def _sweep(sweep: Mapping[str, Any]) -> RenderableType:
         said.append(f"{plain(360.0 / sweep['points_per_turn'], 2)} deg apart")
     if sweep["output_bits"] is not None:
         said.append(f"output on a {sweep['output_bits']}-bit grid")
-    return Text.assemble((sweep["name"], "bold"), "   ", ", ".join(said), f"; {rejected_words(sweep)}")
+    wild = f"; {sweep['wild']} stand alone and were not fitted" if sweep.get("wild") else ""
+    return Text.assemble((sweep["name"], "bold"), "   ", ", ".join(said), f"; {rejected_words(sweep)}{wild}")
 
 
 def _baseline(answer: Mapping[str, Any]) -> RenderableType:

@@ -163,10 +163,10 @@ def test_few_rows_and_a_quarter_turn_name_nothing(rows: int, span_deg: float, tm
 @pytest.mark.parametrize(
     "seed",
     [
-        pytest.param(17, marks=pytest.mark.xfail(strict=False, reason="bus_glitch: six angles are taken for glitches")),
+        17,
         18,
-        pytest.param(19, marks=pytest.mark.xfail(strict=False, reason="the jig's angles are taken for a grid of bits")),
-        pytest.param(20, marks=pytest.mark.xfail(strict=False, reason="the jig's angles are taken for a grid of bits")),
+        19,
+        20,
         21,
     ],
 )
@@ -181,7 +181,6 @@ def test_ten_readings_at_each_of_17_angles(seed: int, tmp_path: Path) -> None:
     assert answer["noise_floor_deg"] == pytest.approx(0.005, rel=0.3)
 
 
-@pytest.mark.xfail(strict=False, reason="rounding of 1e-14 deg is taken for a burst of noise")
 @pytest.mark.parametrize("times", [1, 3])
 def test_noiseless_perfect_sensor(times: int, tmp_path: Path) -> None:
     """Nothing is wrong, to the last digit of the file."""
@@ -221,7 +220,7 @@ def test_noiseless_baseline_is_adequate(tmp_path: Path) -> None:
     "k_percent",
     [
         0.3,
-        pytest.param(0.8, marks=pytest.mark.xfail(strict=False, reason="the file's last digit is named drive_ripple")),
+        0.8,
         1.3,
     ],
 )

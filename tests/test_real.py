@@ -67,9 +67,9 @@ def test_direction_effect(name: str, folder: Path) -> None:
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param("oven_b_start1", marks=pytest.mark.xfail(strict=False, reason="named zero_drift or index_slip")),
+        "oven_b_start1",
         "oven_b_start2",
-        pytest.param("room_repeat", marks=pytest.mark.xfail(strict=False, reason="named index_slip")),
+        "room_repeat",
     ],
 )
 def test_zero_made_anew(name: str, folder: Path) -> None:
@@ -81,12 +81,11 @@ def test_order_4(name: str, folder: Path) -> None:
     assert names(answered(folder, name)) & {"saturation", "magnet_harmonic"}
 
 
-@pytest.mark.parametrize("name", OVEN)
+@pytest.mark.parametrize("name", BENCH)
 def test_glitches(name: str, folder: Path) -> None:
-    """Named, or described as wild readings."""
+    """Told apart as readings that stand alone: their sizes are no powers of two, so no bit flips."""
     answer = answered(folder, name)
-    kinds = {entry["kind"] for entry in answer["unexplained"]["structure"]}
-    assert "bus_glitch" in names(answer) or kinds & {"noise", "local"}
+    assert 10 < answer["sweep"]["wild"] < 0.12 * answer["sweep"]["used"]
 
 
 def test_ripple_of_the_drive(folder: Path) -> None:
@@ -105,10 +104,7 @@ def test_gain_ratio_far_outside_the_search_range(name: str, folder: Path) -> Non
 @pytest.mark.parametrize(
     ("first", "second"),
     [
-        pytest.param(
-            *OVEN,
-            marks=pytest.mark.xfail(strict=False, reason="no reference_rezero in the first twin: no zeros are fitted"),
-        ),
+        OVEN,
         OVEN[::-1],
     ],
 )

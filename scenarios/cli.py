@@ -28,12 +28,13 @@ def explain(
     json: Annotated[Path | None, typer.Option(help="Write the answer as JSON.")] = None,
     report: Annotated[Path | None, typer.Option(help="Write a self-contained HTML report.")] = None,
     extended: Annotated[Path | None, typer.Option(help="Write the extended twin (TOML).")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw the error before and after: .png, .svg or .pdf.")] = None,
     seed: Seed = 0,
 ) -> None:
     """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""
     from scenarios.explain import run
 
-    run(sweep, twin=twin, json_path=json, report=report, extended=extended, seed=seed)
+    run(sweep, twin=twin, json_path=json, report=report, extended=extended, plot=plot, seed=seed)
 
 
 @app.command()

@@ -44,12 +44,13 @@ def run(
     json_path: Path | None,
     report: Path | None,
     extended: Path | None,
+    plot: Path | None,
     seed: int,
 ) -> None:
     """The command: print the answer, write what was asked for. Raises UserError before anything is written."""
     from scenarios.console import show
 
-    _check_outputs([given for given in (json_path, report, extended) if given is not None], inputs=[path, twin])
+    _check_outputs([given for given in (json_path, report, extended, plot) if given is not None], inputs=[path, twin])
     sweep = Sweep.read(path)
     found = explain(sweep, twin=twin, seed=seed)
     answer = to_json(found)
@@ -62,6 +63,10 @@ def run(
         from scenarios.report import write_report
 
         write_report(report, found, answer)
+    if plot is not None:
+        from scenarios.explain_plot import draw
+
+        draw(found, plot)
 
 
 def _check_outputs(outputs: list[Path], *, inputs: list[Path | None]) -> None:

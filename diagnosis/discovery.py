@@ -26,6 +26,8 @@ from twin.sweep import Sweep
 ROUNDS = 3
 BURST_LOG_P = float(np.log(1e-6))
 """A stretch of noise must be this improbable: its test takes the noise to be Gaussian, which is true only nearly."""
+BEYOND_DOUBT = -25.0
+"""Log probability below which the spread is taken to be uneven before anything else is known."""
 STAIRS_GAIN = 25.0
 """Twice the log likelihood, five sigma, that the output's stairs must gain to be named."""
 SLACK = 1.004
@@ -111,8 +113,12 @@ def discover(
     )
     fit = _masked(fit, sequence_mask)
     burst = footprints.bursts(fit)
+    uneven = [s for s in footprints.spread_shapes(fit, candidates) if s.log_p < BEYOND_DOUBT]
     if burst is not None and burst.log_p < BURST_LOG_P:
         fit = _scaled(fit, burst.variance)
+    elif uneven:
+        # Noise that is loudest at some angles passes for structure there, unless those rows weigh less.
+        fit = _scaled(fit, min(uneven, key=lambda s: s.log_p).variance)
     baseline = fit
     looked = 0
     fit, keys, looked = _searched(fit, means, [], step, sequence_mask)

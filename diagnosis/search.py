@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.footprints import stairs_rule
 from diagnosis.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, tidy
 from diagnosis.noise_choice import plausible_members
 from diagnosis.screening import Base, Candidate, log_probability, screen, screen_one
@@ -23,6 +24,7 @@ SWAP_MARGIN = 2.0
 """What a swap must gain (in nats): less is noise."""
 SAME_FIT = 9.0
 """Difference of twice the log likelihood, three sigma, below which two causes cannot be told apart."""
+STAIRS_LOG_P = -40.0
 MOST_CAUSES = 8
 FAIR_SHARE = 0.15
 """Share of a cause's first gain that another effect must reach to be tried in its place later."""
@@ -173,6 +175,9 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
     """
     effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
     threshold = float(np.log(alpha / max(len(effects), 1)))
+    if stairs_rule(fit):
+        # Stairs alias into lines and steps that no smooth model of them takes out: only what is beyond doubt counts.
+        threshold = min(threshold, STAIRS_LOG_P)
     keys = list(keys)
     contenders: dict[str, list[Effect]] = {}
     barred: set[str] = set()

@@ -40,17 +40,7 @@ def judged(hidden: Hidden, folder: Path) -> str:
     return said if said == "right" else f"{said}: {given} for {hidden.truth['causes']}"
 
 
-WRONG_NOW = {"output_quantisation": "drive_ripple and index_slip are named besides: the stairs alias into lines"}
-"""Draws that are answered wrongly at present, and how; the seeds stay."""
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=pytest.mark.xfail(strict=False, reason=WRONG_NOW[name])) if name in WRONG_NOW else name
-        for name in sorted(CAUSES)
-    ],
-)
+@pytest.mark.parametrize("name", sorted(CAUSES))
 def test_one_cause(name: str, tmp_path: Path) -> None:
     assert judged(draw([name], seed=ALONE[name]), tmp_path) == "right"
 

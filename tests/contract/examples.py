@@ -270,14 +270,17 @@ EXAMPLES: dict[str, Example] = {
         strengths=_LINE, shapes={**_PHASE, "order": 11.0}, signature=lambda m, p: line(m, p, p["order"])
     ),
     "unnamed_direction": Example(
-        strengths=_LINE,
-        shapes={**_PHASE, "order": 2.0},
-        signature=lambda m, p: line(m, p, p["order"], weight=m.direction),
+        strengths={"sin2_deg": 0.1, "cos3_deg": -0.05},
+        shapes={},
+        signature=lambda m, p: (
+            m.direction
+            * (_rad(p["sin2_deg"]) * np.sin(2 * m.shaft_rad) + _rad(p["cos3_deg"]) * np.cos(3 * m.shaft_rad))
+        ),
     ),
     "unnamed_temperature": Example(
-        strengths=_LINE,
-        shapes={**_PHASE, "order": 2.0},
-        signature=lambda m, p: line(m, p, p["order"], weight=_share(_warm(m))),
+        strengths={"cos0_deg": 0.1, "sin4_deg": 0.05},
+        shapes={},
+        signature=lambda m, p: _share(_warm(m)) * (_rad(p["cos0_deg"]) + _rad(p["sin4_deg"]) * np.sin(4 * m.shaft_rad)),
     ),
     "unnamed_speed": Example(
         strengths=_LINE,

@@ -10,8 +10,7 @@ REFERENCE_C = 20.0
 """Temperature at which data sheets state the remanence [C]."""
 
 _ARNOLD = "Arnold Magnetic Technologies, Neodymium Iron Boron Magnet Catalog, grades table (typical Br)"
-_RECOMA = "typical of sintered Sm2Co17; coefficient -0.03 to -0.05 %/K: advancedmagnets.com, temperature coefficients"
-_MODELICA = "typical of its family: Modelica Standard Library 4.0, Magnetic.FluxTubes.Material.HardMagnetic"
+_TYPICAL = "typical assumption for its family, not taken from a data sheet: give remanence_T where yours is known"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,9 +27,9 @@ GRADES: dict[str, Grade] = {
     "N35H": Grade(remanence_T=1.210, percent_per_K=-0.12, source=_ARNOLD),
     "N42": Grade(remanence_T=1.315, percent_per_K=-0.12, source=_ARNOLD),
     "N52": Grade(remanence_T=1.450, percent_per_K=-0.12, source=_ARNOLD),
-    "Sm2Co17": Grade(remanence_T=1.02, percent_per_K=-0.03, source=_MODELICA + "; " + _RECOMA),
-    "SmCo5": Grade(remanence_T=0.95, percent_per_K=-0.042, source=_MODELICA),
-    "ferrite": Grade(remanence_T=0.38, percent_per_K=-0.2, source=_MODELICA),
+    "Sm2Co17": Grade(remanence_T=1.02, percent_per_K=-0.03, source=_TYPICAL),
+    "SmCo5": Grade(remanence_T=0.95, percent_per_K=-0.042, source=_TYPICAL),
+    "ferrite": Grade(remanence_T=0.38, percent_per_K=-0.2, source=_TYPICAL),
 }
 
 

@@ -447,6 +447,9 @@ def _with_noise(fit: Fit, step: float, causes: Sequence[Named]) -> Chain:
     values: dict[str, dict[str, Any]] = {
         "noise": {"rms_deg": rms_deg_left, "correlation": correlation, "correlated_share": share}
     }
+    if "reference_rezero" in fit.chain.values:
+        own = fit.chain.values["reference_rezero"]
+        values["reference_rezero"] = {**own, "spread_deg": float(np.std(own["zeros_deg"], ddof=1))}
     for cause in causes:
         if cause.name == "bus_glitch":
             values["bus_glitch"] = {"count": float(len(cause.rows))}

@@ -57,7 +57,10 @@ class Base:
     def of(cls, fit: Fit) -> Base:
         """Prepare a fit for screening."""
         family = fit.setting.family
-        roots, residuals, rows, likelihood = [], [], [], []
+        roots: list[Array] = []
+        residuals: list[Array] = []
+        rows: list[Array] = []
+        likelihood: list[float] = []
         dof = fit.rows * fit.evidence.observables - len(fit.free) + fit.prior_residual.size
         for member in range(len(family.labels)):
             if member not in fit.setting.plausible:

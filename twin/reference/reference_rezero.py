@@ -14,7 +14,8 @@ from twin.motion import Motion
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     turns = int(motion.turn.max(initial=0)) + 1
     zeros = values.get("zeros_deg")
-    if zeros is not None and np.size(zeros) > 1:
+    # Zeros belong to the recording they were fitted to; another one, with another number of turns, draws its own.
+    if zeros is not None and np.shape(zeros)[-1:] == (turns,) and turns > 1:
         zeros_deg = np.asarray(zeros, dtype=np.float64)
     elif rng is not None:
         spread = np.asarray(values.get("spread_deg", 0.0))

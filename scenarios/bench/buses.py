@@ -30,8 +30,9 @@ class Interface:
         if self.channel is not None:
             options["channel"] = self.channel
         elif self.name == "virtual":
-            # A channel of its own, so that two benches in one process do not hear one another.
-            options["channel"] = f"halltwin-{uuid.uuid4().hex}"
+            # A channel of its own, so that two benches in one process do not hear one another. Its name ends with no
+            # digits: log formats take those for the channel's number, and have 16 bits for it.
+            options["channel"] = f"halltwin-{uuid.uuid4().hex}-bus"
         return lambda: _opened(self.name, options)
 
 

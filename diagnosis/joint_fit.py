@@ -262,8 +262,10 @@ def tidy(chain: Chain) -> Chain:
         effect = find(key, chain.effects)
         phases = effect.roles("phase")
         for name in effect.roles("strength"):
-            if phases and effect.params[name].lower == 0.0 and float(params.get(name, 0.0)) < 0.0:
-                params[name] = -float(params[name])
+            if phases and float(params.get(name, 0.0)) < 0.0 and name == effect.roles("strength")[0]:
+                # The first strength is positive by convention; half a turn of the phase turns all of them.
+                for turned in effect.roles("strength"):
+                    params[turned] = -float(params[turned])
                 params[phases[0]] = float(params[phases[0]]) + 180.0
         for name in (*phases, *(("zero_deg",) if key == "zero" else ())):
             params[name] = float(-((-float(params[name]) + 180.0) % 360.0 - 180.0))

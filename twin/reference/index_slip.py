@@ -13,7 +13,8 @@ from twin.motion import Motion
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     after = motion.time_s >= np.asarray(values["time_s"])
-    return signal + radians(values["step_deg"]) * after
+    # A zero that moves on by a step makes every later reading fall by it, and the error e rise.
+    return signal - radians(values["step_deg"]) * after
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:

@@ -26,6 +26,8 @@ from twin.sweep import Sweep
 ROUNDS = 3
 BURST_LOG_P = float(np.log(1e-6))
 """A stretch of noise must be this improbable: its test takes the noise to be Gaussian, which is true only nearly."""
+SPREAD_LOG_P = -12.0
+"""Log probability that a shape of the spread must fall below: as for a burst, noise is Gaussian only nearly."""
 BEYOND_DOUBT = -25.0
 """Log probability below which the spread is taken to be uneven before anything else is known."""
 STAIRS_GAIN = 25.0
@@ -371,7 +373,7 @@ def _spread(fit: Fit, effects: Sequence[Effect], looked: int) -> tuple[list[Name
     burst = footprints.bursts(fit)
     if burst is not None and burst.log_p < BURST_LOG_P:
         shapes.append(burst)
-    shapes = [s for s in shapes if s.log_p < np.log(ALPHA / max(looked, 1))]
+    shapes = [s for s in shapes if s.log_p < min(np.log(ALPHA / max(looked, 1)), SPREAD_LOG_P)]
     if not shapes:
         return [], fit
     best = min(shapes, key=lambda s: s.log_p + (6.0 if s.name.startswith("unnamed") else 0.0))
@@ -391,7 +393,12 @@ def _prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fi
         held = held_out_residuals(fit, ordered)
         figures = [rms_deg(residual, use) for residual in held]
         idle = None
+        listed = float(np.log(0.01 / max(len(effects), 1)))
         for place, key in enumerate(ordered):
+            if causes[place].log_p > listed:
+                # What was added after it has taken over what it was added for.
+                idle = key
+                break
             if figures[place + 1] < figures[place]:
                 continue
             # Not the last step: its turn may come only with what was added after it.

@@ -26,7 +26,7 @@ from twin.sweep import Sweep
 ROUNDS = 3
 BURST_LOG_P = float(np.log(1e-6))
 """A stretch of noise must be this improbable: its test takes the noise to be Gaussian, which is true only nearly."""
-SPREAD_LOG_P = -12.0
+SPREAD_LOG_P = -16.0
 """Log probability that a shape of the spread must fall below: as for a burst, noise is Gaussian only nearly."""
 BEYOND_DOUBT = -25.0
 """Log probability below which the spread is taken to be uneven before anything else is known."""

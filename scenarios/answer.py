@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.discovery import Discovery, Named, raw_residual
 from diagnosis.joint_fit import Fit
-from twin.angles import wrap
+from twin.angles import wrap, wrap_deg
 from twin.catalogue import base_name, find
 from twin.files import to_dict
 from twin.sweep import Sweep
@@ -162,6 +162,14 @@ def parameters(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
                     "low": float(min(clock[max(place - 2, 0)], value)),
                     "high": float(max(clock[min(place + 1, clock.size - 1)], value)),
                 }
+        if effect.line is not None and effect.line.clock == "time":
+            # Fitted in the middle of the record, where it is known best; told at its first row.
+            half_s = 0.5 * float(np.ptp(fit.evidence.motion.time_s))
+            told = answer["phase_deg" + suffix]
+            value = float(wrap_deg(told["value"] - 360.0 * float(values["frequency_Hz"]) * half_s))
+            spread = 360.0 * half_s * _T95 * deviation.get((key, "frequency_Hz"), 0.0)
+            half = float(np.hypot(0.5 * (told["high"] - told["low"]), spread))
+            told |= {"value": value, "low": value - half, "high": value + half}
         for name, (value, low, high, unit) in effect.derived(values).items():
             answer[name + suffix] = {"value": value, "low": low, "high": high, "unit": unit}
         for name, (low, high) in cause.intervals.items():

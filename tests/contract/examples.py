@@ -61,18 +61,18 @@ def line(motion: Motion, p: Params, order: float, sign: float = 1.0, weight: Arr
     return np.asarray(sign * _rad(p["amplitude_deg"]) * weight * wave)
 
 
-def _since(motion: Motion) -> Array:
-    """Time since the first row [s]."""
-    return np.asarray(motion.time_s - motion.time_s[0])
+def _middle(motion: Motion) -> Array:
+    """Time from the middle of the record [s]."""
+    return np.asarray(motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1]))
 
 
 def _mains(motion: Motion, p: Params) -> Array:
-    wave = 0.01 * np.cos(TAU * p["frequency_Hz"] * _since(motion) + _rad(p["phase_deg"]))
+    wave = 0.01 * np.cos(TAU * p["frequency_Hz"] * _middle(motion) + _rad(p["phase_deg"]))
     return shift(motion, p["x_percent"] * wave, p["y_percent"] * wave)
 
 
 def _ripple(motion: Motion, p: Params) -> Array:
-    phase = TAU * p["frequency_Hz"] * _since(motion) + _rad(p["phase_deg"])
+    phase = TAU * p["frequency_Hz"] * _middle(motion) + _rad(p["phase_deg"])
     lag = TAU * p["frequency_Hz"] * 1e-6 * p["delay_us"]
     difference = np.cos(phase + lag) - np.cos(phase)
     return np.asarray(0.5 * np.sin(2.0 * motion.shaft_rad) * 0.01 * p["amplitude_percent"] * difference)
@@ -142,7 +142,7 @@ def _share(values: Array) -> Array:
 
 
 def _tone(motion: Motion, p: Params) -> Array:
-    wave = np.cos(TAU * p["frequency_Hz"] * _since(motion) + _rad(p["phase_deg"]))
+    wave = np.cos(TAU * p["frequency_Hz"] * _middle(motion) + _rad(p["phase_deg"]))
     return np.asarray(_rad(p["amplitude_deg"]) * wave)
 
 

@@ -11,7 +11,8 @@ from twin.motion import Motion
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     frequency = np.asarray(values["frequency_Hz"])
-    elapsed = motion.time_s - motion.time_s[0]
+    # Counted from the middle of the record, so that a small change of frequency hardly moves the fitted phase.
+    elapsed = motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
     phase = TAU * frequency * elapsed + radians(values["phase_deg"])
     # Without a delay of its own the second conversion comes a sixth of a period later: in an angle only the product
     # of amplitude and delay is visible, and at a sixth the difference is as large as the ripple itself.
@@ -56,7 +57,7 @@ REFERENCE_RIPPLE = Effect(
             role="shape",
             typical=1e3,
         ),
-        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase at the first row", role="phase"),
+        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
     },
     forward=forward,
     channel_shapes=("delay_us",),

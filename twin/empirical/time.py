@@ -10,7 +10,8 @@ from twin.motion import Motion
 
 
 def _tone(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    elapsed = motion.time_s - motion.time_s[0]
+    # Counted from the middle of the record, so that a small change of frequency hardly moves the fitted phase.
+    elapsed = motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
     wave: Array = np.cos(TAU * np.asarray(values["frequency_Hz"]) * elapsed + radians(values["phase_deg"]))
     return signal + radians(values["amplitude_deg"]) * wave
 
@@ -32,7 +33,7 @@ UNNAMED_TONE = Effect(
     params={
         "frequency_Hz": Param(unit="Hz", null=1.0, lower=0.0, upper=1e7, doc="frequency", role="shape"),
         "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=90.0, doc="amplitude"),
-        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase at the first row", role="phase"),
+        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
     },
     forward=_tone,
     line=Line(param="frequency_Hz", clock="time", limits=_tone_limits, within=_any_tone),

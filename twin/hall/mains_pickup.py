@@ -11,7 +11,8 @@ from twin.motion import Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    elapsed = motion.time_s - motion.time_s[0]
+    # Counted from the middle of the record, so that a small change of frequency hardly moves the fitted phase.
+    elapsed = motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
     wave = 0.01 * np.cos(TAU * np.asarray(values["frequency_Hz"]) * elapsed + radians(values["phase_deg"]))
     return add(signal, np.asarray(values["x_percent"]) * wave, np.asarray(values["y_percent"]) * wave)
 
@@ -37,7 +38,7 @@ MAINS_PICKUP = Effect(
         ),
         "x_percent": Param(unit="%", null=0.0, lower=-50.0, upper=50.0, doc="amplitude on x", typical=0.2),
         "y_percent": Param(unit="%", null=0.0, lower=-50.0, upper=50.0, doc="amplitude on y", typical=0.2),
-        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase at the first row", role="phase"),
+        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
     },
     forward=forward,
     needs=frozenset({"time_s", "moving shaft"}),

@@ -8,10 +8,10 @@ import numpy as np
 
 from diagnosis.discovery import Discovery, Named, raw_residual
 from diagnosis.joint_fit import Fit
-from twin.angles import wrap, wrap_deg
+from scenarios.facts import facts
+from twin.angles import wrap_deg
 from twin.catalogue import base_name, find
 from twin.files import to_dict
-from twin.sweep import Sweep
 
 SCHEMA = "halltwin.explain/1"
 _T95 = 1.959964
@@ -46,14 +46,11 @@ def to_json(found: Discovery) -> dict[str, Any]:
                 "rejected": len(sweep.rejected),
                 "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:100]},
                 "turns": found.fit.evidence.motion.turns,
-                "points_per_turn": found.fit.evidence.motion.points_per_turn,
-                "directions": 2 if "both directions" in found.fit.evidence.motion.provides else 1,
-                "error_rms_deg": _rms(np.degrees(raw_error(sweep))),
                 "columns": list(sweep.columns),
+                **facts(found),
                 "output_bits": found.bits,
                 "wild": len(wild),
                 "wild_rows": wild[:100],
-                "held_against": "the paper's error model" if found.given is None else "given twin",
             },
             "baseline": {
                 "parameters": baseline_parameters(found.baseline),
@@ -220,14 +217,6 @@ def wild_rows(found: Discovery) -> list[int]:
     """Numbers of the readings that stand alone far out of their neighbours and that no cause has claimed."""
     evidence = found.fit.evidence
     return [int(row) + 1 for row in np.flatnonzero(~evidence.usable[evidence.group] & ~found.masked)]
-
-
-def raw_error(sweep: Sweep) -> Any:
-    """Angle error [rad] (n,) of the readings as they are: measured against reference, their zeros aside."""
-    measured, reference = np.radians(sweep.measured_deg), np.radians(sweep.reference_deg)
-    sums = [np.mean(np.exp(1j * (measured - sense * reference))) for sense in (1.0, -1.0)]
-    sense = 1.0 if abs(sums[0]) >= abs(sums[1]) else -1.0
-    return wrap(measured - sense * reference - np.angle(sums[0 if sense > 0 else 1]))
 
 
 def _rms(values: Any) -> float:

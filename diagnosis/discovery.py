@@ -262,7 +262,7 @@ def _mask_spikes(fit: Fit, step: float, also: BoolArray | None = None) -> tuple[
     """The fit without the rows that stand out alone; fitted anew where there are any, until the set is stable."""
     for _ in range(4):
         mask, _sigma = footprints.spikes(fit.residual[0], fit.evidence.motion, max(step, stair_step(fit.chain, step)))
-        usable = ~mask
+        usable = ~mask & fit.evidence.sure
         if fit.evidence.observables == 2:
             # Channels that fall out for a reading say nothing true about the radius.
             radius = fit.residual[1] - np.median(fit.residual[1])

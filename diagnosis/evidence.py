@@ -22,13 +22,15 @@ class Evidence:
 
     ``motion`` holds the reference's readings as shaft angles. ``log_radius`` is log |(vx, vy)| where the channels
     were recorded. ``usable`` masks rows out of the fits of the mean (outliers, repeats of stale frames, held-out
-    blocks); ``scale`` is the noise of a row against the usual one. ``group`` maps each raw row to its row here.
+    blocks); rows that are not ``sure`` are out for good, their direction being in doubt. ``scale`` is the noise of a
+    row against the usual one. ``group`` maps each raw row to its row here.
     """
 
     motion: Motion
     measured: Array
     log_radius: Array | None
     usable: BoolArray
+    sure: BoolArray
     scale: Array
     group: IntArray
     repeat_rms: float | None
@@ -67,11 +69,13 @@ def collect(sweep: Sweep) -> Evidence:
         if np.all(radius > 0.0):
             log_radius = np.log(radius)
     n = count.size
+    sure = _sure_of_direction(motion, sweep)
     return Evidence(
         motion=motion,
         measured=measured,
         log_radius=log_radius,
-        usable=np.ones(n, dtype=bool),
+        usable=sure,
+        sure=sure,
         scale=np.ones(n),
         group=group,
         repeat_rms=repeat_rms,
@@ -99,6 +103,16 @@ def _repeats(motion: Motion) -> IntArray:
         return np.concatenate([[0], np.cumsum((np.diff(part) != 0) | (np.diff(inside) != 0))])
     same = still & (np.diff(motion.turn) == 0) & (np.diff(motion.direction) == 0)
     return np.concatenate([[0], np.cumsum(~same)])
+
+
+def _sure_of_direction(motion: Motion, sweep: Sweep) -> BoolArray:
+    """All rows but those about a reversal whose direction is only inferred: it may be a row sooner or later."""
+    usable = np.ones(len(motion), dtype=bool)
+    signed = sweep.speed_rpm is not None and np.ptp(np.sign(sweep.speed_rpm)) == 2.0
+    if sweep.direction is None and not signed:
+        for first, _, _ in motion.segments[1:]:
+            usable[max(first - 1, 0) : first + 1] = False
+    return usable
 
 
 def _averaged(motion: Motion, group: IntArray, count: IntArray, first: IntArray) -> Motion:

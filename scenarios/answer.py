@@ -216,7 +216,7 @@ def advice(cause: Named) -> str:
 def wild_rows(found: Discovery) -> list[int]:
     """Numbers of the readings that stand alone far out of their neighbours and that no cause has claimed."""
     evidence = found.fit.evidence
-    return [int(row) + 1 for row in np.flatnonzero(~evidence.usable[evidence.group] & ~found.masked)]
+    return [int(row) + 1 for row in np.flatnonzero((evidence.sure & ~evidence.usable)[evidence.group] & ~found.masked)]
 
 
 def _rms(values: Any) -> float:

@@ -61,6 +61,11 @@ class Motion:
             way = np.where(np.asarray(direction) < 0, -1.0, 1.0)
         else:
             way = infer_direction(shaft)
+            if speed_rad_s is not None and np.ptp(np.sign(speed_rad_s)) == 2.0:
+                # A signed speed says the direction of the very row at which the shaft turns round.
+                sense = np.where(np.asarray(speed_rad_s) < 0.0, -1.0, 1.0)
+                agreement = float(np.mean(sense * way))
+                way = sense * np.sign(agreement) if abs(agreement) > 0.8 else way
         if speed_rad_s is not None:
             columns.add("speed_rpm")
             # A recorded speed may be unsigned: its sense is the direction's.

@@ -107,7 +107,6 @@ def discover(
     step = TAU / 2.0**bits if bits is not None else 0.0
     fit = _first_fit(evidence, start, given)
     evidence, fit = _mask_spikes(fit, step)
-    keys: list[str] = []
     values_found: list[Named] = []
     fit = _with_stairs(fit, sweep, candidates, bits, values_found)
     sequence_mask, sequence_found = _sequence(
@@ -122,7 +121,6 @@ def discover(
         # Noise that is loudest at some angles passes for structure there, unless those rows weigh less.
         fit = _scaled(fit, min(uneven, key=lambda s: s.log_p).variance)
     baseline = fit
-    looked = 0
     fit, keys, looked = _searched(fit, means, [], step, sequence_mask)
     if given is None and evidence.observables == 1:
         # Angles alone tell who counts which way by the quadratic term only, and a cause may have stood in for it.

@@ -8,7 +8,7 @@ residual as well as a candidate does leaves the candidate no gain.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -106,11 +106,11 @@ def log_probability(gain: Array, terms: int, dof: int) -> Array:
         return np.asarray(np.where(plain > 1e-280, np.log(np.maximum(plain, 1e-300)), tail))
 
 
-def screen(base: Base, effects: Iterable[Effect], *, shapes_of: Mapping[str, Any] | None = None) -> list[Candidate]:
+def screen(base: Base, effects: Iterable[Effect]) -> list[Candidate]:
     """The best shape of each effect that gains at all, strongest first."""
     found = []
     for effect in effects:
-        candidate = screen_one(base, effect, shapes=None if shapes_of is None else shapes_of.get(effect.name))
+        candidate = screen_one(base, effect)
         if candidate is not None:
             found.append(candidate)
     return sorted(found, key=lambda c: c.log_p)
@@ -313,9 +313,3 @@ def _parameters(effect: Effect, terms: tuple[Term, ...], coefficient: Array, mot
         found[names[0]], phase = -found[names[0]], -phase
     found[effect.roles("phase")[0]] = float(np.degrees(np.arctan2(phase[1], phase[0])))
     return found
-
-
-def with_looks(candidate: Candidate, looks: float, dof: int) -> Candidate:
-    """The candidate judged as one of so many independent looks."""
-    log_p = float(log_probability(np.array(candidate.gain), candidate.terms, dof)) + float(np.log(looks))
-    return replace(candidate, looks=looks, log_p=log_p)

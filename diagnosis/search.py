@@ -77,6 +77,11 @@ def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
     return float(best) + prior
 
 
+def judged_p(gain: float, terms: int, dof: int, looks: float) -> float:
+    """Log probability that noise gains as much (twice the log likelihood) at any of so many looks."""
+    return float(log_probability(np.array(gain), terms, dof)) + float(np.log(looks))
+
+
 def degrees(effect: Effect, terms: int) -> int:
     """Degrees of freedom of an effect in the likelihood: one, the scatter, where coefficients are integrated out."""
     return 1 if effect.roles("per turn") else terms
@@ -157,7 +162,7 @@ class Trial:
         """Log probability that noise of these members gains as much."""
         gain = 2.0 * (likelihood(self.fit, members) - likelihood(before, members))
         terms = degrees(self.candidate.effect, self.candidate.terms)
-        return float(log_probability(np.array(gain), terms, dof)) + float(np.log(self.candidate.looks))
+        return judged_p(gain, terms, dof, self.candidate.looks)
 
 
 def handicap(effect: Effect) -> float:
@@ -279,7 +284,7 @@ def improve(
             terms = degrees(effect, len(without.linear.terms(effect)))
             own = screen_one(base, effect)
             looks = own.looks if own is not None else 1.0
-            log_p = float(log_probability(np.array(gain), terms, base.dof)) + float(np.log(looks))
+            log_p = judged_p(gain, terms, base.dof, looks)
             if log_p + handicap(effect) > threshold:
                 fit, keys, changed = without, others, True
                 continue
@@ -292,7 +297,7 @@ def improve(
                 trial = Trial.of(without, rival)
                 members = tuple(sorted({*plausible_members(fit), *trial.members}))
                 own_gain = 2.0 * (likelihood(fit, members) - likelihood(without, members))
-                own_p = float(log_probability(np.array(own_gain), terms, base.dof)) + float(np.log(looks))
+                own_p = judged_p(own_gain, terms, base.dof, looks)
                 lead = own_p + handicap(effect) - trial.log_p(without, members, base.dof) - handicap(rival.effect)
                 if lead > SWAP_MARGIN:
                     contenders[trial.key] = contenders.get(key, list(effects))
@@ -315,7 +320,7 @@ def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) ->
     terms = degrees(effect, len(without.linear.terms(effect)))
     own = screen_one(base, effect)
     looks = own.looks if own is not None else 1.0
-    log_p = float(log_probability(np.array(gain), terms, base.dof)) + float(np.log(looks))
+    log_p = judged_p(gain, terms, base.dof, looks)
     rivals: list[str] = []
     if not effect.name.startswith("unnamed"):
         present = {base_name(k) for k in keys}

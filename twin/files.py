@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.catalogue import CATALOGUE, find
+from twin.catalogue import CATALOGUE, base_name, find
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.errors import UserError
@@ -67,6 +67,11 @@ def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[
     if not isinstance(declared, Mapping):
         raise TwinError(f"{name}: effects is {declared!r}; expected tables such as [effects.offset]")
     for key, params in declared.items():
+        if base_name(key) not in {effect.name for effect in effects}:
+            raise TwinError(
+                f"{name}: [effects.{key}]: no effect named '{base_name(key)}'; halltwin causes lists them, "
+                "and --effects FILE.py adds your own"
+            )
         try:
             _check_params(find(key, effects), params)
             chain = chain.with_effect(key, **params)

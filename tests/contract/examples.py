@@ -7,10 +7,11 @@ the code under test: with x += dx and y += dy the angle turns by cos a dy - sin 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
+from twin import contract
 from twin.angles import TAU, Array
 from twin.motion import Motion
 
@@ -19,31 +20,15 @@ Signature = Callable[[Motion, Params], Array]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Example:
-    """``strengths`` are halved in the test of the signature, ``shapes`` kept. ``power``: e goes with strength^power.
+class Example(contract.Example):
+    """An example of :mod:`twin.contract` with the error that it must leave, worked out apart from the code.
 
-    ``memory``: the effect needs the order of the readings. ``kinks``: its slope jumps, so a few readings near the
-    jumps may follow another branch at half the strength: the share of the readings for which that is allowed.
-    ``origin``: from where strengths are halved, where that is not null.
+    ``kinks``: the effect's slope jumps, so a few readings near the jumps may follow another branch at half the
+    strength: the share of the readings for which that is allowed.
     """
 
-    strengths: Params
-    shapes: Params
     signature: Signature | None
-    power: float = 1.0
-    memory: bool = False
     kinks: float = 0.0
-    origin: Params = field(default_factory=dict)
-
-    @property
-    def params(self) -> dict[str, float]:
-        return {**self.strengths, **self.shapes}
-
-    def scaled(self, factor: float, null: Params) -> dict[str, float]:
-        """The parameters with their strengths' distance from the origin scaled."""
-        start = {**null, **self.origin}
-        moved = {name: start[name] + factor * (value - start[name]) for name, value in self.strengths.items()}
-        return {**moved, **self.shapes}
 
 
 def _rad(value: float) -> float:

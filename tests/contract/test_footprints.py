@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from scenarios.protocol import Protocol
-from tests.contract.motions import full_motion
 from twin.angles import TAU, wrap
 from twin.catalogue import find
 from twin.chain import Chain
+from twin.contract import full_motion
 from twin.cordic.cordic_truncation import attainable
 
 MOTION = full_motion()

@@ -1,0 +1,122 @@
+"""Effects of one's own: read from files and from installed packages, checked, and put in order with the catalogue's."""
+
+from __future__ import annotations
+
+import runpy
+import traceback
+from collections.abc import Iterable, Sequence
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+from twin.catalogue import CATALOGUE, in_order
+from twin.contract import check, full_motion
+from twin.effect import Effect
+from twin.errors import UserError
+
+GROUP = "halltwin.effects"
+"""Entry points of this group name an :class:`Effect` or a sequence of them."""
+RESERVED = "unnamed"
+"""What the names of structure without a name begin with."""
+SEARCHED = ("mean", "spread", "values")
+"""Footprints that the search finds in any effect; single readings are found by code of their own."""
+
+
+class EffectError(UserError):
+    """An effect cannot be used; the message says in one line where it is declared, what is wrong and what to do."""
+
+
+def effects_with(files: Sequence[Path] = ()) -> tuple[Effect, ...]:
+    """The catalogue, the effects of installed packages and those of these files, in chain order.
+
+    Raises EffectError where one cannot be loaded, has a name that is taken, or breaks a promise of
+    :mod:`twin.contract`.
+    """
+    declared = {effect.name: "the catalogue" for effect in CATALOGUE}
+    found: list[Effect] = []
+    for where, effects in (*_installed(), *((path.name, effects_of(path)) for path in files)):
+        for effect in effects:
+            if effect.name in declared:
+                raise EffectError(
+                    f"{where}: effect '{effect.name}' is declared by {declared[effect.name]} already; "
+                    "give it another name, or leave one of them out"
+                )
+            refuse_broken(effect, where)
+            declared[effect.name] = where
+            found.append(effect)
+    return in_order((*CATALOGUE, *found)) if found else CATALOGUE
+
+
+def effects_of(path: Path) -> tuple[Effect, ...]:
+    """The effects that a Python file declares, as they are: single ones and sequences, in the file's order.
+
+    The file is run. Raises EffectError where it cannot be read, does not run, or declares none.
+    """
+    if not path.is_file():
+        raise EffectError(f"{path}: no such file; give a Python file that declares an Effect (halltwin new-effect)")
+    try:
+        names = runpy.run_path(str(path), run_name=path.stem)
+    except OSError as error:
+        if error.filename != str(path):
+            raise EffectError(_does_not_run(path, error)) from None
+        raise EffectError(f"{path.name}: cannot be read ({error.strerror}); give another file") from None
+    except (Exception, SystemExit) as error:
+        raise EffectError(_does_not_run(path, error)) from None
+    # One that is declared by name may stand in a list as well: by identity, because effects hold tables.
+    effects = tuple({id(effect): effect for value in names.values() for effect in _effects_in(value)}.values())
+    if not effects:
+        raise EffectError(f"{path.name}: declares no Effect; see halltwin new-effect for one that does")
+    return effects
+
+
+def refuse_broken(effect: Effect, where: str) -> None:
+    """Raise EffectError where the effect may not take part: it breaks a promise, or is of a kind that is not loaded."""
+    said = unfit(effect)
+    if not said:
+        broken = next((r for r in check(effect, motion=full_motion()) if r.kept is False), None)
+        said = "" if broken is None else f"{broken.said} (promise: {broken.promise})"
+    if said:
+        raise EffectError(f"{where}: effect '{effect.name}': {said}; mend it, halltwin check-effect shows all promises")
+
+
+def unfit(effect: Effect) -> str:
+    """What keeps an effect of the user's own from being loaded, whatever it promises, in words; "" where nothing."""
+    if str(effect.name).startswith(RESERVED):
+        return f"names that begin with '{RESERVED}' are for structure without a name"
+    if effect.baseline:
+        return "baseline is True; only the paper's error model is fitted always"
+    if effect.footprint not in SEARCHED:
+        return f"footprint is {effect.footprint!r}; expected one of {', '.join(SEARCHED)}"
+    return ""
+
+
+def _installed() -> Iterable[tuple[str, tuple[Effect, ...]]]:
+    """Where they come from and the effects, of each entry point, by package and name."""
+    entries = metadata.entry_points(group=GROUP)
+    for entry in sorted(entries, key=lambda e: (e.dist.name if e.dist else "", e.name)):
+        where = f"package {entry.dist.name if entry.dist else '?'}, entry point '{entry.name}'"
+        try:
+            effects = _effects_in(entry.load())
+        except Exception as error:
+            raise EffectError(
+                f"{where}: cannot be loaded ({type(error).__name__}: {error}); mend or uninstall the package"
+            ) from None
+        if not effects:
+            raise EffectError(f"{where}: is no Effect and no sequence of them; mend or uninstall the package")
+        yield where, effects
+
+
+def _effects_in(value: Any) -> tuple[Effect, ...]:
+    """The effects that a value is or holds; those of the catalogue, imported to be read, are none of the user's."""
+    items = value if isinstance(value, tuple | list) else (value,)
+    own = tuple(item for item in items if isinstance(item, Effect))
+    return tuple(effect for effect in own if not any(effect is known for known in CATALOGUE))
+
+
+def _does_not_run(path: Path, error: BaseException) -> str:
+    """The line of the file at which it failed, and how."""
+    rows = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
+    row = error.lineno if isinstance(error, SyntaxError) and error.filename == str(path) else (rows or [None])[-1]
+    at = f"line {row}: " if row is not None else ""
+    text = error.msg if isinstance(error, SyntaxError) else error
+    return f"{path.name}: {at}{type(error).__name__}: {text}; mend the file"

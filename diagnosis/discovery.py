@@ -138,9 +138,9 @@ def discover(
     _quantisation(fit, bits, step, values_found)
     everything = _merge([*entries, *values_found, *sequence_found, *glitches, *spread_found])
     use = fit.evidence.usable
-    baseline_held = rms_deg(held[0], use)
-    extended_held = rms_deg(held[-1], use)
-    everything = [_with_figures(c, fit, held, use) for c in everything]
+    everything = [_of_readings(_with_figures(c, fit, held, use), evidence) for c in everything]
+    baseline_held = of_readings(rms_deg(held[0], use), evidence)
+    extended_held = of_readings(rms_deg(held[-1], use), evidence)
     fit = replace(fit, chain=_with_noise(fit, step, everything))
     floor = np.degrees(evidence.repeat_rms) if evidence.repeat_rms else extended_held
     invisible = {
@@ -341,7 +341,7 @@ def raw_residual(fit: Fit, sweep: Sweep) -> Array:
     """Residual [rad] of every raw reading (n_raw,) against the fit."""
     if len(sweep) == len(fit.evidence):
         return np.asarray(fit.residual[0])
-    predicted: Array = fit.linear.angle[fit.evidence.group]
+    predicted: Array = fit.linear.angle[fit.evidence.group] + fit.evidence.ahead
     return wrap(np.radians(sweep.measured_deg) - predicted)
 
 
@@ -373,7 +373,8 @@ def _spread(fit: Fit, effects: Sequence[Effect], looked: int) -> tuple[list[Name
         shapes.append(burst)
     shapes = [s for s in shapes if s.log_p < min(np.log(ALPHA / max(looked, 1)), SPREAD_LOG_P)]
     if not shapes:
-        return [], fit
+        # What looked like uneven noise before the search was structure: a scale that no cause carries goes.
+        return [], fit if np.all(fit.evidence.scale == 1.0) else _scaled(fit, np.ones(len(fit.evidence)))
     best = min(shapes, key=lambda s: s.log_p + (6.0 if s.name.startswith("unnamed") else 0.0))
     chain = fit.chain.with_values({best.name: best.values})
     fit = evaluate(chain, fit.free, fit.evidence, fit.setting)
@@ -480,6 +481,19 @@ def _merge(entries: list[Named]) -> list[Named]:
         else:
             merged[entry.name] = entry
     return sorted(merged.values(), key=lambda e: -e.gain)
+
+
+def of_readings(row_rms_deg: float, evidence: Evidence) -> float:
+    """RMS [deg] over single readings, from that over rows which average several of them."""
+    return float(np.hypot(row_rms_deg, np.degrees(np.sqrt(evidence.within))))
+
+
+def _of_readings(entry: Named, evidence: Evidence) -> Named:
+    return replace(
+        entry,
+        before_deg=of_readings(entry.before_deg, evidence),
+        after_deg=of_readings(entry.after_deg, evidence),
+    )
 
 
 def _with_figures(entry: Named, fit: Fit, held: list[Array], use: BoolArray) -> Named:

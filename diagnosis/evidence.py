@@ -23,7 +23,10 @@ class Evidence:
     ``motion`` holds the reference's readings as shaft angles. ``log_radius`` is log |(vx, vy)| where the channels
     were recorded. ``usable`` masks rows out of the fits of the mean (outliers, repeats of stale frames, held-out
     blocks); rows that are not ``sure`` are out for good, their direction being in doubt. ``scale`` is the noise of a
-    row against the usual one. ``group`` maps each raw row to its row here.
+    row against the usual one. ``group`` maps each raw row to its row here, and ``ahead`` (n_raw,) [rad] is how much
+    further the reading of a raw row is expected to be than that of its row, the shaft having moved meanwhile.
+    ``repeat_rms`` [rad] is the scatter of readings that became one row, ``within`` the mean square [rad^2] over all
+    readings that averaging them has taken away.
     """
 
     motion: Motion
@@ -33,7 +36,9 @@ class Evidence:
     sure: BoolArray
     scale: Array
     group: IntArray
+    ahead: Array
     repeat_rms: float | None
+    within: float
 
     def __len__(self) -> int:
         return int(self.measured.size)
@@ -54,15 +59,20 @@ def collect(sweep: Sweep) -> Evidence:
     measured = np.radians(sweep.measured_deg)
     group = _repeats(motion)
     count: IntArray = np.bincount(group)
-    repeat_rms = None
+    repeat_rms, within = None, 0.0
+    ahead = np.zeros(count.sum())
     if count.max() > 1:
         first: IntArray = np.searchsorted(group, np.arange(count.size)).astype(np.int64)
         deviation = wrap(measured - measured[first][group])
         mean = np.bincount(group, deviation) / count
-        scatter = deviation - mean[group]
-        repeat_rms = float(np.sqrt(np.sum(scatter**2) / max(int(np.sum(count - 1)), 1)))
-        measured = measured[first] + mean
+        raw = motion.shaft_rad
         motion = _averaged(motion, group, count, first)
+        sense = np.sign(np.sum(wrap(np.diff(measured)) * np.diff(raw)))
+        ahead = sense * (raw - motion.shaft_rad[group])
+        squares = float(np.sum((deviation - mean[group] - ahead) ** 2))
+        repeat_rms = float(np.sqrt(squares / max(int(np.sum(count - 1)), 1)))
+        within = squares / group.size
+        measured = measured[first] + mean
     log_radius = None
     if sweep.vx is not None and sweep.vy is not None:
         radius = np.hypot(np.bincount(group, sweep.vx) / count, np.bincount(group, sweep.vy) / count)
@@ -78,8 +88,23 @@ def collect(sweep: Sweep) -> Evidence:
         sure=sure,
         scale=np.ones(n),
         group=group,
+        ahead=ahead,
         repeat_rms=repeat_rms,
+        within=within,
     )
+
+
+def block_length(motion: Motion) -> int:
+    """Readings that are averaged into one row: 1 but for long records far denser than any structure searched for."""
+    if np.mean(_stands_still(motion)) >= 0.4:
+        return 1
+    return max(1, min(-(-len(motion) // MOST_ROWS), int(motion.points_per_turn // DENSE_POINTS)))
+
+
+def _stands_still(motion: Motion) -> BoolArray:
+    """Which steps (n-1,) from reading to reading are none."""
+    step = np.abs(np.diff(motion.shaft_rad))
+    return np.asarray(step < 0.2 * np.quantile(step, 0.95))
 
 
 def _repeats(motion: Motion) -> IntArray:
@@ -87,11 +112,10 @@ def _repeats(motion: Motion) -> IntArray:
 
     A record far denser than any structure searched for is averaged over short blocks.
     """
-    step = np.abs(np.diff(motion.shaft_rad))
     n = len(motion)
-    still = step < 0.2 * np.quantile(step, 0.95)
+    still = _stands_still(motion)
     if np.mean(still) < 0.4:
-        block = min(-(-n // MOST_ROWS), int(motion.points_per_turn // DENSE_POINTS))
+        block = block_length(motion)
         if block < 2:
             return np.arange(n)
         # A block ends where the direction, the turn or the pace changes.

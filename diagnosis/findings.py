@@ -46,8 +46,8 @@ class Findings:
 
     @property
     def glitch_rows(self) -> tuple[int, ...]:
-        """Numbers of the used rows (first = 1) that were left out as isolated gross errors."""
-        return tuple(int(row) + 1 for row in np.flatnonzero(self.fit.outliers))
+        """Numbers of the rows (first reading = 1) that were left out as isolated gross errors."""
+        return tuple(self.sweep.numbers[self.fit.outliers].tolist())
 
 
 def diagnose(

@@ -43,6 +43,7 @@ def to_json(found: Discovery) -> dict[str, Any]:
                 "name": sweep.name,
                 "rows": sweep.rows,
                 "used": len(sweep),
+                "set_aside": sweep.set_aside,
                 "rejected": len(sweep.rejected),
                 "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:100]},
                 "turns": found.fit.evidence.motion.turns,
@@ -130,7 +131,7 @@ def _cause(found: Discovery, cause: Named) -> dict[str, Any]:
         "to_tell_apart": advice(cause),
     }
     if cause.name == "bus_glitch":
-        answer["rows"] = [row + 1 for row in cause.rows]
+        answer["rows"] = found.sweep.numbers[list(cause.rows)].tolist()
     return answer
 
 
@@ -216,7 +217,8 @@ def advice(cause: Named) -> str:
 def wild_rows(found: Discovery) -> list[int]:
     """Numbers of the readings that stand alone far out of their neighbours and that no cause has claimed."""
     evidence = found.fit.evidence
-    return [int(row) + 1 for row in np.flatnonzero((evidence.sure & ~evidence.usable)[evidence.group] & ~found.masked)]
+    wild = (evidence.sure & ~evidence.usable)[evidence.group] & ~found.masked
+    return [int(number) for number in found.sweep.numbers[wild]]
 
 
 def _rms(values: Any) -> float:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,18 +12,25 @@ import numpy as np
 
 from diagnosis.discovery import Discovery, discover, senses_of_channels
 from diagnosis.fit import fit_baseline
+from diagnosis.stretches import searched_part
 from scenarios.answer import to_json
+from twin.catalogue import CATALOGUE
+from twin.effect import Effect
 from twin.errors import UserError
+from twin.extensions import effects_with
 from twin.files import read_twin, write_twin
 from twin.sweep import Sweep
 from twin.sweep_file import check_writable, write_beside
 
 
-def explain(sweep: Sweep, *, twin: Path | None = None, seed: int = 0) -> Discovery:
-    """Explain a sweep against the paper's error model, or against a given twin."""
+def explain(
+    sweep: Sweep, *, twin: Path | None = None, effects: tuple[Effect, ...] = CATALOGUE, seed: int = 0
+) -> Discovery:
+    """Explain a sweep by these effects, against the paper's error model or against a given twin."""
+    sweep = searched_part(sweep)
     if twin is not None:
-        given = read_twin(twin)
-        return discover(sweep, start=given, given=given)
+        given = read_twin(twin, effects=effects)
+        return discover(sweep, start=given, given=given, effects=effects)
     fit = fit_baseline(
         np.radians(sweep.reference_deg),
         np.radians(sweep.measured_deg),
@@ -29,7 +38,7 @@ def explain(sweep: Sweep, *, twin: Path | None = None, seed: int = 0) -> Discove
         senses=senses_of_channels(sweep),
         robust=True,
     )
-    return discover(sweep, start=fit.chain())
+    return discover(sweep, start=replace(fit.chain(), effects=effects), effects=effects)
 
 
 def explain_file(path: str) -> dict[str, Any]:
@@ -45,14 +54,16 @@ def run(
     report: Path | None,
     extended: Path | None,
     plot: Path | None,
+    effect_files: Sequence[Path] = (),
     seed: int,
 ) -> None:
     """The command: print the answer, write what was asked for. Raises UserError before anything is written."""
     from scenarios.console import show
 
-    _check_outputs([given for given in (json_path, report, extended, plot) if given is not None], inputs=[path, twin])
+    _check_outputs([given for given in (json_path, report, extended, plot) if given is not None], inputs=[path, twin, *effect_files])
+    effects = effects_with(effect_files)
     sweep = Sweep.read(path)
-    found = explain(sweep, twin=twin, seed=seed)
+    found = explain(sweep, twin=twin, effects=effects, seed=seed)
     answer = to_json(found)
     show(answer)
     if json_path is not None:

@@ -124,8 +124,9 @@ class Motion:
         found = set(self.columns)
         if len({way for _, _, way in self.segments}) == 2:
             found.add("both directions")
-        speeds = np.unique(np.round(self.speed_rad_s, 6))
-        if speeds.size > 1 and np.ptp(speeds) > 0.2 * np.max(np.abs(speeds)):
+        # A few rows about a reversal or a stop are no second speed.
+        slow, fast = np.quantile(np.abs(self.speed_rad_s), [0.02, 0.98]) if len(self) else (0.0, 0.0)
+        if fast - slow > 0.2 * fast:
             found.add("two speeds")
         if np.any(self.speed_rad_s != 0.0):
             found.add("moving shaft")

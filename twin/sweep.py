@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from twin.angles import Array, radians, wrap_deg
+from twin.angles import Array, IntArray, radians, wrap_deg
 from twin.errors import UserError
 from twin.motion import Motion
 
@@ -55,7 +55,9 @@ class SweepError(UserError):
 class Sweep:
     """The used rows of a recording, all columns of shape (n,), in the order in which they were taken.
 
-    ``rejected`` maps the numbers of the rows left out (first reading = 1) to the reason; ``rows`` counts both.
+    ``rejected`` maps the numbers of unusable rows (first reading = 1) to the reason, ``row_numbers`` (n,) are those of
+    the others (none given: they follow one another), ``set_aside`` counts usable rows that this part of a recording
+    does not hold. ``rows`` counts all three.
     """
 
     reference_deg: Array
@@ -69,6 +71,8 @@ class Sweep:
     vy: Array | None = None
     rejected: Mapping[int, str] = field(default_factory=dict)
     name: str = "sweep"
+    row_numbers: IntArray | None = None
+    set_aside: int = 0
 
     def __len__(self) -> int:
         return int(self.reference_deg.size)
@@ -76,7 +80,18 @@ class Sweep:
     @property
     def rows(self) -> int:
         """Rows recorded, the rejected ones included."""
-        return len(self) + len(self.rejected)
+        return len(self) + len(self.rejected) + self.set_aside
+
+    @property
+    def numbers(self) -> IntArray:
+        """Number (n,) of each row in the recording, the first being 1."""
+        return np.arange(1, len(self) + 1) if self.row_numbers is None else self.row_numbers
+
+    def part(self, rows: IntArray) -> Self:
+        """The recording with these usable rows (m,) alone."""
+        columns: dict[str, Any] = {name: values[rows] for name, values in self.columns.items()}
+        aside = self.set_aside + len(self) - rows.size
+        return replace(self, **columns, row_numbers=self.numbers[rows], set_aside=aside)
 
     @property
     def columns(self) -> dict[str, Array]:
@@ -110,12 +125,12 @@ class Sweep:
             bad = np.flatnonzero(~np.isfinite(values) & keep)
             keep[bad] = False
             rejected.update({int(row) + 1: f"{key} missing or not finite" for row in bad})
-        used = {key: np.ascontiguousarray(values[keep]) for key, values in data.items()}
+        used: dict[str, Any] = {key: np.ascontiguousarray(values[keep]) for key, values in data.items()}
         _check_usable(used, name=name, rejected=len(rejected))
         _check_follows(used["measured_deg"], used["reference_deg"], name=name)
         if "vx" in used:
             _check_channels(used["vx"], used["vy"], used["measured_deg"], name=name)
-        return cls(**used, rejected=dict(sorted(rejected.items())), name=name)
+        return cls(**used, rejected=dict(sorted(rejected.items())), name=name, row_numbers=np.flatnonzero(keep) + 1)
 
     @classmethod
     def from_motion(cls, motion: Motion, *, reference_deg: Array, measured_deg: Array, channels: Array | None) -> Self:

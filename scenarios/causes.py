@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from scenarios.wording import unit_shown
 from twin.catalogue import CATALOGUE
 from twin.effect import Effect
+from twin.extensions import effects_with
 
 FOOTPRINTS = {
     "mean": "expected reading",
@@ -58,22 +60,23 @@ def row(effect: Effect) -> tuple[str, ...]:
 HEADS = ("cause", "stage", "parameters", "needs", "signature in the error", "shows in", "source")
 
 
-def as_markdown() -> str:
+def as_markdown(effects: Sequence[Effect] = CATALOGUE) -> str:
     """The catalogue as GitHub tables."""
     lines: list[str] = []
-    for title, effects in groups():
+    for title, part in groups(effects):
         lines += [f"**{title}**", "", f"| {' | '.join(HEADS)} |", f"|{'---|' * len(HEADS)}"]
-        for effect in effects:
+        for effect in part:
             name, *rest = (cell.replace("|", "\\|") for cell in row(effect))
             lines.append(f"| `{name}` | {' | '.join(rest)} |")
         lines.append("")
     return "\n".join(lines).rstrip()
 
 
-def run(*, markdown: bool) -> None:
+def run(*, markdown: bool, effect_files: Sequence[Path] = ()) -> None:
     """The command."""
+    effects = effects_with(effect_files)
     if markdown:
-        print(as_markdown())
+        print(as_markdown(effects))
         return
     from rich.console import Console
     from rich.table import Table
@@ -82,11 +85,11 @@ def run(*, markdown: bool) -> None:
     console = Console(highlight=False)
     # What does not fit beside the rest is left to wider terminals and to --markdown.
     shown = (0, 2, 4) if console.width < 100 else (0, 1, 2, 3, 4) if console.width < 150 else range(len(HEADS))
-    for title, effects in groups():
+    for title, part in groups(effects):
         table = Table(title=title, title_justify="left", title_style="bold", box=None, padding=(0, 2, 0, 0))
         for place in shown:
             table.add_column(HEADS[place], no_wrap=place == 0)
-        for effect in effects:
+        for effect in part:
             cells = row(effect)
             table.add_row(*(Text(cells[place]) for place in shown))
         console.print(table)

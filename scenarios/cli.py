@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from scenarios.cli_effects import EffectFiles, check_effect, new_effect
 from scenarios.cli_studies import design, generate, recover
 
 app = typer.Typer(
@@ -30,22 +31,33 @@ def explain(
     report: Annotated[Path | None, typer.Option(help="Write a self-contained HTML report.")] = None,
     extended: Annotated[Path | None, typer.Option(help="Write the extended twin (TOML).")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the error before and after: .png, .svg or .pdf.")] = None,
+    effects: EffectFiles = None,
     seed: Seed = 0,
 ) -> None:
     """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""
     from scenarios.explain import run
 
-    run(sweep, twin=twin, json_path=json, report=report, extended=extended, plot=plot, seed=seed)
+    run(
+        sweep,
+        twin=twin,
+        json_path=json,
+        report=report,
+        extended=extended,
+        plot=plot,
+        effect_files=effects or (),
+        seed=seed,
+    )
 
 
 @app.command()
 def causes(
     markdown: Annotated[bool, typer.Option("--markdown", help="As the table of the README.")] = False,
+    effects: EffectFiles = None,
 ) -> None:
     """List the causes that the twin can simulate and the search can name."""
     from scenarios.causes import run
 
-    run(markdown=markdown)
+    run(markdown=markdown, effect_files=effects or ())
 
 
 @app.command()
@@ -62,6 +74,7 @@ def simulate(
     reference_lines: Annotated[int | None, typer.Option(help="Lines of the reference encoder (4 counts each).")] = None,
     trace: Annotated[Path | None, typer.Option(help="Write every intermediate signal as CSV.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the trace: .png, .svg or .pdf.")] = None,
+    effects: EffectFiles = None,
     seed: Seed = 0,
 ) -> None:
     """Simulate a sweep from a twin, on a protocol or on a recorded motion."""
@@ -85,6 +98,7 @@ def simulate(
         reference_lines=reference_lines,
         trace_path=trace,
         plot_path=plot,
+        effect_files=effects or (),
     )
 
 
@@ -135,13 +149,22 @@ def compensate(
     temperature: Annotated[float, typer.Option(help="Temperature in C that a twin is corrected for.")] = 25.0,
     tolerance: Annotated[float, typer.Option(help="Largest error in deg from orders left out.")] = 1e-3,
     prefix: Annotated[str, typer.Option(help="Prefix of the C names.")] = "halltwin",
+    effects: EffectFiles = None,
     seed: Seed = 0,
 ) -> None:
     """Turn a sweep or a twin into a continuous correction, and measure it on readings it never saw."""
     from scenarios.compensate import Outputs, run
 
     outputs = Outputs(header=header, table=table, points=points, toml=toml, plot=plot, prefix=prefix)
-    run(source, outputs=outputs, check=check or (), temperature_c=temperature, tolerance_deg=tolerance, seed=seed)
+    run(
+        source,
+        outputs=outputs,
+        check=check or (),
+        temperature_c=temperature,
+        tolerance_deg=tolerance,
+        effect_files=effects or (),
+        seed=seed,
+    )
 
 
 @app.command()
@@ -162,12 +185,13 @@ def monitor(
 def hardware(
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the picture and its data.")],
     twin: Annotated[str, typer.Argument(help="Twin TOML or preset, for its magnet.")] = "imc-14bit",
+    effects: EffectFiles = None,
     seed: Seed = 0,
 ) -> None:
     """Run one turn through magnet, concentrator, spun plates, converter, CORDIC and link, in the hardware's units."""
     from scenarios.hardware import run_command
 
-    run_command(twin, output, seed=seed)
+    run_command(twin, output, effect_files=effects or (), seed=seed)
 
 
 @app.command()
@@ -205,6 +229,7 @@ def bench(
         list[str] | None, typer.Option(help="Fault on the bus, KIND[:NODE][=VALUE], e.g. lost=0.02, silent:hall.")
     ] = None,
     real_time: Annotated[bool, typer.Option("--real-time", help="Motions take the time they would take.")] = False,
+    effects: EffectFiles = None,
     seed: Seed = 0,
 ) -> None:
     """Measure on a bench over CAN, virtual by default: stepper, reference encoder, Hall encoder, climate chamber."""
@@ -237,13 +262,14 @@ def bench(
             attempts=attempts,
             manifest_deg=manifest,
             real_time=real_time,
+            effect_files=effects or (),
             seed=seed,
         )
     )
 
 
-for study in (generate, design, recover):
-    app.command()(study)
+for command in (new_effect, check_effect, generate, design, recover):
+    app.command()(command)
 
 
 def main() -> None:

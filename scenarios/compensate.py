@@ -16,6 +16,7 @@ from diagnosis.held_out import BeforeAfter, against, cross_validated
 from scenarios.inputs import sweep_paths
 from twin.angles import TAU, Array, radians
 from twin.errors import UserError
+from twin.extensions import effects_with
 from twin.files import read_twin
 from twin.sweep import Sweep
 from twin.sweep_file import write_beside
@@ -43,6 +44,7 @@ def run(
     check: Sequence[str] = (),
     temperature_c: float = 25.0,
     tolerance_deg: float = 1e-3,
+    effect_files: Sequence[Path] = (),
     seed: int = 0,
 ) -> None:
     """Correction of a sweep or of a twin; errors on the sweeps of ``check``, or on held-out blocks of the sweep."""
@@ -50,7 +52,8 @@ def run(
         raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
     sweep = None if source.suffix == ".toml" else Sweep.read(source)
     if sweep is None:
-        correction = correction_of(read_twin(source), temperature_c=temperature_c, tolerance_deg=tolerance_deg)
+        twin = read_twin(source, effects=effects_with(effect_files))
+        correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)
     else:
         correction = _of_readings(tolerance_deg, seed)(*_angles(sweep))
     print(

@@ -19,6 +19,7 @@ from scenarios.engine import Machines, run_study
 from scenarios.study_folder import StudyFolder
 from twin.angles import Array, IntArray
 from twin.errors import UserError
+from twin.extensions import effects_with
 from twin.files import to_dict, write_twin
 from twin.limits import require_within
 from twin.presets import read_twin_or_preset
@@ -31,7 +32,7 @@ _CHUNK = 16
 
 def study_of(twin: str, space: Space, demand: Demand, *, seed: int) -> DesignStudy:
     """The study of these designs under a twin's sensor. Raises UserError."""
-    chain = read_twin_or_preset(twin)
+    chain = read_twin_or_preset(twin, effects=effects_with())
     if chain.magnet is None:
         raise UserError(f"{twin}: has no [magnet], so its figures are stated at no field; give a twin that has one")
     require_within("designs", space.designs, 1, MOST_DESIGNS, whole=True)

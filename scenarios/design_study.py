@@ -16,6 +16,7 @@ from scenarios.study_folder import StudyFolder
 from twin.angles import TAU, Array, IntArray
 from twin.chain import Chain
 from twin.effect import BoolArray
+from twin.extensions import effects_with
 from twin.files import from_dict
 from twin.magnet.assembly import NOMINAL_C
 from twin.motion import Motion
@@ -60,7 +61,7 @@ class DesignStudy:
     @cached_property
     def chain(self) -> Chain:
         """The sensor."""
-        return from_dict(self.twin)
+        return from_dict(self.twin, effects=effects_with())
 
     def __getstate__(self) -> dict[str, Any]:
         """Without the chain, which does not pickle."""

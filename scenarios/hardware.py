@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from scenarios.plotting import save, style
 from scenarios.protocol import Protocol
 from twin.angles import Array, wrap_deg
 from twin.cordic.bit_true import angle_rad
+from twin.extensions import effects_with
 from twin.hall.spinning_current import residual_offset_mT
 from twin.hardware import Hardware, Run, run
 from twin.magnet.assembly import Assembly
@@ -17,10 +19,11 @@ from twin.presets import read_twin_or_preset
 from twin.sweep_file import write_columns
 
 
-def run_command(twin: str, folder: Path, *, seed: int) -> None:
+def run_command(twin: str, folder: Path, *, effect_files: Sequence[Path] = (), seed: int) -> None:
     """Write hardware.csv, hardware.png and .svg for the magnet of a twin, the other parts typical."""
     folder.mkdir(parents=True, exist_ok=True)
-    hardware = Hardware(assembly=read_twin_or_preset(twin).magnet or Assembly())
+    chain = read_twin_or_preset(twin, effects=effects_with(effect_files))
+    hardware = Hardware(assembly=chain.magnet or Assembly())
     motion = Protocol().motion()
     signals = run(hardware, motion, np.random.default_rng(seed))
     angle = np.asarray(np.degrees(motion.shaft_rad), dtype=np.float64)

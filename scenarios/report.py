@@ -189,7 +189,7 @@ def _chain(answer: Mapping[str, Any], found: Discovery) -> str:
         "<p>The signal's way from the shaft to the angle word, and the reference that reads the same shaft beside it. "
         + ("Highlighted: what the search added.</p>" if new else "Nothing had to be added.</p>")
     )
-    return f"<h2>The extended twin</h2>{words}{report_tables.chain(keys, new)}"
+    return f"<h2>The extended twin</h2>{words}{report_tables.chain(keys, new, found.fit.chain.effects)}"
 
 
 def _parameters(answer: Mapping[str, Any], found: Discovery) -> str:

@@ -123,12 +123,12 @@ def invisible(missing: Mapping[str, Iterable[str]]) -> str:
     return table(["cause", "this sweep has", "to see it"], rows)
 
 
-def chain(values: Iterable[str], new: Mapping[str, int]) -> str:
+def chain(values: Iterable[str], new: Mapping[str, int], effects: tuple[Effect, ...]) -> str:
     """The extended chain as boxes in the order of the signal; ``new`` maps keys of effects to their cause's number."""
     keys = list(values)
     boxes = []
     for stage in STAGES:
-        here = [key for key in keys if find(key).stage == stage]
+        here = [key for key in keys if find(key, effects).stage == stage]
         if stage == "empirical" and not here:
             continue
         title = "reference encoder" if stage == "reference" else "unnamed" if stage == "empirical" else stage

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from scenarios.protocol import Protocol
+from twin.extensions import effects_with
 from twin.presets import read_twin_or_preset
 from twin.reference.encoder import Encoder
 from twin.sweep import Sweep
@@ -23,12 +25,13 @@ def run(
     reference_lines: int | None = None,
     trace_path: Path | None = None,
     plot_path: Path | None = None,
+    effect_files: Sequence[Path] = (),
 ) -> None:
     """Simulate on the protocol, or on the motion of a recorded sweep, and write what was asked for.
 
     ``reference_lines``: the reference counts the lines of an incremental encoder; None: it reads exactly.
     """
-    chain = read_twin_or_preset(twin)
+    chain = read_twin_or_preset(twin, effects=effects_with(effect_files))
     # A recorded motion holds the reference's readings: the shaft is where its errors are undone.
     motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded).motion())
     sweep = chain.simulate(motion, seed=seed)

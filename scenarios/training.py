@@ -22,6 +22,7 @@ from scenarios.training_draw import Draw, Ranges, draw, drawable, stripped, unif
 from twin.angles import Array, wrap, wrap_deg
 from twin.chain import Chain
 from twin.errors import UserError
+from twin.extensions import effects_with
 from twin.files import from_dict, to_dict
 from twin.limits import require_within
 from twin.motion import Motion
@@ -45,7 +46,7 @@ class Recipe:
     @cached_property
     def chain(self) -> Chain:
         """The twin that sweeps are drawn around."""
-        return from_dict(self.twin)
+        return from_dict(self.twin, effects=effects_with())
 
     @cached_property
     def motion(self) -> Motion:
@@ -163,7 +164,7 @@ def recipe_of(twin: str, *, protocol: Protocol, ranges: Ranges, causes: Sequence
         require_within(name, [low, high], 1e-6, 5.0, "deg")
         require_within(name, high, low, 5.0, "deg")
     require_within("most-causes", ranges.most, 0, len(visible), whole=True)
-    chain = stripped(read_twin_or_preset(twin), chosen)
+    chain = stripped(read_twin_or_preset(twin, effects=effects_with()), chosen)
     return Recipe(twin=to_dict(chain), protocol=protocol, ranges=ranges, causes=chosen, seed=seed)
 
 

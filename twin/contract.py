@@ -25,7 +25,8 @@ NEEDS = frozenset(
     }
 )
 """What :attr:`twin.motion.Motion.provides` may hold, and two air gaps, which no single sweep provides."""
-_SNAKE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+"""Names of effects: lower-case words joined by underscores."""
 _PHASE_DEG = 35.0
 _ACTING: tuple[Role, ...] = ("strength", "level", "per turn", "random")
 _SMOOTH: tuple[Role, ...] = ("strength", "level")
@@ -180,7 +181,7 @@ def _raised(error: Exception) -> str:
 
 def _undeclared(effect: Effect) -> str:
     """What is missing or wrong in a declaration, in words."""
-    if not _SNAKE.fullmatch(effect.name):
+    if not NAME.fullmatch(effect.name):
         return f"name is {effect.name!r}; expected lower-case words joined by underscores"
     for name, value, known in (
         ("stage", effect.stage, STAGES),

@@ -18,6 +18,8 @@ from scenarios.bench.measure import Measured, Measurement, measure
 from scenarios.bench.pretreatment import errors_deg, pretreat
 from scenarios.bench.readings import Reading
 from twin.angles import Array, wrap_deg
+from twin.catalogue import CATALOGUE
+from twin.effect import Effect
 from twin.errors import UserError
 from twin.sweep import Sweep
 from twin.sweep_file import write_beside
@@ -61,8 +63,19 @@ def direct_errors_deg(readings: Sequence[Reading]) -> Array:
     return wrap_deg(measured - np.array([one.reference_deg for one in readings]))
 
 
-def run_loop(job: Measurement, open_bus: Opener, *, restart: bool, seed: int, say: Callable[[str], None]) -> Loop:
-    """Run the loop; all files lie beside ``job.output``. A run that was broken off in its second half goes on there."""
+def run_loop(
+    job: Measurement,
+    open_bus: Opener,
+    *,
+    restart: bool,
+    effects: tuple[Effect, ...] = CATALOGUE,
+    seed: int,
+    say: Callable[[str], None],
+) -> Loop:
+    """Run the loop, the first half explained by these effects; all files lie beside ``job.output``.
+
+    A run that was broken off in its second half goes on there.
+    """
     from scenarios.answer import to_json
     from scenarios.explain import explain
     from twin.files import write_twin
@@ -81,7 +94,7 @@ def run_loop(job: Measurement, open_bus: Opener, *, restart: bool, seed: int, sa
             prepare=lambda sequence: sequence.load(None),
         )
     say(f"measured {first.output.name}: {len(before.pretreated.kept)} readings")
-    found = explain(Sweep.read(first.output), seed=seed)
+    found = explain(Sweep.read(first.output), effects=effects, seed=seed)
     answer = to_json(found)
     correction = correction_of(found.fit.chain)
     twin_path, correction_path = part_path(job.output, "twin", ".toml"), part_path(job.output, "correction", ".toml")

@@ -51,6 +51,7 @@ class Options:
     attempts: int = 15
     manifest_deg: float = 20.0
     real_time: bool = False
+    effect_files: Sequence[Path] = ()
     seed: int = 0
 
 
@@ -73,11 +74,12 @@ def run(options: Options) -> None:
     _measure(options, open_bus, faults)
 
 
-def hidden_encoder(twin: str | None, hide: Sequence[str]) -> Chain:
+def hidden_encoder(twin: str | None, hide: Sequence[str], effect_files: Sequence[Path] = ()) -> Chain:
     """The encoder on the virtual bench: a twin, and effects EFFECT:PARAMETER=VALUE[,...] that it hides."""
+    from twin.extensions import effects_with
     from twin.presets import read_twin_or_preset
 
-    chain = read_twin_or_preset(twin or DEFAULT_TWIN)
+    chain = read_twin_or_preset(twin or DEFAULT_TWIN, effects=effects_with(effect_files))
     for text in hide:
         key, _, given = text.partition(":")
         try:
@@ -129,6 +131,7 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
     from scenarios.bench.closed_loop import lines, run_loop
     from scenarios.bench.journal import Journal
     from scenarios.bench.measure import measure
+    from twin.extensions import effects_with
 
     if options.plot is not None:
         from scenarios.plotting import style
@@ -142,7 +145,8 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
         # Noise is drawn anew for each pose, so both measurements may share a bench and a seed.
         with _bench(options, open_bus, faults, start=0) as twin:
             job = replace(job, twin=twin)
-            loop = run_loop(job, own_bus, restart=options.restart, seed=options.seed, say=print)
+            effects = effects_with(options.effect_files)
+            loop = run_loop(job, own_bus, restart=options.restart, effects=effects, seed=options.seed, say=print)
         for line in lines(loop):
             print(line)
         if options.plot is not None:
@@ -179,7 +183,7 @@ def _bench(options: Options, open_bus: Opener, faults: Sequence[Fault], *, start
 
 def _chain(options: Options) -> Chain:
     hides = options.hide or ((HIDDEN,) if options.closed_loop and options.twin is None else ())
-    return hidden_encoder(options.twin, hides)
+    return hidden_encoder(options.twin, hides, options.effect_files)
 
 
 def _twin_name(options: Options) -> str:

@@ -60,7 +60,8 @@ def run(
     """The command: print the answer, write what was asked for. Raises UserError before anything is written."""
     from scenarios.console import show
 
-    _check_outputs([given for given in (json_path, report, extended, plot) if given is not None], inputs=[path, twin, *effect_files])
+    outputs = [given for given in (json_path, report, extended, plot) if given is not None]
+    _check_outputs(outputs, inputs=[path, twin, *effect_files])
     effects = effects_with(effect_files)
     sweep = Sweep.read(path)
     found = explain(sweep, twin=twin, effects=effects, seed=seed)

@@ -4,6 +4,7 @@ In the sensor's axes every component is periodic and analytic in theta, so a few
 
 - the sensor on the shaft's axis: the field is a fixed vector that turns with the shaft. One evaluation, exact.
 - a round magnet centred and untilted: the field is linear in the magnetisation. One evaluation a radius, exact.
+- a round magnet untilted, both off the axis: its series about the axis (axis_series.py), bounded a priori.
 - otherwise: equispaced nodes on the circle that the sensor describes in the magnet's frame; their discrete Fourier
   transform interpolates the turn, and the decay of its coefficients bounds what is left out. Nodes are doubled
   until the bound is below the tolerance.
@@ -18,20 +19,26 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.angles import TAU, Array
 from twin.effect import BoolArray
 from twin.limits import OutOfRangeError
+from twin.magnet import axis_series
 from twin.magnet.body_field import body_field, inside, round_components
 from twin.magnet.magnet import Magnet
-from twin.magnet.placement import Placement, designs_of, turned
+from twin.magnet.placement import LARGEST_GAP_MM, Placement, designs_of, turned
 
 Part = TypeVar("Part", Magnet, Placement)
 
 MT_PER_T = 1e3
 TOLERANCE = 3e-10
 """Relative to the smallest |B| of the turn."""
+ORDERS = (5, 6, 7, 8, 10, 13)
+"""Up to which orders designs are taken together."""
 FEWEST_NODES = 16
+CACHED = 1 << 16
+"""Numbers of a product that are kept at hand until they are written where they belong: 512 KiB."""
 MOST_NODES = 64
 """Where magpylib passes to its series about the axis (rho < 0.05 radii) its field steps by some 1e-9 of |B|: what is
 left beyond so many nodes is that step, which stays in the bound."""
@@ -100,8 +107,18 @@ def field_mT(
             # One long product is several times faster than a stack of small ones.
             np.matmul(flat, table, out=answer.reshape(-1, angle.size))
         else:
-            answer[rows] = (flat @ table).reshape(-1, 3, angle.size)
+            _scatter(flat, table, np.flatnonzero(rows), answer)
     return answer
+
+
+def _scatter(terms: Array, table: Array, rows: NDArray[np.intp], out: Array) -> None:
+    """The product (3 rows, n) into those rows of ``out`` (designs, 3, n), by pieces that stay in the cache."""
+    piece = max(1, CACHED // (3 * table.shape[1]))
+    held = np.empty((3 * piece, table.shape[1]))
+    for start in range(0, len(rows), piece):
+        to = rows[start : start + piece]
+        part = np.matmul(terms[3 * start : 3 * (start + len(to))], table, out=held[: 3 * len(to)])
+        out[to] = part.reshape(-1, 3, table.shape[1])
 
 
 def series_of(magnet: Magnet, placement: Placement, *, temperature_c: float = 20.0) -> Series:
@@ -123,12 +140,14 @@ def series_by_group(
     shaft_side = ("magnet_x_mm", "magnet_y_mm", "magnet_tilt_x_deg", "magnet_tilt_y_deg")
     centred = np.all([getattr(placement, name) + zero == 0.0 for name in shaft_side], axis=0)
     linear = centred & ~on_axis & (magnet.shape != "block")
+    sense = _Sense.of(magnet, placement, count, temperature_c)
     for rows, solve in ((on_axis, _turning_vector), (linear, _linear_in_magnetisation)):
         if rows.any():
-            part = _rows(magnet, rows, everything), _rows(placement, rows, everything)
-            series = solve(*part)
-            yield rows, _in_sensor(series, *part, temperature_c=temperature_c)
+            yield rows, sense(rows, solve(_rows(magnet, rows, everything), _rows(placement, rows, everything)))
     waiting = ~(on_axis | linear)
+    for rows, series in _near_axis(magnet, placement, waiting, tolerance):
+        yield rows, sense(rows, series)
+        waiting &= ~rows
     nodes = FEWEST_NODES
     while waiting.any():
         part = _rows(magnet, waiting, everything), _rows(placement, waiting, everything)
@@ -139,11 +158,37 @@ def series_by_group(
         if done.any():
             rows = np.zeros(count, dtype=bool)
             rows[np.flatnonzero(waiting)[done]] = True
-            kept = _rows(part[0], done, done), _rows(part[1], done, done)
-            solved = Series(series.coefficients[done], series.bound[done])
-            yield rows, _in_sensor(solved, *kept, temperature_c=temperature_c)
+            yield rows, sense(rows, Series(series.coefficients[done], series.bound[done]))
             waiting &= ~rows
         nodes *= 2
+
+
+def _near_axis(
+    magnet: Magnet, placement: Placement, rows: BoolArray, tolerance: float
+) -> Iterator[tuple[BoolArray, Series]]:
+    """Of ``rows`` the untilted round magnets with the sensor near enough to their axis, in groups of like orders."""
+    zero = np.zeros(rows.shape)
+    tilted = (placement.magnet_tilt_x_deg + zero != 0.0) | (placement.magnet_tilt_y_deg + zero != 0.0)
+    if magnet.shape == "block" or not np.any(rows & ~tilted):
+        return
+    path = axis_series.path_of(magnet, placement, rows.size)
+    rows = rows & ~tilted & (path.share <= axis_series.FARTHEST)
+    # Either of the two parts of the bound, and off the axis the field may be weaker by as much.
+    limit = 0.1 * tolerance * np.abs(axis_series.axis_taylor(path, 1)[0])
+    with np.errstate(invalid="ignore"):
+        terms, orders = axis_series.terms_needed(path, limit), axis_series.orders_needed(path, limit)
+    group = np.searchsorted(ORDERS, orders)
+    for each in np.unique(group[rows]):
+        chosen = rows & (group == each)
+        most = int(np.max(terms[chosen])), int(np.max(orders[chosen]))
+        coefficients, smallest = axis_series.turn(path.rows(chosen), terms=most[0], orders=most[1])
+        bound = 2.0 * limit[chosen]
+        # Where the field nearly vanishes on the way, the nodes of _interpolated take over.
+        done = bound <= tolerance * smallest
+        if not done.all():
+            chosen[np.flatnonzero(chosen)[~done]] = False
+            coefficients, bound = coefficients[done], bound[done]
+        yield chosen, Series(coefficients, bound)
 
 
 def _turning_vector(magnet: Magnet, placement: Placement) -> Series:
@@ -203,33 +248,76 @@ def _left_out(size: Array, nodes: int) -> Array:
 
 def _at_nodes(magnet: Magnet, placement: Placement, theta: Array) -> Array:
     """Field in the stator's frame (designs, nodes, 3), for a unit remanence, from the magnet's closed form."""
-    at = turned(placement.sensor_mm(magnet)[..., None, :], -theta)
-    axes = placement.magnet_axes
-    points = (at - placement.magnet_mm[..., None, :]) @ axes
+    points = _points_mm(magnet, placement, theta)
     _refuse_inside(magnet, placement, points)
-    field = -body_field(magnet, points) @ np.swapaxes(axes, -1, -2)
+    field = -body_field(magnet, points) @ np.swapaxes(placement.magnet_axes, -1, -2)
     return turned(field, theta)
 
 
-def _in_sensor(series: Series, magnet: Magnet, placement: Placement, *, temperature_c: float) -> Series:
-    """Scaled by the remanence, with the stray field, in the sensor's axes."""
-    scale = MT_PER_T * np.broadcast_to(magnet.remanence_at(temperature_c), series.bound.shape)
-    terms = series.coefficients * scale[..., None, None]
-    terms[..., 0] += placement.stray_mT
-    tilted = np.any(np.asarray(placement.sensor_tilt_x_deg)) or np.any(np.asarray(placement.sensor_tilt_y_deg))
-    if tilted:
-        terms = np.swapaxes(placement.sensor_axes, -1, -2) @ terms
-    return Series(terms, series.bound * scale)
+def _points_mm(magnet: Magnet, placement: Placement, theta: Array) -> Array:
+    """The sensor in the magnet's frame (designs, nodes, 3) [mm]."""
+    at = turned(placement.sensor_mm(magnet)[..., None, :], -theta)
+    return np.asarray((at - placement.magnet_mm[..., None, :]) @ placement.magnet_axes)
+
+
+@dataclass(frozen=True, eq=False)
+class _Sense:
+    """What makes the field of a unit remanence that in the sensor's axes: arrays over all designs."""
+
+    scale_mT: Array
+    stray_mT: Array
+    axes: Array | None
+
+    @classmethod
+    def of(cls, magnet: Magnet, placement: Placement, count: int, temperature_c: float) -> _Sense:
+        tilted = np.any(np.asarray(placement.sensor_tilt_x_deg)) or np.any(np.asarray(placement.sensor_tilt_y_deg))
+        return cls(
+            scale_mT=np.broadcast_to(MT_PER_T * magnet.remanence_at(temperature_c), (count,)),
+            stray_mT=np.broadcast_to(placement.stray_mT, (count, 3)),
+            axes=np.broadcast_to(placement.sensor_axes, (count, 3, 3)) if tilted else None,
+        )
+
+    def __call__(self, rows: BoolArray, series: Series) -> Series:
+        """Scaled by the remanence, with the stray field, in the sensor's axes."""
+        scale = self.scale_mT[rows]
+        terms = series.coefficients * scale[:, None, None]
+        terms[..., 0] += self.stray_mT[rows]
+        if self.axes is not None:
+            terms = np.swapaxes(self.axes[rows], -1, -2) @ terms
+        return Series(terms, series.bound * scale)
 
 
 def _refuse_inside(magnet: Magnet, placement: Placement, points_mm: Array) -> None:
     hit = np.any(inside(magnet, points_mm), axis=-1)
-    if np.any(hit):
-        gap = np.broadcast_to(placement.air_gap_mm, hit.shape)[hit]
-        raise OutOfRangeError(
-            f"air_gap_mm is {gap.ravel()[0]:g} mm, which with these tilts and displacements puts the sensor inside the "
-            "magnet; expected a sensing plane clear of the body over the whole turn"
-        )
+    if not np.any(hit):
+        return
+    first = np.zeros(hit.size, dtype=bool)
+    first[np.flatnonzero(hit)[0]] = True
+    design = _rows(magnet, first, first), _rows(placement, first, first)
+    gap = float(np.ravel(design[1].air_gap_mm)[0])
+    # Rounded up, so that the figure named is itself allowed.
+    clear = np.ceil(1e3 * _clear_gap_mm(*design)) / 1e3
+    raise OutOfRangeError(
+        f"air_gap_mm is {gap:g} mm, where these tilts and displacements turn the magnet into the sensor; "
+        f"expected from {clear:g} to {LARGEST_GAP_MM:g} mm"
+    )
+
+
+def _clear_gap_mm(magnet: Magnet, placement: Placement) -> float:
+    """The smallest air gap [mm] at which one design's magnet keeps clear of the sensor over the whole turn.
+
+    By bisection at every half degree. A bore counts as filled, which makes the body convex: further up is clear too.
+    """
+    body = replace(magnet, shape="cylinder") if magnet.shape == "ring" else magnet
+    theta = np.arange(720) * TAU / 720
+    # A body that reaches up to ``reach`` above its centre cannot reach the plane above that.
+    reach = np.max(np.hypot(magnet.reach_mm, 0.5 * np.asarray(magnet.height_mm)))
+    low, high = 0.0, float(reach)
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        points = _points_mm(magnet, replace(placement, air_gap_mm=middle), theta)
+        low, high = (middle, high) if np.any(inside(body, points)) else (low, middle)
+    return high
 
 
 def _rows(part: Part, rows: BoolArray, of: BoolArray) -> Part:

@@ -115,11 +115,6 @@ class Table:
         middle = np.minimum((np.arange(count + 1) + 0.5) / count, 1.0)
         return np.round(np.arctan(middle) / TAU * 2.0**self.angle_bits).astype(np.int64)
 
-    @property
-    def storage_bits(self) -> int:
-        """What the table occupies: an octant needs three bits less than a turn."""
-        return len(self.entries) * (self.angle_bits - 2)
-
     def bound_rad(self) -> float:
         """The largest angle error [rad]: half an interval, atan having slope 1 at most, and half a unit."""
         return float(0.5 / 2**self.address_bits + 0.5 * TAU / 2**self.angle_bits)

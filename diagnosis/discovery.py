@@ -11,7 +11,9 @@ import numpy as np
 from diagnosis import footprints
 from diagnosis.evidence import Evidence, collect
 from diagnosis.joint_fit import BASELINE, Fit, Free, Setting, evaluate, free_of, solve, tidy
+from diagnosis.likeness import Likeness, likeness
 from diagnosis.linear import Linear
+from diagnosis.noise_colour import Colour, colour_of
 from diagnosis.noise_model import noise_family
 from diagnosis.proof import held_out_residuals, rms_deg
 from diagnosis.screening import log_probability
@@ -81,6 +83,7 @@ class Discovery:
     looked_at: int
     given: Chain | None = None
     invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    likeness: Likeness | None = None
 
     @property
     def verdict(self) -> str:
@@ -93,11 +96,17 @@ class Discovery:
 
 
 def discover(
-    sweep: Sweep, *, start: Chain, given: Chain | None = None, effects: tuple[Effect, ...] = CATALOGUE
+    sweep: Sweep,
+    *,
+    start: Chain,
+    given: Chain | None = None,
+    effects: tuple[Effect, ...] = CATALOGUE,
+    rng: np.random.Generator | None = None,
 ) -> Discovery:
     """Explain a sweep.
 
     ``start`` is the fitted baseline (or a given twin, passed as ``given`` too: then only its zeros are fitted).
+    ``rng`` draws the sweeps that the measured one is compared with (seed 0 if not given).
     """
     evidence = collect(sweep)
     candidates = [e for e in effects if not e.baseline]
@@ -141,7 +150,8 @@ def discover(
     everything = [_of_readings(_with_figures(c, fit, held, use), evidence) for c in everything]
     baseline_held = of_readings(rms_deg(held[0], use), evidence)
     extended_held = of_readings(rms_deg(held[-1], use), evidence)
-    fit = replace(fit, chain=_with_noise(fit, step, everything))
+    colour = colour_of(fit)
+    fit = replace(fit, chain=_with_noise(fit, step, everything, colour))
     floor = np.degrees(evidence.repeat_rms) if evidence.repeat_rms else extended_held
     invisible = {
         e.name: e.missing(evidence.motion.provides)
@@ -161,6 +171,7 @@ def discover(
         looked_at=looked,
         given=given,
         invisible=invisible,
+        likeness=likeness(fit, rng=rng or np.random.default_rng(0), colour=colour),
     )
 
 
@@ -439,19 +450,20 @@ def _without_stairs(fit: Fit, key: str) -> Array:
     return wrap(fit.evidence.measured - smooth.angle)
 
 
-def _with_noise(fit: Fit, step: float, causes: Sequence[Named]) -> Chain:
+def _with_noise(fit: Fit, step: float, causes: Sequence[Named], colour: Colour) -> Chain:
     """The extended chain with the noise that is left and the rare events found, so that it simulates alike."""
     use = fit.evidence.usable
-    left = float(np.mean(fit.residual[0][use] ** 2))
+    total = left = float(np.mean(fit.residual[0][use] ** 2))
     if "output_quantisation" in fit.chain.values:
         left = fit.setting.blur**2 if fit.setting.blur > 0.0 else left - step**2 / 12.0
     for _, effect, own in fit.chain.active("channels"):
         if effect.spread is not None:
             left -= float(np.mean(effect.spread(fit.linear.sensor_angle, own)))
-    correlation, share = fit.setting.family.correlation[fit.setting.member]
+    # What rounding adds is white: the noise ahead of it is the more correlated.
+    share = min(colour.correlated_share * total / max(left, 1e-300), 1.0)
     rms_deg_left = float(np.degrees(np.sqrt(max(left, 0.0))))
     values: dict[str, dict[str, Any]] = {
-        "noise": {"rms_deg": rms_deg_left, "correlation": correlation, "correlated_share": share}
+        "noise": {"rms_deg": rms_deg_left, "correlation": colour.correlation, "correlated_share": share}
     }
     if "reference_rezero" in fit.chain.values:
         own = fit.chain.values["reference_rezero"]

@@ -54,20 +54,27 @@ class NoiseFamily:
 
 def noise_family(n: int) -> NoiseFamily:
     """The family for a sequence of n readings."""
-    omega = np.pi * (np.arange(n) + 0.5) / n
     spectra, labels, correlation = [], [], []
     for phi, white in _CORRELATIONS:
-        coloured = (1.0 - phi**2) / (1.0 + phi**2 - 2.0 * phi * np.cos(omega))
-        spectra.append((1.0 - white) * coloured + white)
+        spectra.append(spectrum(n, phi=phi, white=white))
         labels.append("white" if phi == 0 else f"AR(1) {phi:g}" + (f" + {white:.0%} white" if white else ""))
         correlation.append((phi, 1.0 - white))
     for alpha in _PINK:
-        pink = (omega / np.pi) ** -alpha
-        spectra.append(pink / np.mean(pink))
+        spectra.append(spectrum(n, pink=alpha))
         labels.append(f"1/f^{alpha:g}")
         correlation.append((0.5 + 0.4 * alpha, 1.0))
-    table = np.stack(spectra)
-    return NoiseFamily(table / np.mean(table, axis=1, keepdims=True), tuple(labels), tuple(correlation))
+    return NoiseFamily(np.stack(spectra), tuple(labels), tuple(correlation))
+
+
+def spectrum(n: int, *, phi: float = 0.0, pink: float = 0.0, white: float = 0.0) -> Array:
+    """Spectrum (n,) of mean 1 over the cosine coefficients.
+
+    First-order autoregression ``phi``, or 1/f noise of the exponent ``pink`` where that is given, with a share of
+    ``white`` noise beside it.
+    """
+    omega = np.pi * (np.arange(n) + 0.5) / n
+    coloured = (omega / np.pi) ** -pink if pink else (1.0 - phi**2) / (1.0 + phi**2 - 2.0 * phi * np.cos(omega))
+    return np.asarray((1.0 - white) * coloured / np.mean(coloured) + white)
 
 
 def to_cosine(evidence: Evidence, values: Array) -> Array:

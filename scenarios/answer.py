@@ -71,6 +71,8 @@ def to_json(found: Discovery) -> dict[str, Any]:
                 "rms_deg": _rms(extended[kept]),
                 "heldout_rms_deg": found.extended_held_deg,
                 "gain": gain,
+                "likeness_p": None if found.likeness is None else found.likeness.p,
+                "likeness_worst": None if found.likeness is None else found.likeness.worst,
             },
             "not_visible": {name: list(missing) for name, missing in sorted(found.invisible.items())},
             "searched": found.looked_at,

@@ -28,17 +28,18 @@ def explain(
 ) -> Discovery:
     """Explain a sweep by these effects, against the paper's error model or against a given twin."""
     sweep = searched_part(sweep)
+    rng = np.random.default_rng(seed)
     if twin is not None:
         given = read_twin(twin, effects=effects)
-        return discover(sweep, start=given, given=given, effects=effects)
+        return discover(sweep, start=given, given=given, effects=effects, rng=rng)
     fit = fit_baseline(
         np.radians(sweep.reference_deg),
         np.radians(sweep.measured_deg),
-        rng=np.random.default_rng(seed),
+        rng=rng,
         senses=senses_of_channels(sweep),
         robust=True,
     )
-    return discover(sweep, start=replace(fit.chain(), effects=effects), effects=effects)
+    return discover(sweep, start=replace(fit.chain(), effects=effects), effects=effects, rng=rng)
 
 
 def explain_file(path: str) -> dict[str, Any]:

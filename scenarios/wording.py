@@ -38,6 +38,7 @@ _ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two spe
 """A want that goes without saying where the second one is wanted too."""
 
 _NO_GAIN = 1.05
+_UNLIKE = 0.01
 _ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT|mm|Hz|s)$")
 _NUMBERED = re.compile(r"^(?P<name>.*?)(?:_(?P<number>\d+))?$")
 
@@ -171,18 +172,32 @@ def _largest(structure: Mapping[str, Any]) -> float:
 
 def verdict_words(answer: Mapping[str, Any]) -> str:
     """The verdict and what follows from it, in one or two sentences."""
+    like = likeness_words(answer["extended"])
+    rest = " Part of that is structure without a name." if answer["verdict"] == "partly explained" else ""
+    return f"{_gain_words(answer)}{f'; {like}' if like else ''}.{rest}"
+
+
+def likeness_words(extended: Mapping[str, Any]) -> str:
+    """Whether sweeps simulated from the extended twin match the measured one; empty where that was not asked."""
+    p = extended.get("likeness_p")
+    if p is None:
+        return ""
+    if p < _UNLIKE:
+        return f"simulated sweeps do not match (p < {_UNLIKE:g}: {extended['likeness_worst']})"
+    return f"simulated sweeps match (p = {plain(p, 2)})"
+
+
+def _gain_words(answer: Mapping[str, Any]) -> str:
     verdict = answer["verdict"]
     if verdict == "adequate":
-        return "The baseline is adequate: nothing else stands out of the noise."
+        return "The baseline is adequate: nothing else stands out of the noise"
     gain = answer["extended"]["gain"]
     if gain < _NO_GAIN:
         # Single readings and scatter are no part of what a twin predicts for the mean.
-        return "It lies in single readings or in their scatter, so that their mean is predicted no better."
-    closer = f"The extended twin is {plain(gain, 2)} times closer on readings it never saw."
+        return "It lies in single readings or in their scatter, so that their mean is predicted no better"
+    closer = f"The extended twin is {plain(gain, 2)} times closer on readings it never saw"
     if verdict == "unnamed":
         return f"Structure is there that no cause of the catalogue explains. {closer}"
-    if verdict == "partly explained":
-        return f"{closer} Part of that is structure without a name."
     return closer
 
 

@@ -163,6 +163,9 @@ def test_extended(answer: dict[str, Any]) -> None:
     assert extended["gain"] == pytest.approx(before / extended["heldout_rms_deg"], rel=1e-4)
     if not answer["causes"]:
         assert extended["gain"] == pytest.approx(1.0, rel=1e-6)
+    if extended["likeness_p"] is not None:
+        assert 0.0 < extended["likeness_p"] <= 1.0
+        assert extended["likeness_worst"]
 
 
 @pytest.mark.parametrize("case", SWEEPS)

@@ -154,7 +154,7 @@ def parameters(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
             value = float(values[name])
             half = _T95 * deviation.get((key, name), 0.0)
             answer[name + suffix] = {"value": value, "low": value - half, "high": value + half, "unit": param.unit}
-            if param.role == "shape" and (key, name) not in deviation and name in effect.zoomed:
+            if name == "time_s" and (key, name) not in deviation and name in effect.zoomed:
                 # A step's instant lies between two readings.
                 clock = fit.evidence.motion.time_s
                 place = int(np.searchsorted(clock, value))
@@ -165,9 +165,9 @@ def parameters(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
         if effect.line is not None and effect.line.clock == "time":
             # Fitted in the middle of the record, where it is known best; told at its first row.
             half_s = 0.5 * float(np.ptp(fit.evidence.motion.time_s))
-            told = answer["phase_deg" + suffix]
-            value = float(wrap_deg(told["value"] - 360.0 * float(values["frequency_Hz"]) * half_s))
-            spread = 360.0 * half_s * _T95 * deviation.get((key, "frequency_Hz"), 0.0)
+            told = answer[effect.roles("phase")[0] + suffix]
+            value = float(wrap_deg(told["value"] - 360.0 * float(values[effect.line.param]) * half_s))
+            spread = 360.0 * half_s * _T95 * deviation.get((key, effect.line.param), 0.0)
             half = float(np.hypot(0.5 * (told["high"] - told["low"]), spread))
             told |= {"value": value, "low": value - half, "high": value + half}
         for name, (value, low, high, unit) in effect.derived(values).items():

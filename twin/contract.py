@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -263,8 +264,8 @@ def _error(effect: Effect, motion: Motion, **params: Any) -> Array:
 def _not_null(effect: Effect, case: Example, motion: Motion) -> str:
     signal = signal_for(effect, motion)
     values = {**effect.null(), **case.shapes}
-    for rng in (None, np.random.default_rng(1)):
-        moved = np.asarray(effect.forward(signal, motion, values, rng))
+    for tried, rng in itertools.product((effect.null(), values), (None, np.random.default_rng(1))):
+        moved = np.asarray(effect.forward(signal, motion, tried, rng))
         if moved.shape != signal.shape or not np.array_equal(moved, signal):
             return "with every strength at its null it still changes the signal; expected the very same numbers"
     if np.max(np.abs(_error(effect, motion, **values))) > ROUNDING_RAD:

@@ -13,11 +13,14 @@ from diagnosis.evidence import Evidence, collect
 from diagnosis.joint_fit import BASELINE, Fit, Free, Setting, evaluate, free_of, solve, tidy
 from diagnosis.likeness import Likeness, likeness
 from diagnosis.linear import Linear
+from diagnosis.noise_choice import radius_noise
 from diagnosis.noise_colour import Colour, colour_of
 from diagnosis.noise_model import noise_family
 from diagnosis.proof import held_out_residuals, rms_deg
 from diagnosis.screening import log_probability
-from diagnosis.search import ALPHA, SWAP_MARGIN, drop, judge, likelihood, search, settle
+from diagnosis.search import ALPHA, SWAP_MARGIN, judge, search
+from diagnosis.separation import Option, options
+from diagnosis.trial import drop, likelihood, settle
 from twin.angles import TAU, Array, wrap
 from twin.catalogue import CATALOGUE, base_name, find
 from twin.chain import Chain
@@ -35,6 +38,8 @@ BEYOND_DOUBT = -25.0
 STAIRS_GAIN = 25.0
 """Twice the log likelihood, five sigma, that the output's stairs must gain to be named."""
 SLACK = 1.004
+RADIUS_LEFT = 1.5
+"""Variance of the radius against that of its noise above which something in it is unexplained."""
 _NUDGE = 1e-9
 """A baseline parameter exactly at null is skipped by the chain and could not be fitted: it starts this far off."""
 
@@ -43,6 +48,7 @@ _NUDGE = 1e-9
 class Named:
     """One entry of the answer: a cause, its probability, rivals, and the held-out RMS around it [deg].
 
+    ``rivals`` are the fits with another effect in its place, ``options`` the measurements that would part them.
     ``rows`` are the raw rows (from 0) that a cause of single readings has touched; ``intervals`` are of parameters
     that no fit of the mean has.
     """
@@ -50,7 +56,8 @@ class Named:
     keys: tuple[str, ...]
     log_p: float
     gain: float
-    rivals: tuple[str, ...] = ()
+    rivals: Mapping[str, Fit] = field(default_factory=dict)
+    options: tuple[Option, ...] = ()
     before_deg: float = float("nan")
     after_deg: float = float("nan")
     rows: tuple[int, ...] = ()
@@ -130,7 +137,7 @@ def discover(
         # Noise that is loudest at some angles passes for structure there, unless those rows weigh less.
         fit = _scaled(fit, min(uneven, key=lambda s: s.log_p).variance)
     baseline = fit
-    fit, keys, looked = _searched(fit, means, [], step, sequence_mask)
+    fit, keys, looked = _trusting(fit, means, step, sequence_mask) or _searched(fit, means, [], step, sequence_mask)
     if given is None and evidence.observables == 1:
         # Angles alone tell who counts which way by the quadratic term only, and a cause may have stood in for it.
         other = solve(evaluate(mirrored(fit.chain), fit.free, fit.evidence, fit.setting))
@@ -141,6 +148,9 @@ def discover(
     stairs = [named.keys[0] for named in values_found]
     baseline = solve(evaluate(baseline.chain.without(*stairs), baseline.free, fit.evidence, fit.setting))
     spread_found, fit = _spread(fit, candidates, looked)
+    if spread_found:
+        # Rows weighed by their noise tell more than they told before.
+        fit, keys, looked = _searched(fit, means, keys, step, sequence_mask)
     fit, entries, held = _prove(fit, means, keys)
     glitch_mask, glitches = _sequence(fit, sweep, candidates, step, "bus_glitch", sequence_mask)
     masked = sequence_mask | glitch_mask
@@ -150,6 +160,7 @@ def discover(
     everything = [_of_readings(_with_figures(c, fit, held, use), evidence) for c in everything]
     baseline_held = of_readings(rms_deg(held[0], use), evidence)
     extended_held = of_readings(rms_deg(held[-1], use), evidence)
+    everything = [replace(c, options=options(fit, c.rivals)) for c in everything]
     colour = colour_of(fit)
     fit = replace(fit, chain=_with_noise(fit, step, everything, colour))
     floor = np.degrees(evidence.repeat_rms) if evidence.repeat_rms else extended_held
@@ -219,6 +230,28 @@ def _searched(
             break
         fit = solve(refined)
     return fit, keys, looked
+
+
+def _trusting(fit: Fit, effects: Sequence[Effect], step: float, also: BoolArray) -> tuple[Fit, list[str], int] | None:
+    """The search that takes all the radius does over the turn for the work of causes; None where they leave some of it.
+
+    A shaft's error shows in the angle alone, and it is the radius that tells it from offset, gain and phase; but a
+    field that changes over the turn for reasons of its own would pass for such an error.
+    """
+    if fit.evidence.observables == 1 or _radius_explained(settle(fit)[0]):
+        return None
+    trusting = evaluate(fit.chain, fit.free, fit.evidence, replace(fit.setting, radius_trusted=True))
+    found = _searched(solve(trusting), effects, [], step, also)
+    return found if _radius_explained(found[0]) else None
+
+
+def _radius_explained(fit: Fit) -> bool:
+    """Whether what is left of the radius is no more than its noise, as it is beside all that the angle could explain."""
+    noise = radius_noise(fit)
+    if noise is None:
+        return True
+    left = fit.cosine_residual[1] ** 2 @ fit.setting.family.weights[noise[0]]
+    return float(left / fit.rows) < RADIUS_LEFT * noise[1]
 
 
 def _first_fit(evidence: Evidence, start: Chain, given: Chain | None) -> Fit:
@@ -401,7 +434,7 @@ def _prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fi
         use = fit.evidence.usable
         ordered = [cause.key for cause in causes]
         held = held_out_residuals(fit, ordered)
-        figures = [rms_deg(residual, use) for residual in held]
+        weighed = [rms_deg(residual / fit.evidence.scale, use) for residual in held]
         idle = None
         listed = float(np.log(0.01 / max(len(effects), 1)))
         for place, key in enumerate(ordered):
@@ -409,21 +442,30 @@ def _prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fi
                 # What was added after it has taken over what it was added for.
                 idle = key
                 break
-            if figures[place + 1] < figures[place]:
+            if weighed[place + 1] < weighed[place]:
                 continue
             # Not the last step: its turn may come only with what was added after it.
             alone = held_out_residuals(fit, [*(k for k in ordered if k != key), key])
             # The RMS counts correlated noise in full: a strong cause that leaves it as it is shows elsewhere.
             slack = SLACK if causes[place].log_p < np.log(1e-10) else 1.0
-            if rms_deg(alone[-1], use) >= slack * rms_deg(alone[-2], use):
+            before, after = (rms_deg(residual / fit.evidence.scale, use) for residual in alone[-2:])
+            if after >= slack * before:
                 idle = key
                 break
         if idle is None:
             break
         fit, _ = settle(drop(fit, idle))
         keys.remove(idle)
+    figures = [rms_deg(residual, use) for residual in held]
     entries = [
-        Named((cause.key,), cause.log_p, cause.gain, cause.rivals, figures[place], figures[place + 1])
+        Named(
+            (cause.key,),
+            cause.log_p,
+            cause.gain,
+            cause.rivals,
+            before_deg=figures[place],
+            after_deg=figures[place + 1],
+        )
         for place, cause in enumerate(causes)
     ]
     return fit, entries, held
@@ -487,7 +529,7 @@ def _merge(entries: list[Named]) -> list[Named]:
                 keys=(*first.keys, *entry.keys),
                 log_p=min(first.log_p, entry.log_p),
                 gain=first.gain + entry.gain,
-                rivals=tuple(r for r in first.rivals if r in entry.rivals),
+                rivals={name: fit for name, fit in first.rivals.items() if name in entry.rivals},
                 after_deg=entry.after_deg,
             )
         else:

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.evidence import Evidence
 from diagnosis.linear import Linear
-from diagnosis.noise_model import NoiseFamily, to_cosine
+from diagnosis.noise_model import NoiseFamily, observables_to_cosine
 from twin.angles import Array, wrap
 from twin.catalogue import find
 from twin.chain import Chain
@@ -39,7 +39,8 @@ class Setting:
     """How residuals are weighed: the family member in force, the blur of stairs, the radius against the angle.
 
     ``radius_weight`` multiplies the radius' whitened squares; ``radius_member`` is its own family member. ``members``
-    are the family members that the noise may be; none given: all of them.
+    are the family members that the noise may be; none given: all of them. ``radius_trusted``: what the radius does at
+    some angles is taken for a cause's work, never for noise.
     """
 
     family: NoiseFamily
@@ -48,6 +49,7 @@ class Setting:
     radius_member: int = 0
     radius_weight: float = 0.0
     members: tuple[int, ...] = ()
+    radius_trusted: bool = False
 
     @property
     def plausible(self) -> tuple[int, ...]:
@@ -136,8 +138,8 @@ def evaluate(chain: Chain, free: tuple[Free, ...], evidence: Evidence, setting: 
         linear=linear,
         residual=residual,
         jacobian=jacobian,
-        cosine_residual=to_cosine(evidence, residual),
-        cosine_jacobian=to_cosine(evidence, jacobian),
+        cosine_residual=observables_to_cosine(evidence, residual),
+        cosine_jacobian=observables_to_cosine(evidence, jacobian),
         prior_residual=prior_residual,
         prior_jacobian=prior_jacobian,
     )

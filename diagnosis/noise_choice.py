@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.noise_model import to_cosine
+from diagnosis.noise_model import radius_to_cosine, to_cosine
 from twin.angles import Array
 from twin.motion import Motion
 
 if TYPE_CHECKING:
     from diagnosis.joint_fit import Fit
+    from diagnosis.noise_model import NoiseFamily
 
 FEWEST_TURNS = 3.5
 REACH = 4.0
@@ -32,20 +33,40 @@ def plausible_members(fit: Fit) -> tuple[int, ...]:
     if fit.rows < 4 * (len(aside) + len(fit.free)):
         return everyone
     columns = np.concatenate([fit.cosine_jacobian[:, 0], to_cosine(fit.evidence, aside)])
+    score, _ = _scores(fit.cosine_residual[0], columns, fit.setting.family, fit.rows)
+    return tuple(int(k) for k in np.flatnonzero(score > score.max() - REACH))
+
+
+def radius_noise(fit: Fit) -> tuple[int, float] | None:
+    """Family member and variance of the radius' noise, all that could be locked to the angle set aside.
+
+    None where there are too few rows to set it aside.
+    """
+    motion = fit.evidence.motion
+    low = [turned(k * motion.shaft_rad) for k in (1, 2) for turned in (np.cos, np.sin)]
+    aside = np.concatenate([np.stack([np.ones(len(motion)), *low]), locked_shapes(motion)])
+    if fit.rows < 2 * len(aside):
+        return None
+    score, variance = _scores(fit.cosine_residual[1], radius_to_cosine(fit.evidence, aside), fit.setting.family, fit.rows)
+    best = int(np.argmax(score))
+    return best, float(variance[best])
+
+
+def _scores(residual: Array, columns: Array, family: NoiseFamily, rows: int) -> tuple[Array, Array]:
+    """Restricted log likelihood and variance of each family member, the columns (q, n) projected out."""
     columns = columns / np.maximum(np.linalg.norm(columns, axis=1, keepdims=True), 1e-300)
-    residual = fit.cosine_residual[0]
-    family = fit.setting.family
-    dof = fit.rows - len(columns)
-    score = np.empty(len(everyone))
-    for member in everyone:
-        weight = family.weights[member]
+    dof = rows - len(columns)
+    score, variance = np.empty(len(family.labels)), np.empty(len(family.labels))
+    for member, weight in enumerate(family.weights):
         white = columns * weight
-        gram = white @ columns.T + 1e-9 * np.trace(white @ columns.T) / len(columns) * np.eye(len(columns))
+        gram = white @ columns.T
+        gram += 1e-9 * np.trace(gram) / len(columns) * np.eye(len(columns))
         along = white @ residual
         left = float(residual @ (weight * residual) - along @ np.linalg.solve(gram, along))
         _, log_det = np.linalg.slogdet(gram)
         score[member] = -0.5 * (dof * np.log(max(left, 1e-300)) + family.log_det[member] + log_det)
-    return tuple(int(k) for k in np.flatnonzero(score > score.max() - REACH))
+        variance[member] = left / dof
+    return score, variance
 
 
 def locked_shapes(motion: Motion) -> Array:

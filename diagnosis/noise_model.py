@@ -78,10 +78,26 @@ def spectrum(n: int, *, phi: float = 0.0, pink: float = 0.0, white: float = 0.0)
 
 
 def to_cosine(evidence: Evidence, values: Array) -> Array:
-    """Values (..., n) over the rows as cosine coefficients (..., n); masked rows count as zero, rows by their scale."""
+    """Angles (..., n) over the rows as cosine coefficients (..., n); masked rows count as zero, rows by their scale."""
+    return _cosine(values * (evidence.usable / evidence.scale))
+
+
+def observables_to_cosine(evidence: Evidence, values: Array) -> Array:
+    """Observables (..., O, n) likewise; the scale is the angle's, for the radius need not be loud where the angle is."""
+    out = values * evidence.usable
+    out[..., 0, :] /= evidence.scale
+    return _cosine(out)
+
+
+def radius_to_cosine(evidence: Evidence, values: Array) -> Array:
+    """Radii (..., n) likewise."""
+    return _cosine(values * evidence.usable)
+
+
+def _cosine(values: Array) -> Array:
     from scipy.fft import dct
 
-    return np.asarray(dct(values * (evidence.usable / evidence.scale), type=2, norm="ortho", axis=-1))
+    return np.asarray(dct(values, type=2, norm="ortho", axis=-1))
 
 
 def to_rows(coefficients: Array) -> Array:

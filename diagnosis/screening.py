@@ -16,7 +16,7 @@ import numpy as np
 from diagnosis.evidence import Evidence
 from diagnosis.joint_fit import Fit, radius_nuisance, root_weights
 from diagnosis.linear import Term
-from diagnosis.noise_model import to_cosine, to_rows
+from diagnosis.noise_model import observables_to_cosine, to_rows
 from diagnosis.spectrum import line_shapes
 from twin.angles import Array
 from twin.effect import Effect
@@ -196,7 +196,7 @@ def project_radius(evidence: Evidence, columns: Array) -> Array:
 def _gains_of_columns(base: Base, effect: Effect, columns: Array) -> tuple[Array, Array]:
     fit = base.fit
     count, terms = columns.shape[:2]
-    cosine = to_cosine(fit.evidence, project_radius(fit.evidence, columns))
+    cosine = observables_to_cosine(fit.evidence, project_radius(fit.evidence, columns))
     best_gain = np.full(count, -np.inf)
     best_coefficient = np.zeros((count, terms))
     top = float(base.likelihood.max())

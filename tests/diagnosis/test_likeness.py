@@ -17,7 +17,7 @@ from diagnosis.discovery import Discovery
 from diagnosis.joint_fit import evaluate
 from diagnosis.likeness import SWEEPS, likeness
 from diagnosis.noise_colour import Colour, colour_of
-from diagnosis.search import drop, settle
+from diagnosis.trial import drop, settle
 from scenarios.explain import explain
 from tests.hidden.generator import draw
 from twin.sweep import Sweep

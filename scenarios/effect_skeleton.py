@@ -115,7 +115,18 @@ def _param(
 
 
 _PHASE = _param("phase_deg", "its phase", low=-360.0, high=360.0, more=', role="phase"')
-_AMPLITUDE = _param("amplitude_deg", "amplitude", low=0.0, high=20.0)
+
+
+def _amplitude(signed: bool) -> str:
+    """An amplitude; without a phase to turn it, it has a sign of its own."""
+    return _param("amplitude_deg", "amplitude", low=-20.0 if signed else 0.0, high=20.0)
+
+
+def _amplitude_per_kelvin(signed: bool) -> str:
+    low, more = -1.0 if signed else 0.0, ", typical=0.0025"
+    return _param("deg_per_K", "amplitude a kelvin", unit="deg/K", low=low, high=1.0, more=more)
+
+
 _AMPLITUDE_RAD = 'amplitude_rad: Array = np.radians(values["amplitude_deg"])\n'
 
 
@@ -130,11 +141,7 @@ def _shapes(*pairs: tuple[str, str]) -> str:
 
 
 def _fitted(*names: str) -> str:
-    listed = (
-        "".join(f'"{name}", ' for name in names).rstrip(" ")
-        if len(names) == 1
-        else ", ".join(f'"{name}"' for name in names)
-    )
+    listed = ", ".join(f'"{name}"' for name in names) + ("," if len(names) == 1 else "")
     return f"shapes=shapes,\n# Moved by the fit, not only tried.\nfitted_shapes=({listed}),\n"
 
 
@@ -169,15 +176,24 @@ def _wave(order: float) -> tuple[str, str, str, str, str]:
     return constant, _PHASE + param, first, " * np.sin(order * motion.shaft_rad + phase_rad)", _fitted("order")
 
 
-def _waves(structure: Mapping[str, Any], *, factor: str, words: str, needs: tuple[str, ...], **given: str) -> Parts:
-    """A wave of the structure's order times a factor of the conditions."""
+def _waves(
+    structure: Mapping[str, Any],
+    *,
+    factor: str,
+    words: str,
+    needs: tuple[str, ...],
+    constants: str = "",
+    amplitude: Callable[[bool], str] = _amplitude,
+    first: str = _AMPLITUDE_RAD,
+) -> Parts:
+    """A wave of the structure's order times a factor of the conditions; ``first`` begins the body."""
     order = float(structure.get("order", 0.0))
-    constant, params, first, wave, declared = _wave(order)
+    constant, params, lines, wave, declared = _wave(order)
     needs = (*needs, "one turn") if wave else needs
     return Parts(
-        constants=given.get("constants", "") + ("\n" if constant and "constants" in given else "") + constant + "\n",
-        params=given.get("amplitude", _AMPLITUDE) + params,
-        body=given.get("first", _AMPLITUDE_RAD) + first + f"return signal + amplitude_rad{factor}{wave}",
+        constants="\n".join(part for part in (constants, constant) if part),
+        params=amplitude(not wave) + params,
+        body=first + lines + f"return signal + amplitude_rad{factor}{wave}",
         needs=needs,
         signature=f"order {_number(_meant(order)).removesuffix('.0')}{words}",
         functions=_shapes(("order", "ORDER")) if declared else "",
@@ -203,7 +219,7 @@ def _temperature(structure: Mapping[str, Any], sweep: Mapping[str, Any]) -> Part
         words=" times the temperature",
         needs=("temperature_c", "two temperatures"),
         constants='NEUTRAL_C = 25.0\n"""Temperature at which there is none of it."""\n',
-        amplitude=_param("deg_per_K", "amplitude a kelvin", unit="deg/K", low=0.0, high=1.0, more=", typical=0.0025"),
+        amplitude=_amplitude_per_kelvin,
         first='amplitude_rad: Array = np.radians(values["deg_per_K"])\n',
     )
 
@@ -226,7 +242,7 @@ def _tone(structure: Mapping[str, Any], sweep: Mapping[str, Any]) -> Parts:
     hertz = float(structure.get("frequency_Hz", 50.0))
     return Parts(
         constants=f'FREQUENCY_HZ = {_number(hertz)}\n"""As found; the search tries 2 % to either side."""\n\n',
-        params=_AMPLITUDE
+        params=_amplitude(False)
         + _PHASE
         + _param(
             "frequency_Hz",

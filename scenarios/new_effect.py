@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -88,7 +89,7 @@ def origin_of(path: Path) -> Origin:
 
 def _figures(structure: Mapping[str, Any]) -> dict[str, Any]:
     """The kind of a structure and those of its figures that are known."""
-    known = {name: float(value) for name, value in structure.items() if isinstance(value, int | float)}
+    known = {name: float(v) for name, v in structure.items() if isinstance(v, int | float) and math.isfinite(v)}
     return {"kind": str(structure["kind"]), **known}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +14,20 @@ from twin.chain import Chain
 from twin.effect import Effect
 from twin.errors import UserError
 from twin.magnet.assembly import assembly_from, assembly_table
+from twin.parts import Parts, parts_from, parts_table
+from twin.reference.encoder import Encoder
 from twin.sweep_file import write_beside
+from twin.tables import from_table, to_table
 
 SCHEMA = "halltwin.twin/1"
-_KEYS = ("schema", "sensor_sense", "output_sense", "magnet", "effects")
+_KEYS = ("schema", "sensor_sense", "output_sense", "magnet", "hardware", "reference", "effects")
+
+
+_TABLES: dict[str, Callable[[Any], Any]] = {
+    "magnet": assembly_from,
+    "hardware": parts_from,
+    "reference": lambda content: from_table(Encoder, content, "reference"),
+}
 
 
 class TwinError(UserError):
@@ -36,6 +46,8 @@ def to_dict(chain: Chain) -> dict[str, Any]:
         "sensor_sense": chain.sensor_sense,
         "output_sense": chain.output_sense,
         **({} if chain.magnet is None else {"magnet": assembly_table(chain.magnet)}),
+        **({"hardware": hardware} if (hardware := parts_table(chain.parts)) else {}),
+        **({} if chain.encoder is None else {"reference": to_table(chain.encoder)}),
         "effects": effects,
     }
 
@@ -54,14 +66,20 @@ def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[
     for key, sense in senses.items():
         if sense not in (1, -1):
             raise TwinError(f"{name}: {key} is {sense!r}; expected 1 or -1")
-    if not isinstance(content.get("magnet", {}), Mapping):
-        raise TwinError(f"{name}: magnet is {content['magnet']!r}; expected a table [magnet]")
-    try:
-        magnet = assembly_from(content["magnet"]) if "magnet" in content else None
-    except UserError as error:
-        raise TwinError(f"{name}: [magnet]: {error}") from None
+    tables: dict[str, Any] = {}
+    for key, build in _TABLES.items():
+        if key in content:
+            try:
+                tables[key] = build(content[key])
+            except UserError as error:
+                raise TwinError(f"{name}: [{key}]: {error}") from None
     chain = Chain(
-        sensor_sense=senses["sensor_sense"], output_sense=senses["output_sense"], effects=effects, magnet=magnet
+        sensor_sense=senses["sensor_sense"],
+        output_sense=senses["output_sense"],
+        effects=effects,
+        magnet=tables.get("magnet"),
+        encoder=tables.get("reference"),
+        parts=tables.get("hardware", Parts()),
     )
     declared = content.get("effects", {})
     if not isinstance(declared, Mapping):
@@ -69,8 +87,8 @@ def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[
     for key, params in declared.items():
         if base_name(key) not in {effect.name for effect in effects}:
             raise TwinError(
-                f"{name}: [effects.{key}]: no effect named '{base_name(key)}'; halltwin causes lists them, "
-                "and --effects FILE.py adds your own"
+                f"{name}: [effects.{key}]: no effect named '{base_name(key)}'; halltwin causes lists them, and your own "
+                "come with --effects FILE.py or, for studies, from an installed package"
             )
         try:
             _check_params(find(key, effects), params)

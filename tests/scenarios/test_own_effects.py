@@ -17,6 +17,7 @@ import pytest
 from tests.command_line import explained, halltwin
 from tests.hidden.gear_sweep import BACKWARD_DEG, FORWARD_DEG, PHASE_DEG
 from tests.hidden.gear_sweep import main as make_gear_sweep
+from tests.hidden.generator import draw
 
 DATA = Path(__file__).parents[2] / "scenarios/data"
 SWEEP, GEAR = DATA / "gear_sweep.csv", DATA / "gear_mesh.py"
@@ -108,6 +109,27 @@ def test_a_skeleton_is_shaped_after_the_strongest_structure(tmp_path: Path) -> N
 def test_a_whole_order_is_meant_where_one_is_near(tmp_path: Path) -> None:
     assert "ORDER = 13.0\n" in written(tmp_path, "order").read_text()
     assert "ORDER = 0.731812\n" in written(tmp_path, "order_between", "belt").read_text()
+
+
+def test_figures_that_are_unknown_leave_the_skeleton_sound(tmp_path: Path) -> None:
+    strange = {"kind": "local", "centre_deg": None, "width_deg": float("inf"), "height_deg": "much"}
+    path = tmp_path / "bump.py"
+    assert halltwin("new-effect", "bump", "-o", path, "--from", answer_with(tmp_path, strange)).code == 0
+    assert halltwin("check-effect", path).code == 0
+
+
+@pytest.mark.parametrize("structure", ["speed_squared_lag", "temperature_times_order", "local_bump", "time_frequency"])
+def test_a_skeleton_finds_what_it_is_shaped_after(structure: str, tmp_path: Path) -> None:
+    """Unnamed before, named after, with no less of a gain."""
+    sweep = tmp_path / "sweep.csv"
+    draw([], seed=9301, structure=structure).write_csv(sweep)
+    before = explained(sweep)
+    assert [cause["name"] for cause in before["causes"]] == ["unnamed"]
+    shaped = tmp_path / "own_cause.py"
+    halltwin("new-effect", "own_cause", "-o", shaped, "--from", tmp_path / "sweep.csv.answer.json")
+    after = explained(sweep, "--effects", shaped)
+    assert [cause["name"] for cause in after["causes"]] == ["own_cause"]
+    assert after["extended"]["gain"] > 0.97 * before["extended"]["gain"]
 
 
 @pytest.mark.parametrize("name", ["Belt", "belt-splice", "2nd", "belt__splice", "_belt", "belt splice", "größe", ""])
@@ -279,7 +301,7 @@ def test_console_report_and_plot_speak_of_it(gear: Path) -> None:
 
 def test_the_extended_twin_is_read_back_and_simulated(gear: Path) -> None:
     again = gear / "again.csv"
-    assert "--effects FILE.py adds your own" in refused("simulate", gear / "gear.toml", "-o", again)
+    assert "your own come with --effects FILE.py" in refused("simulate", gear / "gear.toml", "-o", again)
     ended = halltwin("simulate", gear / "gear.toml", "-o", again, "--effects", GEAR, "--both-directions", "--seed", "5")
     assert ended.code == 0
     given = explained(again, "--twin", gear / "gear.toml", "--effects", GEAR)

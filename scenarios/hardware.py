@@ -20,14 +20,16 @@ from twin.sweep_file import write_columns
 
 
 def run_command(twin: str, folder: Path, *, effect_files: Sequence[Path] = (), seed: int) -> None:
-    """Write hardware.csv, hardware.png and .svg for the magnet of a twin, the other parts typical."""
+    """Write hardware.csv, hardware.png and .svg for a twin's magnet, disk, plates and reference; the rest typical."""
     folder.mkdir(parents=True, exist_ok=True)
     chain = read_twin_or_preset(twin, effects=effects_with(effect_files))
-    hardware = Hardware(assembly=chain.magnet or Assembly())
+    disk, plate = chain.parts.disk, chain.parts.plate
+    hardware = Hardware(assembly=chain.magnet or Assembly(), disk=disk, plates=(plate, plate))
     motion = Protocol().motion()
-    signals = run(hardware, motion, np.random.default_rng(seed))
-    angle = np.asarray(np.degrees(motion.shaft_rad), dtype=np.float64)
-    columns = table(hardware, signals, angle)
+    rng = np.random.default_rng(seed)
+    signals = run(hardware, motion, rng)
+    shaft, reference = np.degrees(motion.shaft_rad), np.degrees(chain.recorded_reference(motion, rng))
+    columns = table(hardware, signals, shaft, reference)
     write_columns(folder / "hardware.csv", columns)
     _draw(folder, columns)
     for axis, plate in zip("xy", hardware.plates, strict=True):
@@ -37,9 +39,9 @@ def run_command(twin: str, folder: Path, *, effect_files: Sequence[Path] = (), s
     print(f"largest error {np.max(np.abs(columns['error_deg'])):.4g} deg; wrote hardware.csv, .png, .svg to {folder}")
 
 
-def table(hardware: Hardware, signals: Run, angle_deg: Array) -> dict[str, Array]:
-    """Every signal (n,) by name and unit, in the order of the chain."""
-    columns = {"shaft_deg": angle_deg}
+def table(hardware: Hardware, signals: Run, shaft_deg: Array, reference_deg: Array) -> dict[str, Array]:
+    """Every signal (n,) by name and unit, in the order of the chain; the error is against the reference's reading."""
+    columns = {"shaft_deg": shaft_deg, "reference_deg": reference_deg}
     for row, axis in enumerate("xy"):
         columns[f"in_plane_{axis}_mT"] = signals.in_plane_mT[row]
         columns[f"vertical_{axis}_mT"] = signals.vertical_mT[row]
@@ -49,7 +51,7 @@ def table(hardware: Hardware, signals: Run, angle_deg: Array) -> dict[str, Array
     columns["cordic_deg"] = np.degrees(angle_rad(signals.cordic_words, hardware.cordic.angle_bits))
     columns["word_lsb"] = signals.words.astype(np.float64)
     columns["received_deg"] = np.asarray(np.degrees(signals.received_rad), dtype=np.float64)
-    columns["error_deg"] = wrap_deg(columns["received_deg"] - angle_deg)
+    columns["error_deg"] = wrap_deg(columns["received_deg"] - reference_deg)
     return columns
 
 
@@ -79,7 +81,7 @@ def _draw(folder: Path, columns: dict[str, Array]) -> None:
                 )
             },
         ),
-        ("link", "reading minus shaft / deg", {"received": columns["error_deg"]}),
+        ("link", "reading minus reference / deg", {"received": columns["error_deg"]}),
     ]
     for axis, (title, label, curves) in zip(axes.flat, panels, strict=True):
         for name, values in curves.items():

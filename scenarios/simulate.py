@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from scenarios.protocol import Protocol
 from twin.extensions import effects_with
 from twin.presets import read_twin_or_preset
@@ -29,15 +27,14 @@ def run(
 ) -> None:
     """Simulate on the protocol, or on the motion of a recorded sweep, and write what was asked for.
 
-    ``reference_lines``: the reference counts the lines of an incremental encoder; None: it reads exactly.
+    ``reference_lines``: lines of the reference encoder, in place of those of the twin's [reference]; None: as there.
     """
     chain = read_twin_or_preset(twin, effects=effects_with(effect_files))
+    if reference_lines is not None:
+        chain = replace(chain, encoder=replace(chain.encoder or Encoder(), lines=reference_lines))
     # A recorded motion holds the reference's readings: the shaft is where its errors are undone.
     motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded).motion())
     sweep = chain.simulate(motion, seed=seed)
-    if reference_lines is not None:
-        counted = Encoder(lines=reference_lines).read(np.radians(sweep.reference_deg))
-        sweep = replace(sweep, reference_deg=np.degrees(counted))
     sweep.write(output)
     print(f"wrote {output} ({len(motion)} readings)")
     if trace_path is None and plot_path is None:

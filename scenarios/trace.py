@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,10 +10,10 @@ import numpy as np
 
 from scenarios.plotting import save, style
 from twin.angles import TAU, Array, wrap
+from twin.catalogue import STAGES
 from twin.chain import Chain, Step
-from twin.concentrator.disk import Disk, vertical_mT
-from twin.hall.spinning_current import Plate, residual_offset_mT
-from twin.magnet.stray_field import FIELD_MT
+from twin.concentrator.disk import vertical_mT
+from twin.hall.spinning_current import residual_offset_mT
 from twin.motion import Motion
 from twin.sweep_file import write_columns
 
@@ -42,6 +43,7 @@ class Trace:
     signals: tuple[Signal, ...]
     reference_deg: Array
     error_deg: Array
+    notes: tuple[str, ...]
 
 
 def trace(chain: Chain, motion: Motion, *, seed: int) -> Trace:
@@ -50,35 +52,59 @@ def trace(chain: Chain, motion: Motion, *, seed: int) -> Trace:
     stages = {effect.name: effect.acts_on for effect in chain.effects}
     signals = [Signal("shaft", "deg", np.degrees(motion.shaft_rad)[None], np.zeros(len(motion)))]
     last: Array = signals[0].values
+    inside = _Inside(chain)
     for step in chain.steps(motion, rng):
         kind = stages[step.effect.name] if step.effect else step.key.removeprefix("after ")
+        # Before a later stage acts on the channels, the earlier ones' signal is what the hardware has there.
+        if kind == "channels":
+            signals.extend(inside.before(step))
         is_channels = kind == "channels" if step.effect else kind == "field"
         values = step.after if is_channels else np.degrees(step.after)
         name = step.key if step.effect else CONVERSIONS[step.key]
         signals.append(Signal(name, "1" if is_channels else "deg", values, _moved_deg(step, kind)))
-        if step.key == "after field":
-            signals.extend(_inside_the_sensor(chain, step.after))
         last = step.after
-    reference = chain.reference(motion, rng)
+    reference = chain.recorded_reference(motion, rng)
     slope = chain.sensor_sense * chain.output_sense
     error = np.degrees(wrap(last[0] - slope * reference))
-    return Trace(motion, tuple(signals), np.degrees(reference), error)
+    return Trace(motion, tuple(signals), np.degrees(reference), error, _notes(chain))
 
 
-def _inside_the_sensor(chain: Chain, channels: Array) -> list[Signal]:
-    """The driven channels in the units of the hardware: field in the plane, under the disk, and the Hall voltage.
+class _Inside:
+    """The channels in the units of the hardware, each once: in the plane after the magnet's effects, under the disk
 
-    Disk and plate are the typical ones; the field is the magnet's, or 50 mT where no magnet is described.
+    after the concentrator's, at the plates after theirs. Scale: the chain's nominal field, its disk and its plate.
     """
-    nominal = FIELD_MT if chain.magnet is None else chain.magnet.nominal_mT
-    in_plane = nominal * channels
-    vertical = vertical_mT(in_plane, Disk())
-    still = np.zeros(channels.shape[-1])
-    return [
-        Signal("field in the plane", "mT", in_plane, still),
-        Signal("vertical field", "mT", vertical, still),
-        Signal("Hall voltage", "uV", Plate().sensitivity_uV_per_mT * vertical, still),
-    ]
+
+    def __init__(self, chain: Chain) -> None:
+        self.parts, self.nominal = chain.parts, chain.nominal_mT
+        self.left = ["magnet", "concentrator", "hall"]
+
+    def before(self, step: Step) -> Iterator[Signal]:
+        """What is complete before this step acts."""
+        reached = STAGES.index(step.effect.stage) if step.effect else len(STAGES)
+        while self.left and STAGES.index(self.left[0]) < reached:
+            yield self._signal(self.left.pop(0), step.before)
+
+    def _signal(self, stage: str, channels: Array) -> Signal:
+        in_plane, still = self.nominal * channels, np.zeros(channels.shape[-1])
+        if stage == "magnet":
+            return Signal("field in the plane", "mT", in_plane, still)
+        vertical = vertical_mT(in_plane, self.parts.disk)
+        if stage == "concentrator":
+            return Signal("vertical field", "mT", vertical, still)
+        return Signal("Hall voltage", "uV", self.parts.plate.sensitivity_uV_per_mT * vertical, still)
+
+
+def _notes(chain: Chain) -> tuple[str, ...]:
+    """What the columns in mT and uV are counted with."""
+    disk, plate = chain.parts.disk, chain.parts.plate
+    before, after = residual_offset_mT(plate)
+    field = "[hardware]" if chain.magnet is None else "[magnet]"
+    return (
+        f"nominal field {chain.nominal_mT:.4g} mT by {field} of the twin; concentrator's gain {disk.gain:g} and "
+        f"sensitivity {plate.sensitivity_uV_per_mT:g} uV/mT by [hardware]; what is not given there is typical",
+        f"offset of such a Hall plate: {before:.4g} mT before spinning current, {after:.4g} mT after it",
+    )
 
 
 def _moved_deg(step: Step, kind: str) -> Array:
@@ -110,9 +136,7 @@ def write_trace(path: Path, traced: Trace) -> None:
             columns[f"{stem}{axis}_{signal.unit}"] = values
     columns["reference_deg"] = traced.reference_deg
     columns["error_deg"] = traced.error_deg
-    before, after = residual_offset_mT(Plate())
-    note = f"offset of the typical Hall plate: {before:.4g} mT before spinning current, {after:.4g} mT after it"
-    write_columns(path, columns, comments=(note,))
+    write_columns(path, columns, comments=traced.notes)
 
 
 def plot_trace(path: Path, traced: Trace, *, title: str) -> None:

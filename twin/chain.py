@@ -13,6 +13,8 @@ from twin.catalogue import CATALOGUE, base_name, find
 from twin.effect import ActsOn, Effect, Parameters
 from twin.magnet.assembly import Assembly
 from twin.motion import Motion
+from twin.parts import Parts
+from twin.reference.encoder import Encoder
 from twin.sweep import Sweep
 
 Values = Mapping[str, Parameters]
@@ -38,6 +40,8 @@ class Chain:
     ``values`` holds the parameters of the effects that are present, by instance key; every other effect is at null
     and does nothing. ``sensor_sense`` is s of a = s theta + zero, ``output_sense`` is h of m = h atan2(y, x).
     ``magnet`` drives the channels by its computed field; without one they are the field's ideal cosine and sine.
+    ``encoder`` counts the reference's lines in a simulated record; None: it reads exactly, as an expected reading does.
+    ``parts`` are the scale of the signals in millitesla and volts; they change no reading.
     Immutable: the ``with_`` methods return another chain.
     """
 
@@ -46,6 +50,8 @@ class Chain:
     output_sense: int = 1
     effects: tuple[Effect, ...] = CATALOGUE
     magnet: Assembly | None = None
+    encoder: Encoder | None = None
+    parts: Parts = field(default_factory=Parts)
 
     # ---- changing -------------------------------------------------------------------------------------------------
 
@@ -133,6 +139,16 @@ class Chain:
             signal = effect.forward(signal, motion, values, rng)
         return signal[..., 0, :]
 
+    def recorded_reference(self, motion: Motion, rng: np.random.Generator | None = None) -> Array:
+        """The reference as a record holds it [rad] (n,): in whole counts of the encoder."""
+        reading = self.reference(motion, rng)
+        return reading if self.encoder is None else self.encoder.read(reading)
+
+    @property
+    def nominal_mT(self) -> float:
+        """The field [mT] in the plane at the nominal amplitude 1."""
+        return self.parts.field_mT if self.magnet is None else self.magnet.nominal_mT
+
     def shaft(self, recorded: Motion) -> Motion:
         """The motion whose reference readings are the shaft angles of ``recorded``: the reference's errors undone.
 
@@ -151,7 +167,7 @@ class Chain:
         rng = None if seed is None else np.random.default_rng(seed)
         signals = {"shaft": motion.shaft_rad}
         signals.update({step.key: step.after for step in self.steps(motion, rng)})
-        signals["reference"] = self.reference(motion, rng)
+        signals["reference"] = self.recorded_reference(motion, rng)
         return signals
 
     def simulate(self, motion: Motion, *, seed: int = 0) -> Sweep:
@@ -164,7 +180,7 @@ class Chain:
             measured = step.after
         assert channels is not None
         assert measured is not None
-        reference = self.reference(motion, rng)
+        reference = self.recorded_reference(motion, rng)
         return Sweep.from_motion(
             motion,
             reference_deg=np.degrees(reference),

@@ -14,6 +14,7 @@ from tests.benchmarks.throughput import largest_difference_deg
 from twin.angles import wrap
 from twin.chain import Chain
 from twin.errors import UserError
+from twin.files import from_dict, to_dict
 from twin.presets import preset_names, read_preset, read_twin_or_preset
 from twin.sweep import Sweep
 
@@ -43,7 +44,9 @@ def test_presets_simulate_to_a_readable_sweep(name: str, tmp_path: Path) -> None
     sweep = Sweep.read(tmp_path / "a.csv")
     error = wrap(np.radians(sweep.measured_deg - sweep.reference_deg))
     assert 0.05 < np.degrees(np.max(np.abs(error))) < 4.0
-    header = (tmp_path / "t.csv").read_text().splitlines()[1].split(",")
+    rows = [line for line in (tmp_path / "t.csv").read_text().splitlines() if not line.startswith("#")]
+    assert len(rows) == 361
+    header = rows[0].split(",")
     assert all(cell.rsplit("_", 1)[1] in ("s", "deg", "1", "mT", "uV") for cell in header)
 
 
@@ -55,6 +58,43 @@ def test_the_trace_ends_where_the_sweep_does() -> None:
     # What the stages did to the angle adds up to the error, to the second order of 0.1 deg errors.
     moved = sum(signal.moved_deg for signal in traced.signals)
     assert np.max(np.abs(moved - traced.error_deg)) < 1e-6
+
+
+def test_the_trace_counts_in_the_twins_own_field_disk_and_plate() -> None:
+    content = {
+        "schema": "halltwin.twin/1",
+        "hardware": {"field_mT": 80.0, "disk": {"gain": 2.0}, "plate": {"sensitivity_uV_per_mT": 50.0}},
+        "effects": {
+            "saturation": {"k_percent": 0.4},
+            "offset": {"x_percent": 1.0},
+            "gain_mismatch": {"ratio": 1.02},
+            "stray_field": {"bx_mT": 1.6, "field_mT": 80.0},
+        },
+    }
+    chain = from_dict(content)
+    assert to_dict(chain)["hardware"] == content["hardware"]
+    traced = trace(chain, Protocol(points=360).motion(), seed=1)
+    signals = {signal.name: signal.values for signal in traced.signals}
+    in_plane, vertical, volts = (signals[name] for name in ("field in the plane", "vertical field", "Hall voltage"))
+    # 80 mT and the stray field; twice that under the disk, where saturation takes k / 2 of the middle of a turn.
+    np.testing.assert_allclose(in_plane[0, [0, 180]], [81.6, -78.4], atol=1e-9)
+    np.testing.assert_allclose(in_plane[1, [90, 270]], [80.0, -80.0], atol=1e-9)
+    assert np.max(np.abs(vertical - 2.0 * in_plane)) == pytest.approx(0.004 * 163.2, rel=0.1)
+    # 50 uV/mT, 1 % of 160 mT more on x, 1.02 times as much on y.
+    np.testing.assert_allclose(volts[0], 50.0 * (vertical[0] + 1.6), rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(volts[1], 50.0 * 1.02 * vertical[1], rtol=1e-12, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_a_presets_trace_is_in_its_own_units(name: str) -> None:
+    chain = read_preset(name)
+    traced = trace(chain, Protocol().motion(), seed=1)
+    signals = {signal.name: signal.values for signal in traced.signals}
+    size = {key: float(np.max(np.hypot(*signals[key]))) for key in ("field in the plane", "vertical field")}
+    # Misalignment, stray field and saturation change the amplitudes by some percent at most.
+    assert size["field in the plane"] == pytest.approx(chain.nominal_mT, rel=0.05)
+    assert size["vertical field"] == pytest.approx(chain.parts.disk.gain * chain.nominal_mT, rel=0.05)
+    assert f"{chain.nominal_mT:.4g} mT" in traced.notes[0]
 
 
 def test_a_recorded_motion_keeps_the_reference(tmp_path: Path) -> None:

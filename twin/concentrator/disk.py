@@ -45,6 +45,7 @@ class Disk:
         for name in ("shift_x_um", "shift_y_um"):
             require_within(name, getattr(self, name), -0.5 * self.radius_um, 0.5 * self.radius_um, "um")
         require_within("roughness_um", self.roughness_um, 0.0, 0.1 * self.radius_um, "um")
+        require_within("part", self.part, 0, 2**32 - 1, whole=True)
         require_within("saturation_mT", self.saturation_mT, 1.0, 1e4, "mT")
 
     @property

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
-
-import numpy as np
 
 from twin.angles import Array, channels_of
 from twin.limits import OutOfRangeError
@@ -15,6 +13,7 @@ from twin.magnet.field import Series, series_of
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement, designs_of
 from twin.motion import Motion
+from twin.tables import from_table, to_table
 
 NOMINAL_C = 25.0
 """Temperature at which the nominal amplitude is 1, the same as that of the drifts [C]."""
@@ -56,36 +55,20 @@ class Assembly:
         return channels_of(x, y) / self.nominal_mT
 
 
-def assembly_from(content: Mapping[str, Any]) -> Assembly:
+def assembly_from(content: Any) -> Assembly:
     """The assembly of a twin file's [magnet] table; its numbers of place stand in [magnet.placement].
 
     Raises OutOfRangeError for an unknown name or a number out of range.
     """
+    if not isinstance(content, Mapping):
+        raise OutOfRangeError(f"magnet is {content!r}; expected a table")
     body = {key: value for key, value in content.items() if key != "placement"}
-    return Assembly(_build(Magnet, body, "magnet"), _build(Placement, content.get("placement", {}), "magnet.placement"))
+    place = from_table(Placement, content.get("placement", {}), "magnet.placement")
+    return Assembly(from_table(Magnet, body, "magnet"), place)
 
 
 def assembly_table(assembly: Assembly) -> dict[str, Any]:
     """The [magnet] table of a twin file: what differs from the defaults, and the shape."""
-    table: dict[str, Any] = {"shape": assembly.magnet.shape, **_changed(assembly.magnet, Magnet())}
-    place = _changed(assembly.placement, Placement())
+    table: dict[str, Any] = {"shape": assembly.magnet.shape, **to_table(assembly.magnet)}
+    place = to_table(assembly.placement)
     return {**table, **({"placement": place} if place else {})}
-
-
-def _build(kind: Any, content: Any, where: str) -> Any:
-    names = [item.name for item in fields(kind)]
-    if not isinstance(content, Mapping):
-        raise OutOfRangeError(f"{where} is {content!r}; expected a table")
-    for key in content:
-        if key not in names:
-            raise OutOfRangeError(f"{where} has no '{key}'; it has {', '.join(names)}")
-    return kind(**content)
-
-
-def _changed(part: Magnet | Placement, default: Magnet | Placement) -> dict[str, Any]:
-    changed = {}
-    for item in fields(part):
-        value = getattr(part, item.name)
-        if value is not None and value != getattr(default, item.name):
-            changed[item.name] = value if isinstance(value, str) else float(np.asarray(value))
-    return changed

@@ -1,0 +1,47 @@
+"""A table of a twin file as a frozen dataclass, and back: every name and number checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any, TypeVar
+
+import numpy as np
+
+from twin.limits import OutOfRangeError
+
+Part = TypeVar("Part")
+
+
+def from_table(kind: type[Part], content: Any, where: str) -> Part:
+    """An instance of the dataclass ``kind`` with the table's values, the rest at their defaults.
+
+    ``where`` names the table in messages. Raises OutOfRangeError for an unknown name or a value out of range.
+    """
+    known = {item.name: item for item in fields(kind)}  # type: ignore[arg-type]
+    if not isinstance(content, Mapping):
+        raise OutOfRangeError(f"{where} is {content!r}; expected a table")
+    values = {}
+    for key, value in content.items():
+        if key not in known:
+            raise OutOfRangeError(f"{where} has no '{key}'; it has {', '.join(known)}")
+        default = known[key].default
+        if isinstance(value, list | Mapping):
+            raise OutOfRangeError(f"{key} is {value!r}; expected a single value")
+        # Python takes true for 1 and any text for true; a twin file does not.
+        if isinstance(value, bool) != isinstance(default, bool):
+            kind_of = "true or false" if isinstance(default, bool) else "a number or a word, not true or false"
+            raise OutOfRangeError(f"{key} is {value!r}; expected {kind_of}")
+        whole = isinstance(default, int) and isinstance(value, float) and value.is_integer()
+        values[key] = int(value) if whole else value
+    return kind(**values)
+
+
+def to_table(part: Any) -> dict[str, Any]:
+    """What of a dataclass's values differs from the defaults, as plain values."""
+    default, changed = type(part)(), {}
+    for item in fields(part):
+        value = getattr(part, item.name)
+        if value is not None and value != getattr(default, item.name):
+            changed[item.name] = value if isinstance(value, str | bool | int) else float(np.asarray(value))
+    return changed

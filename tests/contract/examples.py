@@ -72,11 +72,30 @@ def _clipping(motion: Motion, p: Params) -> Array:
 
 
 def _stuck(motion: Motion, p: Params) -> Array:
-    """The bit's deviation from its mean, which belongs to the offset: the code is read with that mean taken back."""
+    """A converter's integer codes with one bit held, as offset binary; the mean of what that adds is in the offset.
+
+    The chain's channels hold that mean already, so the voltage at the converter is less by it.
+    """
+    below = 20  # bits under the stuck one: the converter's own rounding is a millionth of the step
     step, mean = 0.01 * p["step_percent"], 0.01 * p["step_percent"] * (p["level"] - 0.5)
-    channels = (np.cos(motion.shaft_rad), np.sin(motion.shaft_rad))
-    x, y = (step * (p["level"] - np.floor((c - mean) / step) % 2.0) - mean for c in channels)
-    return shift(motion, x, y)
+    lsb, middle = step / 2**below, 1 << (below + 12)
+    moved = []
+    for volts in (np.cos(motion.shaft_rad) - mean, np.sin(motion.shaft_rad) - mean):
+        codes = np.floor(volts / lsb).astype(np.int64) + middle
+        held = codes | (1 << below) if p["level"] else codes & ~np.int64(1 << below)
+        moved.append((held - middle + 0.5) * lsb - (volts + mean))
+    return shift(motion, *moved)
+
+
+def _stepper(motion: Motion, p: Params) -> Array:
+    """A two-phase stepper with p electrical periods a turn and a constant current too much in each phase.
+
+    The rotor stands along the vector of both currents; p times the amplitude is what they are off, over their own.
+    """
+    commanded, off = p["order"] * motion.shaft_rad, p["order"] * _rad(p["amplitude_deg"])
+    one = np.cos(commanded) - off * np.cos(_rad(p["phase_deg"]))
+    other = np.sin(commanded) + off * np.sin(_rad(p["phase_deg"]))
+    return np.asarray(np.angle((one + 1j * other) * np.exp(-1j * commanded)) / p["order"])
 
 
 def _lag(motion: Motion, p: Params) -> Array:
@@ -127,8 +146,11 @@ def _share(values: Array) -> Array:
 
 
 def _tone(motion: Motion, p: Params) -> Array:
-    wave = np.cos(TAU * p["frequency_Hz"] * _middle(motion) + _rad(p["phase_deg"]))
-    return np.asarray(_rad(p["amplitude_deg"]) * wave)
+    """A vector that turns f times a second, carried on from reading to reading; mid-record it stands at the phase."""
+    on = np.exp(1j * TAU * p["frequency_Hz"] * np.diff(motion.time_s))
+    vector = np.concatenate([[1.0], np.cumprod(on)])
+    halfway = np.exp(1j * np.pi * p["frequency_Hz"] * np.ptp(motion.time_s))
+    return np.asarray(_rad(p["amplitude_deg"]) * (vector / halfway * np.exp(1j * _rad(p["phase_deg"]))).real)
 
 
 def _modes(motion: Motion, p: Params) -> Array:
@@ -241,9 +263,7 @@ EXAMPLES: dict[str, Example] = {
     "stale_frames": Example(strengths={"fraction_percent": 5.0}, shapes={}, signature=None, memory=True),
     "bus_glitch": Example(strengths={"count": 7.0}, shapes={}, signature=None),
     # reference
-    "drive_ripple": Example(
-        strengths=_LINE, shapes={**_PHASE, "order": 24.0}, signature=lambda m, p: line(m, p, p["order"])
-    ),
+    "drive_ripple": Example(strengths=_LINE, shapes={**_PHASE, "order": 24.0}, signature=_stepper),
     "reference_eccentricity": Example(strengths=_LINE, shapes=_PHASE, signature=lambda m, p: line(m, p, 1.0, -1.0)),
     "reference_rezero": Example(strengths={"spread_deg": 0.3}, shapes={}, signature=None),
     "index_slip": Example(

@@ -179,7 +179,7 @@ BAD_TWINS = {
     "a sweep": ("reference_deg,measured_deg\n1,2\n", ("is no TOML",)),
     "empty": ("", ("schema is None", SCHEMA)),
     "another schema": ('schema = "halltwin.twin/9"\n', ("halltwin.twin/9", SCHEMA)),
-    "unknown effect": (HEAD + "[effects.flux]\nx = 1\n", ("effects.flux", "no effect named 'flux'", "--effects FILE.py")),
+    "unknown effect": (HEAD + "[effects.flux]\nx = 1\n", ("effects.flux", "named 'flux'", "--effects FILE.py")),
     "unknown parameter": (HEAD + "[effects.offset]\nz_percent = 1\n", ("effects.offset", "z_percent", "x_percent")),
     "out of range": (HEAD + "[effects.offset]\nx_percent = 1e9\n", ("x_percent", "between", "1000000000")),
     "not a number": (HEAD + "[effects.offset]\nx_percent = nan\n", ("x_percent", "between", "nan")),

@@ -87,8 +87,8 @@ def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[
     for key, params in declared.items():
         if base_name(key) not in {effect.name for effect in effects}:
             raise TwinError(
-                f"{name}: [effects.{key}]: no effect named '{base_name(key)}'; halltwin causes lists them, and your own "
-                "come with --effects FILE.py or, for studies, from an installed package"
+                f"{name}: [effects.{key}]: no effect named '{base_name(key)}'; halltwin causes lists them, "
+                "and your own come with --effects FILE.py or, for studies, from an installed package"
             )
         try:
             _check_params(find(key, effects), params)

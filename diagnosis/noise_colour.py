@@ -85,7 +85,7 @@ def _neighbourhood(
     pink = labels[member].startswith("1/f")
     whites = (max(white - _REACH_WHITE, 0.0), min(white + _REACH_WHITE, _MOST_WHITE))
     if pink:
-        alpha = float(labels[member].removeprefix("1/f^"))
+        alpha = float(labels[member].removeprefix("1/f^").split()[0])
         return (alpha, white), ((alpha - _REACH_PINK, alpha + _REACH_PINK), whites), True
     if phi == 0.0:
         # Without correlation there is nothing for white noise to stand beside.

@@ -29,8 +29,8 @@ _CORRELATIONS = (
     (0.98, 0.8),
 )
 """First-order autoregression from reading to reading, and the share of white noise beside it."""
-_PINK = (0.5, 1.0)
-"""Exponents of 1/f noise."""
+_PINK = ((0.5, 0.0), (1.0, 0.0), (1.0, 0.3), (1.0, 0.6))
+"""Exponent of 1/f noise, and the share of white noise beside it (that of an output's grid, say)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +57,17 @@ def noise_family(n: int) -> NoiseFamily:
     spectra, labels, correlation = [], [], []
     for phi, white in _CORRELATIONS:
         spectra.append(spectrum(n, phi=phi, white=white))
-        labels.append("white" if phi == 0 else f"AR(1) {phi:g}" + (f" + {white:.0%} white" if white else ""))
+        labels.append("white" if phi == 0 else f"AR(1) {phi:g}" + _beside(white))
         correlation.append((phi, 1.0 - white))
-    for alpha in _PINK:
-        spectra.append(spectrum(n, pink=alpha))
-        labels.append(f"1/f^{alpha:g}")
-        correlation.append((0.5 + 0.4 * alpha, 1.0))
+    for alpha, white in _PINK:
+        spectra.append(spectrum(n, pink=alpha, white=white))
+        labels.append(f"1/f^{alpha:g}" + _beside(white))
+        correlation.append((0.5 + 0.4 * alpha, 1.0 - white))
     return NoiseFamily(np.stack(spectra), tuple(labels), tuple(correlation))
+
+
+def _beside(white: float) -> str:
+    return f" + {white:.0%} white" if white else ""
 
 
 def spectrum(n: int, *, phi: float = 0.0, pink: float = 0.0, white: float = 0.0) -> Array:

@@ -22,7 +22,7 @@ from twin.angles import Array
 from twin.effect import Effect
 
 _CHUNK = 4_000_000
-COARSE = (0, 2, 4, 6, 8, 13)
+COARSE = (0, 2, 4, 6, 8, 13, 15)
 """Family members that a first-order gain is taken over, beside the best one; exact fits ask them all."""
 
 

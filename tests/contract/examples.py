@@ -283,6 +283,16 @@ EXAMPLES: dict[str, Example] = {
             * (_rad(p["sin2_deg"]) * np.sin(2 * m.shaft_rad) + _rad(p["cos3_deg"]) * np.cos(3 * m.shaft_rad))
         ),
     ),
+    "unnamed_direction_order": Example(
+        strengths=_LINE,
+        shapes={**_PHASE, "order": 7.0},
+        signature=lambda m, p: line(m, p, p["order"], weight=m.direction),
+    ),
+    "unnamed_temperature_order": Example(
+        strengths=_LINE,
+        shapes={**_PHASE, "order": 9.0},
+        signature=lambda m, p: line(m, p, p["order"], weight=_share(_warm(m))),
+    ),
     "unnamed_temperature": Example(
         strengths={"cos0_deg": 0.1, "sin4_deg": 0.05},
         shapes={},

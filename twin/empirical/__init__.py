@@ -5,14 +5,23 @@ by the same code. Their names begin with ``unnamed``.
 """
 
 from twin.empirical.local import UNNAMED_BUMP
-from twin.empirical.orders import UNNAMED_DIRECTION, UNNAMED_ORDER, UNNAMED_SPEED, UNNAMED_TEMPERATURE
+from twin.empirical.orders import (
+    UNNAMED_DIRECTION,
+    UNNAMED_DIRECTION_ORDER,
+    UNNAMED_ORDER,
+    UNNAMED_SPEED,
+    UNNAMED_TEMPERATURE,
+    UNNAMED_TEMPERATURE_ORDER,
+)
 from twin.empirical.spread import UNNAMED_BURST
 from twin.empirical.time import UNNAMED_DRIFT, UNNAMED_TONE
 
 EFFECTS = (
     UNNAMED_ORDER,
     UNNAMED_DIRECTION,
+    UNNAMED_DIRECTION_ORDER,
     UNNAMED_TEMPERATURE,
+    UNNAMED_TEMPERATURE_ORDER,
     UNNAMED_SPEED,
     UNNAMED_TONE,
     UNNAMED_DRIFT,

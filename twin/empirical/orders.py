@@ -120,6 +120,7 @@ def _pattern(orders: Sequence[int], weight: Weight) -> Forward:
 DIRECTION_ORDERS = (1, 2, 3, 4)
 # Orders 1 and 2 times the temperature are the drifts of offset, gain and phase.
 TEMPERATURE_ORDERS = (0, 3, 4, 5, 6)
+HIGHEST_SINGLE_ORDER = 40
 
 UNNAMED_DIRECTION = Effect(
     name="unnamed_direction",
@@ -141,6 +142,35 @@ UNNAMED_TEMPERATURE = Effect(
     needs=frozenset({"temperature_c", "two temperatures"}),
     source="Fourier series times (T - 25 C)",
     signature="a pattern over the turn that scales with temperature; its size is the one farthest from 25 C",
+)
+
+
+def _single_orders(first: int) -> Callable[[Motion], Sequence[Mapping[str, float]]]:
+    return _low_orders(range(first, HIGHEST_SINGLE_ORDER + 1))
+
+
+UNNAMED_DIRECTION_ORDER = Effect(
+    name="unnamed_direction_order",
+    stage="empirical",
+    acts_on="angle",
+    params=_order_params(HIGHEST_SINGLE_ORDER),
+    forward=_weighted(_direction),
+    shapes=_single_orders(1),
+    needs=frozenset({"both directions"}),
+    source="Fourier component times the direction",
+    signature="one order whose sign turns with the direction",
+)
+
+UNNAMED_TEMPERATURE_ORDER = Effect(
+    name="unnamed_temperature_order",
+    stage="empirical",
+    acts_on="angle",
+    params=_order_params(HIGHEST_SINGLE_ORDER),
+    forward=_weighted(_temperature),
+    shapes=_single_orders(3),
+    needs=frozenset({"temperature_c", "two temperatures"}),
+    source="Fourier component times (T - 25 C)",
+    signature="one order that scales with temperature; its amplitude is the one farthest from 25 C",
 )
 
 UNNAMED_SPEED = Effect(

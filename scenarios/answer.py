@@ -8,6 +8,7 @@ import numpy as np
 
 from diagnosis.discovery import Discovery, Named, raw_residual
 from diagnosis.joint_fit import Fit
+from diagnosis.separation import advice
 from scenarios.facts import facts
 from twin.angles import wrap_deg
 from twin.catalogue import base_name, find
@@ -18,7 +19,9 @@ _T95 = 1.959964
 _KINDS = {
     "unnamed_order": "order",
     "unnamed_direction": "direction",
+    "unnamed_direction_order": "direction",
     "unnamed_temperature": "temperature",
+    "unnamed_temperature_order": "temperature",
     "unnamed_speed": "speed",
     "unnamed_tone": "time_frequency",
     "unnamed_drift": "drift",
@@ -130,7 +133,10 @@ def _cause(found: Discovery, cause: Named) -> dict[str, Any]:
         "heldout_rms_deg_before": cause.before_deg,
         "heldout_rms_deg_after": cause.after_deg,
         "indistinguishable_from": list(cause.rivals),
-        "to_tell_apart": advice(cause),
+        "to_tell_apart": advice(cause.options) if cause.rivals else "",
+        "to_tell_apart_options": [
+            {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options
+        ],
     }
     if cause.name == "bus_glitch":
         answer["rows"] = found.sweep.numbers[list(cause.rows)].tolist()
@@ -198,22 +204,6 @@ def _structure(found: Discovery, key: str) -> dict[str, Any]:
         answer["order"] = float(max(series, key=lambda order: series[order]))
         answer["amplitude_deg"] = max(series.values())
     return answer
-
-
-def advice(cause: Named) -> str:
-    """The measurement that would tell a cause from those that explain the data as well; empty where there are none."""
-    rivals = set(cause.rivals) | {cause.name}
-    if len(rivals) < 2:
-        return ""
-    if {"hysteresis", "backlash"} <= rivals:
-        return "sample every 0.5 deg for 20 deg after a reversal"
-    if {"saturation", "magnet_harmonic"} <= rivals:
-        return "record vx, vy, or measure at a second air gap"
-    if {"latency", "xy_skew", "hysteresis", "backlash"} & rivals and "latency" in rivals:
-        return "measure at a second speed in the same direction"
-    if {"zero_drift", "index_slip"} & rivals:
-        return "record more turns, with time stamps"
-    return "record vx, vy, both directions and a second speed"
 
 
 def wild_rows(found: Discovery) -> list[int]:

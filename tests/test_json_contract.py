@@ -130,6 +130,12 @@ def test_causes(answer: dict[str, Any]) -> None:
         assert cause["name"] not in cause["indistinguishable_from"]
         assert isinstance(cause["to_tell_apart"], str)
         assert bool(cause["to_tell_apart"]) == bool(cause["indistinguishable_from"])
+        offered = cause["to_tell_apart_options"]
+        assert bool(offered) == bool(cause["indistinguishable_from"])
+        assert [option["cost"] for option in offered] == sorted(option["cost"] for option in offered)
+        for option in offered:
+            assert is_figure(option["sigma"], low=0.0)
+            assert option["measurement"]
 
 
 def test_each_name_stands_once_and_the_strongest_first(answer: dict[str, Any]) -> None:

@@ -22,7 +22,7 @@ from .baseline import Injected, Setting
 from .catalogue import CAUSES
 from .chain import Bench, Readings, sample
 from .clearance import clearance_sigma
-from .motion import Array, Demands
+from .motion import Array, Demands, Motion
 from .noise import Noise
 from .streams import stream
 
@@ -55,11 +55,13 @@ def draw(
     strength: str = "normal",
     protocol: str | None = None,
     structure: str | None = None,
+    remeasured: Motion | None = None,
 ) -> Hidden:
     """A sweep with the named causes, and with a structure outside the catalogue if one is asked for.
 
     `protocol` is one of protocols.PROTOCOLS, "+channels" or "-channels" appended to force vx, vy in
-    or out; without it one is drawn that shows all the causes. ValueError where none does.
+    or out; without it one is drawn that shows all the causes. ValueError where none does. `remeasured`
+    is another motion of the same device and bench: its sweep has every column that belongs to it.
     """
     labels = sorted(causes)
     key = "+".join([*labels, structure or "", bench, strength])
@@ -102,6 +104,8 @@ def draw(
         one = stream(seed, key, "structure", structure)
         size = float(one.uniform(*STRENGTHS[strength]))
         injected.append(structures.plan(structure, one, size, setting))
+    if remeasured is not None:
+        motion = remeasured
     by_name = {entry.name: entry for entry in injected}
     bits, step = setting.output_bits, setting.word_deg
     if "output_quantisation" in by_name:
@@ -112,7 +116,10 @@ def draw(
     scale, grid = _channel_unit(rng, bench, by_name.get("adc_stuck_bit"))
     setup = Bench(motion, own, noise, bits, channels, scale, grid)
     readings = sample(setup, injected, stream(seed, key, "noise"))
-    columns = _columns(setup, readings, demands, bench, stream(seed, key, "columns"))
+    if remeasured is None:
+        columns = _columns(setup, readings, demands, bench, stream(seed, key, "columns"))
+    else:
+        columns = _all_columns(setup, readings)
 
     truth: dict[str, object] = {
         "causes": [*labels, *(["unnamed"] if structure is not None else [])],
@@ -194,6 +201,18 @@ def _channel_unit(rng: np.random.Generator, bench: str, stuck: Injected | None) 
     unit = int(rng.integers(0, 3))
     # volts at 16 bits, counts of a 16-bit converter, millitesla in microtesla
     return ((1.65, 3.3 / 2**16), (24000.0, 1.0), (48.0, 1e-3))[unit]
+
+
+def _all_columns(setup: Bench, readings: Readings) -> dict[str, Array]:
+    """Every column that the motion has something to say in."""
+    motion = setup.motion
+    columns = {"time_s": motion.time_s, "reference_deg": readings.reference_deg, "measured_deg": readings.word_deg}
+    columns |= {"direction": motion.direction, "turn": motion.turn.astype(float)}
+    if motion.moving:
+        columns["speed_rpm"] = motion.speed_rpm
+    if np.ptp(motion.temperature_c) > 0:
+        columns["temperature_c"] = motion.temperature_c
+    return columns | ({"vx": readings.x, "vy": readings.y} if setup.channels else {})
 
 
 def _columns(

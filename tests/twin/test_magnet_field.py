@@ -52,10 +52,12 @@ def test_agrees_with_magpylib_point_by_point(shape: str, shaft: bool, tilt: bool
     assert largest_difference(magnet, placement, field_mT(magnet, placement, ANGLES), ANGLES) <= limit
 
 
-# To the rounding of the sum; narrow bores are left to nodes on magpylib's field, with what that is off by.
-@pytest.mark.parametrize(("shape", "limit"), [("cylinder", 1e-12), ("ring", 1e-8)])
-def test_both_off_the_axis_agrees_with_a_sum_over_the_surface_charge(shape: str, limit: float) -> None:
-    magnet, placement = random_designs(np.random.default_rng(11), 40, shape=shape, tilt=False)
+# Untilted to the rounding of the sum, tilted to the interpolant's tolerance; narrow bores are left to magpylib's field.
+@pytest.mark.parametrize(
+    ("shape", "tilt", "limit"), [("cylinder", False, 1e-12), ("cylinder", True, 3e-10), ("ring", False, 1e-8)]
+)
+def test_both_off_the_axis_agrees_with_a_sum_over_the_surface_charge(shape: str, tilt: bool, limit: float) -> None:
+    magnet, placement = random_designs(np.random.default_rng(11), 40, shape=shape, tilt=tilt)
     # Some pass right by the axis, where the closed forms are hardest.
     placement = replace(placement, sensor_x_mm=placement.magnet_x_mm, sensor_y_mm=0.95 * placement.magnet_y_mm)
     field = field_mT(magnet, placement, ANGLES)
@@ -81,8 +83,9 @@ def test_the_interpolant_stays_within_its_bound(tilt: bool) -> None:
     fine = field_mT(magnet, placement, ANGLES)
     rough = field_mT(magnet, placement, ANGLES, tolerance=1e-4)
     bounds = np.array([coarse[index] for index in range(200)])
-    # A turn by the sensor's tilt mixes three components; magpylib's own series below 0.05 radii adds some 1e-9.
-    assert np.all(np.max(np.abs(fine - rough), axis=(1, 2)) <= np.sqrt(3.0) * bounds + 1e-8 * np.abs(fine).max())
+    # A turn by the sensor's tilt mixes three components; the fine one is within its own tolerance.
+    slack = np.sqrt(3.0) * bounds + 3e-10 * np.max(np.abs(fine), axis=(1, 2))
+    assert np.all(np.max(np.abs(fine - rough), axis=(1, 2)) <= slack)
 
 
 def test_designs_in_one_call_equal_designs_one_by_one() -> None:

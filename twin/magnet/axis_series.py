@@ -10,8 +10,9 @@ Taylor coefficients of F are Gegenbauer polynomials. magpylib holds the first th
 there are as many as the tolerance asks. The series converges where rho is less than the way from the point's foot on
 the axis to the nearest rim.
 
-Untilted, z stays the same over a turn and u = c0 - c1 cos(psi), with psi the shaft angle from where sensor and magnet
-are closest: S + u S', S' and dS/dz are cosine series in psi, known from a few nodes of half a turn.
+Within that reach S is a sum of solid harmonics about a point of the axis; a tilted magnet's turn is summed from them
+node by node. Untilted, z stays the same over a turn and u = c0 - c1 cos(psi), with psi the shaft angle from where
+sensor and magnet are closest: S + u S', S' and dS/dz are cosine series in psi, known from a few nodes of half a turn.
 Source: the series is the regular solution of Laplace's equation for cos(phi), Jackson, Classical Electrodynamics,
 3rd ed., section 3.7; the field on the axis: Caciagli et al., J. Magn. Magn. Mater. 456 (2018) 423.
 """
@@ -30,6 +31,8 @@ from twin.magnet.placement import Placement
 
 FARTHEST = 0.65
 """Largest distance from the axis, as a share of that to the rim, for which the series is taken."""
+CACHED = 1 << 13
+"""Points that are summed together, so that their arrays stay in the cache."""
 INNER = 0.75
 """Share of the squared radius of convergence up to which the bound on the cosine series looks."""
 
@@ -56,6 +59,10 @@ class Path:
         """The largest distance from the axis as a share of the radius of convergence (designs,)."""
         return np.asarray((np.abs(self.sensor) + np.abs(self.magnet)) / self.edge)
 
+    def axis_taylor(self, count: int) -> Array:
+        """Taylor coefficients (count, designs) of the field on the axis at the sensor's height."""
+        return axis_taylor(self.half, self.height, self.bore, count)
+
     def rows(self, chosen: BoolArray) -> Path:
         """The path of these designs alone."""
         return Path(*(getattr(self, item.name)[chosen] for item in fields(self)))
@@ -67,22 +74,26 @@ def path_of(magnet: Magnet, placement: Placement, designs: int) -> Path:
     sensor = (placement.sensor_x_mm + 1j * np.asarray(placement.sensor_y_mm)) / radius
     centre = (placement.magnet_x_mm + 1j * np.asarray(placement.magnet_y_mm)) / radius
     gap, half = np.asarray(placement.air_gap_mm) / radius, 0.5 * np.asarray(magnet.height_mm) / radius
-    bore = 0.5 * np.asarray(magnet.bore_mm) / radius if magnet.shape == "ring" else np.zeros(1)
-    rim = np.where(bore > 0.0, bore, 1.0)
-    values = (sensor, centre, np.angle(sensor) - np.angle(centre), gap + half, half, bore, np.hypot(rim, gap))
+    bore = _bore(magnet, radius)
+    edge = np.hypot(np.where(bore > 0.0, bore, 1.0), gap)
+    values = (sensor, centre, np.angle(sensor) - np.angle(centre), gap + half, half, bore, edge)
     return Path(*(np.broadcast_to(value, (designs,)) for value in values))
 
 
-def axis_taylor(path: Path, count: int) -> Array:
-    """Taylor coefficients (count, designs) of the field on the axis, a(z), at the sensor's height."""
-    out = _cylinder_taylor(path.half, path.height, count)
-    if not np.any(path.bore > 0.0):
+def _bore(magnet: Magnet, radius: Array) -> Array:
+    return 0.5 * np.asarray(magnet.bore_mm) / radius if magnet.shape == "ring" else np.zeros(1)
+
+
+def axis_taylor(half: Array, height: Array, bore: Array, count: int) -> Array:
+    """Taylor coefficients (count, designs) of the field on the axis, a(z), at these heights; lengths in outer radii."""
+    out = _cylinder_taylor(half, height, count)
+    if not np.any(bore > 0.0):
         return out
     # A vanishing bore takes nothing away; the closed form wants a radius, so it gets a harmless one.
-    ratio = 1.0 / np.where(path.bore > 0.0, path.bore, 1.0)
-    inner = _cylinder_taylor(path.half * ratio, path.height * ratio, count)
+    ratio = 1.0 / np.where(bore > 0.0, bore, 1.0)
+    inner = _cylinder_taylor(half * ratio, height * ratio, count)
     inner *= ratio ** np.arange(count)[:, None]
-    return out - np.where(path.bore > 0.0, inner, 0.0)
+    return out - np.where(bore > 0.0, inner, 0.0)
 
 
 def _cylinder_taylor(half: Array, height: Array, count: int) -> Array:
@@ -131,7 +142,7 @@ def turn(path: Path, *, terms: int, orders: int) -> tuple[Array, Array]:
 
     ``terms`` of the series in u; ``orders`` of the cosine series, which the products with p^2 and x raise by one.
     """
-    along = axis_taylor(path, 2 * terms)
+    along = path.axis_taylor(2 * terms)
     k = np.arange(terms)
     # (2k)! / (k! (k+1)! 4^k), with its sign.
     weight = np.cumprod(np.concatenate([[1.0], -(k[1:] - 0.5) / (k[1:] + 1.0)]))[:, None]
@@ -188,3 +199,80 @@ def _two_sided(terms: NDArray[np.complex128]) -> NDArray[np.complex128]:
     out[top + 1] += out[top + 1]
     np.conjugate(out[top + 2 : -2], out=out[top:1:-1])
     return out
+
+
+@dataclass(frozen=True, eq=False)
+class Cloud:
+    """Points (designs, 3, nodes) in the frames of round magnets, in outer radii, counted from their middle height.
+
+    ``height``, ``half``, ``bore``, ``edge`` (designs,) as for :class:`Path`, at that height.
+    """
+
+    points: Array
+    height: Array
+    half: Array
+    bore: Array
+    edge: Array
+
+    @property
+    def share(self) -> Array:
+        """The largest distance from the middle as a share of the radius of convergence; infinite beside the magnet."""
+        reach = np.sqrt(np.max(np.einsum("dkn,dkn->dn", self.points, self.points), axis=1)) / self.edge
+        return np.where(np.abs(self.height) > self.half, reach, np.inf)
+
+    def rows(self, chosen: BoolArray | NDArray[np.intp]) -> Cloud:
+        """The points of these designs alone."""
+        return Cloud(*(getattr(self, item.name)[chosen] for item in fields(self)))
+
+
+def cloud_of(magnet: Magnet, points_mm: Array) -> Cloud:
+    """The points (designs, nodes, 3) [mm] of each design's magnet, whose numbers are (designs,)."""
+    radius = 0.5 * np.asarray(magnet.diameter_mm)
+    points = np.moveaxis(points_mm / radius[:, None, None], -1, -2).copy()
+    height = points[:, 2].mean(axis=-1)
+    points[:, 2] -= height[:, None]
+    half, bore = 0.5 * np.asarray(magnet.height_mm) / radius, np.broadcast_to(_bore(magnet, radius), radius.shape)
+    edge = np.hypot(np.where(bore > 0.0, bore, 1.0), np.abs(height) - half)
+    return Cloud(points, height, half, bore, edge)
+
+
+def field_at(cloud: Cloud, tolerance: float) -> Array:
+    """Field (designs, nodes, 3) for a unit remanence along +x, to this share of that on the axis.
+
+    With W_n = r^n C_n^(3/2)(w / r), S = sum_n 2 a_n W_n / ((n+1)(n+2)) over the Taylor coefficients a_n; its derivative
+    in w lowers n by one, and the one in u follows as S is made of homogeneous polynomials. Term n of a component is
+    bounded by (n+1)^2 share^n / edge^2.
+    """
+    nominal = np.abs(axis_taylor(cloud.half, cloud.height, cloud.bore, 1)[0])
+    share = np.maximum(cloud.share, 1e-9)
+    rate = -np.log(share)
+    need = -np.log(tolerance * nominal * cloud.edge**2 * (1.0 - share) ** 3)
+    # (n+1)^2 stands under the logarithm too; ln 16 covers a number four times the first guess.
+    degrees = np.ceil((need + 2.0 * np.log1p(need / rate) + np.log(16.0)) / rate).astype(int)
+    out = np.empty((*cloud.points.shape[::2], 3))
+    order = np.argsort(degrees)
+    piece = max(1, CACHED // cloud.points.shape[2])
+    for start in range(0, order.size, piece):
+        part = order[start : start + piece]
+        out[part] = _summed(cloud.rows(part), int(degrees[part[-1]]) + 1)
+    return out
+
+
+def _summed(cloud: Cloud, count: int) -> Array:
+    """The sum of the first ``count`` harmonics (designs, nodes, 3)."""
+    x, y, w = np.ascontiguousarray(cloud.points.transpose(1, 2, 0))
+    square = x * x + y * y + w * w
+    n = np.arange(count + 1)[:, None]
+    terms = axis_taylor(cloud.half, cloud.height, cloud.bore, count + 1) * (2.0 / ((n + 1) * (n + 2)))
+    older, last = np.zeros_like(w), np.ones_like(w)
+    value, scaled, slope = np.zeros_like(w), np.zeros_like(w), np.zeros_like(w)
+    for k in range(count):
+        value += terms[k] * last
+        scaled += (k * terms[k]) * last
+        slope += ((k + 3) * terms[k + 1]) * last
+        older, last = last, ((2 * k + 3) * w * last - (k + 2) * square * older) / (k + 1)
+    # 2 u dS/du: what homogeneity leaves to u.
+    scaled -= w * slope
+    u = x * x + y * y
+    over = np.divide(scaled, u, out=np.zeros_like(u), where=u > 0.0)
+    return np.stack([value + x * x * over, x * y * over, x * slope], axis=-1).swapaxes(0, 1)

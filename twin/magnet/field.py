@@ -39,9 +39,12 @@ ORDERS = (5, 6, 7, 8, 10, 13)
 FEWEST_NODES = 16
 CACHED = 1 << 16
 """Numbers of a product that are kept at hand until they are written where they belong: 512 KiB."""
+NODE_TOLERANCE = 1e-13
+"""Of the field at one node, relative to that on the axis."""
 MOST_NODES = 64
-"""Where magpylib passes to its series about the axis (rho < 0.05 radii) its field steps by some 1e-9 of |B|: what is
-left beyond so many nodes is that step, which stays in the bound."""
+"""Beside a narrow bore, where the series does not reach, the field is magpylib's. Where that passes to its own short
+series about the axis (rho < 0.05 radii) it steps by up to some 1e-9 of |B|: what is left beyond so many nodes is that
+step, which stays in the bound."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,7 +177,7 @@ def _near_axis(
     path = axis_series.path_of(magnet, placement, rows.size)
     rows = rows & ~tilted & (path.share <= axis_series.FARTHEST)
     # Either of the two parts of the bound, and off the axis the field may be weaker by as much.
-    limit = 0.1 * tolerance * np.abs(axis_series.axis_taylor(path, 1)[0])
+    limit = 0.1 * tolerance * np.abs(path.axis_taylor(1)[0])
     with np.errstate(invalid="ignore"):
         terms, orders = axis_series.terms_needed(path, limit), axis_series.orders_needed(path, limit)
     group = np.searchsorted(ORDERS, orders)
@@ -250,8 +253,22 @@ def _at_nodes(magnet: Magnet, placement: Placement, theta: Array) -> Array:
     """Field in the stator's frame (designs, nodes, 3), for a unit remanence, from the magnet's closed form."""
     points = _points_mm(magnet, placement, theta)
     _refuse_inside(magnet, placement, points)
-    field = -body_field(magnet, points) @ np.swapaxes(placement.magnet_axes, -1, -2)
+    field = -_unit_field(magnet, points) @ np.swapaxes(placement.magnet_axes, -1, -2)
     return turned(field, theta)
+
+
+def _unit_field(magnet: Magnet, points_mm: Array) -> Array:
+    """Field (designs, nodes, 3) for a unit remanence: by the series where it reaches, else by the closed form."""
+    if magnet.shape == "block":
+        return body_field(magnet, points_mm)
+    cloud = axis_series.cloud_of(magnet, points_mm)
+    near = cloud.share <= axis_series.FARTHEST
+    if near.all():
+        return axis_series.field_at(cloud, NODE_TOLERANCE)
+    out = np.empty(points_mm.shape)
+    out[near] = axis_series.field_at(cloud.rows(near), NODE_TOLERANCE)
+    out[~near] = body_field(_rows(magnet, ~near, near), points_mm[~near])
+    return out
 
 
 def _points_mm(magnet: Magnet, placement: Placement, theta: Array) -> Array:

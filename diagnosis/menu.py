@@ -134,7 +134,10 @@ def _second_speed(motion: Motion) -> tuple[Recording, ...] | None:
     else:
         pace = FIRST_SPEED_RPM * TAU / 60.0
         speed = pace * again.direction
-        elapsed = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(again.shaft_rad)))]) / pace
+        step = np.abs(np.diff(again.shaft_rad))
+        # A shaft that turns round in its place takes its time too.
+        step[step == 0.0] = np.median(step)
+        elapsed = np.concatenate([[0.0], np.cumsum(step)]) / pace
     faster = replace(again, speed_rad_s=speed, time_s=again.time_s[0] + elapsed)
     return _once(_joined(motion, faster, also="speed_rpm"))
 

@@ -1,0 +1,155 @@
+"""The menu plans what it says, and the separation is what simulated readings then show."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.discovery import Discovery
+from diagnosis.joint_fit import Fit, evaluate, solve
+from diagnosis.menu import FINEST_DEG, MENU, Recording
+from diagnosis.separation import Option, advice, best, expected, separation_sigma
+from scenarios.explain import explain
+from scenarios.protocol import Protocol
+from twin.chain import Chain
+from twin.motion import Motion
+
+PLAN = {entry.name: entry.plan for entry in MENU}
+ONE_WAY = Protocol(turns=2, points=120, channels=False).motion()
+BOTH_WAYS = Protocol(turns=1, points=72, both_directions=True, channels=False).motion()
+SPINNING = Protocol(turns=3, points=120, speeds_rpm=(300.0,), channels=False).motion()
+BRINGS = {
+    "raw channels": "vx",
+    "other direction": "both directions",
+    "second speed": "two speeds",
+    "second temperature": "two temperatures",
+}
+
+
+def one(name: str, motion: Motion) -> Recording:
+    planned = PLAN[name](motion)
+    assert planned is not None
+    (recording,) = planned
+    return recording
+
+
+@pytest.mark.parametrize("motion", [ONE_WAY, SPINNING], ids=["stopping", "spinning"])
+@pytest.mark.parametrize(("name", "brings"), BRINGS.items())
+def test_a_measurement_brings_what_it_is_named_for(name: str, brings: str, motion: Motion) -> None:
+    assert brings not in motion.provides
+    recording = one(name, motion)
+    assert brings in recording.motion.provides
+    assert PLAN[name](recording.motion) is None
+    assert recording.channels == (name == "raw channels")
+
+
+@pytest.mark.parametrize("name", [entry.name for entry in MENU])
+@pytest.mark.parametrize("motion", [ONE_WAY, BOTH_WAYS, SPINNING], ids=["stopping", "both ways", "spinning"])
+def test_a_planned_shaft_goes_on_from_where_it_stands_and_so_does_the_clock(name: str, motion: Motion) -> None:
+    for recording in PLAN[name](motion) or ():
+        plan = recording.motion
+        assert np.all(np.diff(plan.time_s) > 0.0)
+        assert np.max(np.abs(np.diff(plan.shaft_rad))) < 1.5 * np.max(np.abs(np.diff(motion.shaft_rad)))
+        np.testing.assert_array_equal(plan.shaft_rad[: len(motion)], motion.shaft_rad)
+        moved = np.diff(plan.shaft_rad) != 0.0
+        np.testing.assert_array_equal(np.sign(np.diff(plan.shaft_rad))[moved], plan.direction[1:][moved])
+        pace = np.diff(plan.shaft_rad) / np.diff(plan.time_s)
+        steady = (plan.speed_rad_s[1:] == plan.speed_rad_s[:-1]) & (plan.speed_rad_s[1:] != 0.0)
+        within = steady & (np.diff(plan.time_s) < 0.02)
+        np.testing.assert_allclose(pace[within], plan.speed_rad_s[1:][within], rtol=1e-6)
+
+
+def test_points_after_a_reversal_are_as_dense_as_said() -> None:
+    plan = one("denser points after a reversal", BOTH_WAYS).motion
+    steps = np.degrees(np.abs(np.diff(plan.shaft_rad[len(BOTH_WAYS) :])))
+    assert np.min(steps) == pytest.approx(FINEST_DEG[0], rel=1e-6)
+    assert np.max(steps) == pytest.approx(5.0, rel=0.01)
+    assert PLAN["denser points after a reversal"](ONE_WAY) is None
+    assert PLAN["denser points after a reversal"](SPINNING) is None
+
+
+def test_a_second_air_gap_weakens_the_field() -> None:
+    planned = PLAN["second air gap"](ONE_WAY)
+    assert planned is not None
+    near, far = planned
+    assert (near.field, near.distance) == (1.0, 1.0)
+    # Between a dipole's third power of the distance and none at all.
+    assert far.distance**-3 < far.field < 1.0
+
+
+def test_the_cheapest_that_is_enough_is_advised_and_a_poor_one_said_to_be() -> None:
+    cheap, strong = Option("cheap", "do this", 6.0, 1), Option("strong", "do that", 60.0, 2)
+    weak = Option("weak", "try this", 4.0, 1)
+    assert best([strong, cheap]) == cheap
+    assert best([weak, strong]) == strong
+    assert advice([cheap, strong]) == "do this (6 sigma)"
+    assert advice([weak]) == "try this (4.0 sigma, which may not be enough)"
+    nothing = "no further measurement of the menu parts them"
+    assert advice([replace(weak, sigma=2.9)]) == f"{nothing} (2.9 sigma at most)"
+    assert advice([]) == nothing
+
+
+def saturated(seed: int) -> Discovery:
+    chain = (
+        Chain()
+        .with_effect("offset", x_percent=0.6, y_percent=-0.4)
+        .with_effect("saturation", k_percent=0.6)
+        .with_effect("noise", rms_deg=0.02)
+    )
+    return explain(chain.simulate(ONE_WAY, seed=seed))
+
+
+def left(fit: Fit, sigma_rad: float) -> float:
+    r, _ = fit.whitened()
+    return float(r @ r) / sigma_rad**2
+
+
+@pytest.mark.parametrize("name", ["raw channels", "more turns"])
+def test_expected_separation_is_the_mean_of_what_noise_then_shows(name: str) -> None:
+    """Thirty noisy sweeps of the plan: the mean gain of the truth over its rival within three of its own sigma."""
+    found = saturated(3)
+    (cause,) = found.causes
+    assert set(cause.rivals) == {"magnet_harmonic"}
+    plan = PLAN[name](ONE_WAY)
+    assert plan is not None
+    told = separation_sigma(found.fit, cause.rivals["magnet_harmonic"], plan)
+    right, wrong = (expected(found.fit, rival, plan[0]) for rival in (found.fit, cause.rivals["magnet_harmonic"]))
+    rng, sigma, gains = np.random.default_rng(8), np.radians(0.02), []
+    for _ in range(30):
+        noisy = replace(
+            right.evidence,
+            measured=right.evidence.measured + sigma * rng.standard_normal(len(right.evidence)),
+            log_radius=None
+            if right.evidence.log_radius is None
+            else right.evidence.log_radius + sigma * rng.standard_normal(len(right.evidence)),
+        )
+        fits = [solve(evaluate(part.chain, part.free, noisy, part.setting)) for part in (right, wrong)]
+        gains.append(left(fits[1], sigma) - left(fits[0], sigma))
+    # The rival has one free parameter more, which takes one from its squares; the fitted noise is known to 5 %.
+    mean, spread = float(np.mean(gains)) + 1.0, 2.0 * max(told, 1.0) / np.sqrt(30.0)
+    assert mean == pytest.approx(told**2, abs=3.0 * spread, rel=0.1)
+
+
+def test_a_second_air_gap_parts_saturation_from_a_harmonic_of_the_magnet() -> None:
+    """By hand: fourth orders of 0.6 % saturation shrink with the square of the field, the magnet's by its distance."""
+    found = saturated(3)
+    planned = PLAN["second air gap"](ONE_WAY)
+    assert planned is not None
+    far = planned[1]
+    k = 0.01 * float(found.fit.chain.values["saturation"]["k_percent"])
+    rows = len(ONE_WAY)
+    apart = 0.25 * k * abs(far.field**2 - far.distance**-4)
+    # Amplitudes of two recordings of a common scale: each known to sqrt(2 / n), the difference shared between them.
+    by_hand = apart * np.sqrt(rows / 2.0) / np.radians(0.02) / np.hypot(1.0, far.distance**-4)
+    told = separation_sigma(found.fit, found.causes[0].rivals["magnet_harmonic"], planned)
+    assert told == pytest.approx(by_hand, rel=0.15)
+
+
+def test_what_is_told_apart_has_no_advice() -> None:
+    chain = Chain().with_effect("hysteresis", lag_deg=0.15, memory_deg=15.0).with_effect("noise", rms_deg=0.01)
+    dense = Protocol(turns=2, points=360, both_directions=True, channels=False).motion()
+    (cause,) = explain(chain.simulate(dense, seed=1)).causes
+    assert not cause.rivals
+    assert cause.options == ()

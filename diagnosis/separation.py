@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,9 @@ _FIELD_POWERS = {
     ("stray_field", "by_mT"): -1.0,
 }
 """Power of the magnet's field by which a parameter changes, all being counted in amplitudes of the channels."""
+
+_family = lru_cache(maxsize=2)(noise_family)
+"""A plan is asked of several rivals one after the other."""
 
 
 @dataclass(frozen=True)
@@ -167,7 +171,7 @@ def expected(fit: Fit, rival: Fit, recording: Recording) -> Fit:
     weight = fit.setting.radius_weight if fit.evidence.observables == 2 else 1.0
     setting = replace(
         fit.setting,
-        family=noise_family(n),
+        family=_family(n),
         radius_member=fit.setting.radius_member if fit.evidence.observables == 2 else fit.setting.member,
         radius_weight=weight if recording.channels else 0.0,
     )
@@ -225,6 +229,7 @@ def _projected(residual: Array, columns: Array) -> Array:
     """The residual (N,) less all that the columns (P, N) can do."""
     norm = np.linalg.norm(columns, axis=1)
     columns = columns[norm > 0.0] / norm[norm > 0.0, None]
-    _, size, right = np.linalg.svd(columns, full_matrices=False)
-    right = right[size > 1e-9 * size.max(initial=0.0)]
-    return np.asarray(residual - (residual @ right.T) @ right)
+    size, vectors = np.linalg.eigh(columns @ columns.T)
+    kept = size > 1e-12 * size.max(initial=0.0)
+    along = (vectors[:, kept] / size[kept]) @ (vectors[:, kept].T @ (columns @ residual))
+    return np.asarray(residual - along @ columns)

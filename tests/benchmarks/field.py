@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
-from tests.twin.geometries import by_magpylib, by_quadrature, one, random_designs
+from tests.twin.geometries import axis_distance, by_magpylib, by_quadrature, one, random_designs
 from twin.angles import Array
 from twin.magnet.field import field_mT
 from twin.magnet.magnet import Magnet
@@ -50,23 +51,25 @@ def one_vectorised_call(magnet: Magnet, placement: Placement, angles: Array) -> 
     )
 
 
-def differences(magnet: Magnet, placement: Placement, field: Array, angles: Array) -> tuple[float, float, float]:
-    """Largest |difference| over |B|: ours from magpylib, ours from a quadrature, magpylib from the quadrature.
+def differences(magnet: Magnet, placement: Placement, field: Array, angles: Array) -> Array:
+    """Largest |difference| over |B| (4,): of ours from magpylib, the same from 0.05 radii off the axis on, of ours from
 
-    Below 0.05 radii from the axis magpylib takes three terms of a series; the quadrature tells who is right there.
+    a quadrature, of magpylib from it. Nearer to the axis magpylib takes three terms of a series; the quadrature tells
+    who is right there.
     """
-    worst = np.zeros(3)
+    worst = np.zeros(4)
     for index, ours in enumerate(field):
-        design = one(magnet, index), one(placement, index)
-        theirs, summed = by_magpylib(*design, angles), by_quadrature(*design, angles)  # type: ignore[arg-type]
+        design: tuple[Any, Any] = one(magnet, index), one(placement, index)
+        theirs, summed = by_magpylib(*design, angles), by_quadrature(*design, angles)
         size = np.linalg.norm(summed, axis=0)
-        pairs = ((ours, theirs), (ours, summed), (theirs, summed))
-        worst = np.maximum(worst, [np.max(np.linalg.norm(a - b, axis=0) / size) for a, b in pairs])
-    return float(worst[0]), float(worst[1]), float(worst[2])
+        share = [np.linalg.norm(a - b, axis=0) / size for a, b in ((ours, theirs), (ours, summed), (theirs, summed))]
+        off = np.max(share[0], where=axis_distance(*design, angles) >= 0.05, initial=0.0)
+        worst = np.maximum(worst, [share[0].max(), off, share[1].max(), share[2].max()])
+    return worst
 
 
 def main() -> None:
-    """Print two lines a case: largest differences over 1,000 geometries, times over 10,000 designs x 360 angles."""
+    """Print three lines a case: largest differences over 1,000 geometries, times over 10,000 designs x 360 angles."""
     angles = np.linspace(0.0, 2.0 * np.pi, 360, endpoint=False)
     for name, options in CASES.items():
         magnet, placement = random_designs(np.random.default_rng(1), 1000, **options)
@@ -78,8 +81,8 @@ def main() -> None:
         fresh = best(lambda m=magnet, p=placement: field_mT(m, p, angles), 3)  # type: ignore[misc]
         theirs = best(lambda m=magnet, p=placement: one_vectorised_call(m, p, angles), 1)  # type: ignore[misc]
         print(
-            f"{name}: largest difference from magpylib {worst[0]:.1e}, from a quadrature {worst[1]:.1e} "
-            f"(magpylib's own from it {worst[2]:.1e})\n"
+            f"{name}: largest difference from magpylib {worst[0]:.1e}, {worst[1]:.1e} without the points within "
+            f"0.05 radii of the axis;\n    from a quadrature {worst[2]:.1e}, magpylib's own from it {worst[3]:.1e}\n"
             f"    {ours * 1e3:.1f} ms ({fresh * 1e3:.0f} ms into fresh memory) against {theirs:.2f} s: "
             f"{theirs / ours:.0f} times ({theirs / fresh:.0f} times)"
         )

@@ -33,23 +33,25 @@ def placed(**placement: float) -> Chain:
     return Chain(magnet=Assembly(Magnet(), Placement(**placement)))
 
 
-# The benchmark tests.benchmarks.field runs the same comparison over 1,000 geometries.
+# The benchmark tests.benchmarks.field runs the same comparison over 1,000 geometries. Nearer to the axis than 0.05
+# radii magpylib takes three terms of a series and is up to 6e-9 off: see the comparison with the sum below.
 @pytest.mark.parametrize(
-    ("shape", "shaft", "tilt", "limit"),
+    ("shape", "shaft", "tilt", "limit", "beyond"),
     [
-        ("cylinder", False, False, 1e-9),
-        # Nearer to the axis than 0.05 radii magpylib's own series of three terms is up to 6.4e-9 off: see below.
-        ("cylinder", True, False, 1e-8),
-        ("cylinder", True, True, 1e-6),
-        ("ring", False, False, 1e-9),
-        ("ring", True, True, 1e-6),
-        ("block", False, False, 1e-9),
-        ("block", True, True, 1e-6),
+        ("cylinder", False, False, 1e-9, 0.0),
+        ("cylinder", True, False, 1e-9, 0.05),
+        ("cylinder", True, True, 1e-9, 0.05),
+        ("cylinder", True, True, 1e-6, 0.0),
+        ("ring", False, False, 1e-9, 0.0),
+        ("ring", True, True, 1e-6, 0.0),
+        ("block", False, False, 1e-9, 0.0),
+        ("block", True, True, 1e-6, 0.0),
     ],
 )
-def test_agrees_with_magpylib_point_by_point(shape: str, shaft: bool, tilt: bool, limit: float) -> None:
+def test_agrees_with_magpylib_point_by_point(shape: str, shaft: bool, tilt: bool, limit: float, beyond: float) -> None:
     magnet, placement = random_designs(np.random.default_rng(11), 25, shape=shape, shaft=shaft, tilt=tilt)
-    assert largest_difference(magnet, placement, field_mT(magnet, placement, ANGLES), ANGLES) <= limit
+    field = field_mT(magnet, placement, ANGLES)
+    assert largest_difference(magnet, placement, field, ANGLES, beyond=beyond) <= limit
 
 
 # Untilted to the rounding of the sum, tilted to the interpolant's tolerance; narrow bores are left to magpylib's field.

@@ -1,4 +1,10 @@
-"""Twin files: a chain with its parameters as TOML, written whole and read back with every figure checked."""
+"""Twin files: a chain with its parameters as TOML, written whole and read back with every figure checked.
+
+``[effects.NAME]`` holds an effect's parameters. Where they are given, ``[magnet]`` and ``[magnet.placement]`` drive the
+channels by a computed field, ``[reference]`` (lines, interpolation, index_deg, has_index) makes the reference an
+incremental encoder, and ``[hardware]`` (field_mT), ``[hardware.disk]`` and ``[hardware.plate]`` set the scale of the
+signals in mT and uV.
+"""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.twin.geometries import by_quadrature, largest_difference, one, random_designs
+from tests.twin.geometries import by_magpylib, by_quadrature, largest_difference, one, random_designs
 from twin.chain import Chain
 from twin.errors import UserError
 from twin.files import from_dict, to_dict
@@ -142,6 +142,26 @@ def test_off_axis_error_goes_with_the_square_of_the_displacement() -> None:
     # The fourth-order term at 0.4 mm of a 3 mm radius is (0.13)^2 of the second: about 2 %.
     assert sizes[1] / sizes[0] == pytest.approx(4.0, rel=0.01)
     assert sizes[2] / sizes[1] == pytest.approx(4.0, rel=0.04)
+
+
+@pytest.mark.parametrize(
+    ("place", "second_deg"),
+    [
+        ({"magnet_x_mm": 0.5}, 0.0),
+        ({"sensor_x_mm": 0.1}, None),
+        ({"sensor_y_mm": 0.2}, None),
+        ({"sensor_x_mm": 0.4}, None),
+    ],
+)
+def test_harmonics_of_the_error_are_those_of_magpylibs_field(place: dict[str, float], second_deg: float | None) -> None:
+    angles = np.arange(72) * np.pi / 36.0
+    x, y, _ = by_magpylib(Magnet(), Placement(**place), angles)
+    error = np.angle(np.exp(1j * (np.arctan2(y, x) - angles)))
+    theirs = np.degrees(np.abs(np.fft.rfft(error))[:9] * 2.0 / angles.size)
+    # 6e-9 of the field, what magpylib is off next to the axis, is 4e-7 deg.
+    np.testing.assert_allclose(harmonics_deg(placed(**place))[1:], theirs[1:], atol=1e-6)
+    if second_deg is not None:
+        assert theirs[2] == pytest.approx(second_deg, abs=1e-9)
 
 
 def test_the_effect_is_the_field_of_the_default_magnet() -> None:

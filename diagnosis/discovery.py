@@ -152,6 +152,10 @@ def discover(
         # Rows weighed by their noise tell more than they told before.
         fit, keys, looked = _searched(fit, means, keys, step, sequence_mask)
     fit, entries, held = _prove(fit, means, keys)
+    if not sequence_found:
+        # Repeats that structure hid at first.
+        sequence_mask, sequence_found = _sequence(fit, sweep, candidates, step, "stale_frames", sequence_mask)
+        fit = _masked(fit, sequence_mask)
     glitch_mask, glitches = _sequence(fit, sweep, candidates, step, "bus_glitch", sequence_mask)
     masked = sequence_mask | glitch_mask
     _quantisation(fit, bits, step, values_found)

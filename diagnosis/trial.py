@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -103,8 +104,8 @@ def radius_as_left(fit: Fit) -> tuple[int, float]:
 def add(fit: Fit, candidate: Candidate) -> tuple[Fit, str]:
     """The joint fit with the candidate added, and the key it got."""
     name = candidate.effect.name
-    taken = sum(1 for key in fit.chain.values if base_name(key) == name)
-    key = name if taken == 0 else f"{name}#{taken + 1}"
+    further = (f"{name}#{number}" for number in itertools.count(2))
+    key = next(key for key in itertools.chain([name], further) if key not in fit.chain.values)
     chain = fit.chain.with_values({key: dict(candidate.effect.begin(candidate.values))})
     turns = int(fit.evidence.motion.turn.max(initial=0)) + 1
     free = free_of(candidate.effect, key, turns=turns, channels=fit.evidence.observables == 2)

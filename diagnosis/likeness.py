@@ -33,6 +33,8 @@ _CHUNK = 1_500_000
 _QUIETEST = 0.02
 """Least noise ahead of the stairs at any frequency, as a share of its mean."""
 _SMALLEST_RMS_RAD = 1e-6
+_LEAST_SPREAD = 1e-3
+"""Smallest spread that a statistic is credited with: any that is not projected away scatters more."""
 
 
 @dataclass(frozen=True)
@@ -210,10 +212,11 @@ class _Plan:
         yield "neighbouring readings are more alike", first
         yield "neighbouring readings are less alike", -first
         lags = [np.mean(z[:, lag:] * z[:, :-lag], axis=1) for lag in _LAGS if lag < n // 4]
-        yield "readings some rows apart are correlated", np.cbrt(sum((r**2 for r in lags), start=np.zeros(len(z))))
+        yield "readings some rows apart are correlated", _root(n * sum((r**2 for r in lags), start=np.zeros(len(z))))
         path = np.cumsum(z, axis=1)
         yield "the zero wanders or jumps along the record", np.log(np.ptp(path, axis=1))
-        yield "the turns' zeros scatter", _scatter(z, self.turn_starts)
+        if self.turn_starts.size > 1:
+            yield "the turns' zeros scatter", _scatter(z, self.turn_starts)
         loud = np.minimum(z * z, 9.0)
         loud -= np.mean(loud, axis=1, keepdims=True)
         yield "the scatter changes along the record", _scatter(loud, self.block_starts)
@@ -223,21 +226,21 @@ class _Plan:
         sums = self._binned(in_order)
         power = np.abs(np.fft.rfft(sums, axis=1)[:, 1 : _HIGHEST_ORDER + 1]) ** 2
         yield "an order of the turn stands out", np.log(np.max(power, axis=1))
-        coarse = _coarse(sums)
+        coarse, share = _coarse(sums), _COARSE / z.shape[1]
         counts = np.zeros(_BINS)
         counts[self.filled] = self.counts
         # Only pairs of readings: what a reading has in common with itself says nothing.
         fine = sums**2 - self._binned(in_order**2)
         yield "readings at one angle are alike", np.sum(fine / np.maximum(counts, 1.0), axis=1)
-        yield "the residual depends on the angle", np.cbrt(np.sum(coarse**2, axis=1))
+        yield "the residual depends on the angle", _root(np.sum(coarse**2, axis=1) * share)
         loud = np.minimum(in_order**2, 9.0)
         loud -= np.mean(loud, axis=1, keepdims=True)
         lines = np.abs(np.fft.rfft(self._binned(loud), axis=1)[:, 1:5]) ** 2
-        yield "the scatter depends on the angle", np.cbrt(np.sum(lines, axis=1))
+        yield "the scatter depends on the angle", _root(np.sum(lines, axis=1) / z.shape[1])
         for name, weight in self.weights.items():
             yield (
                 f"the residual depends on the {name}",
-                np.cbrt(np.sum(_coarse(self._binned(in_order * weight)) ** 2, axis=1)),
+                _root(share * np.sum(_coarse(self._binned(in_order * weight)) ** 2, axis=1)),
             )
             yield f"the scatter depends on the {name}", np.abs(loud @ weight)
 
@@ -252,10 +255,15 @@ def _coarse(sums: Array) -> Array:
     return np.asarray(sums.reshape(len(sums), _COARSE, -1).sum(axis=2))
 
 
+def _root(squares: Array) -> Array:
+    """Sums of squares made near to normal; those that the fit has left nothing of are all alike."""
+    return np.asarray(np.cbrt(1.0 + squares))
+
+
 def _scatter(rows: Array, starts: IntArray) -> Array:
-    """Cube root of the summed squares of the stretches' sums, each per reading."""
+    """Summed squares of the stretches' sums, each per reading."""
     lengths = np.diff(np.append(starts, rows.shape[1]))
-    return np.asarray(np.cbrt(np.sum(np.add.reduceat(rows, starts, axis=1) ** 2 / lengths, axis=1)))
+    return _root(np.sum(np.add.reduceat(rows, starts, axis=1) ** 2 / lengths, axis=1))
 
 
 def _standardised(table: Array) -> Array:
@@ -264,5 +272,5 @@ def _standardised(table: Array) -> Array:
     total, square = table.sum(axis=0), (table**2).sum(axis=0)
     mean = (total - table) / (count - 1)
     variance = (square - table**2) / (count - 1) - mean**2
-    floor = 1e-12 * np.mean(table**2, axis=0) + 1e-300
-    return np.asarray((table - mean) / np.sqrt(np.maximum(variance, floor)))
+    # What the fit's projection has taken away altogether differs by rounding only.
+    return np.asarray((table - mean) / np.sqrt(np.maximum(variance, _LEAST_SPREAD**2)))

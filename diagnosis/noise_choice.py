@@ -47,7 +47,9 @@ def radius_noise(fit: Fit) -> tuple[int, float] | None:
     aside = np.concatenate([np.stack([np.ones(len(motion)), *low]), locked_shapes(motion)])
     if fit.rows < 2 * len(aside):
         return None
-    score, variance = _scores(fit.cosine_residual[1], radius_to_cosine(fit.evidence, aside), fit.setting.family, fit.rows)
+    score, variance = _scores(
+        fit.cosine_residual[1], radius_to_cosine(fit.evidence, aside), fit.setting.family, fit.rows
+    )
     best = int(np.argmax(score))
     return best, float(variance[best])
 

@@ -87,7 +87,7 @@ def to_cosine(evidence: Evidence, values: Array) -> Array:
 
 
 def observables_to_cosine(evidence: Evidence, values: Array) -> Array:
-    """Observables (..., O, n) likewise; the scale is the angle's, for the radius need not be loud where the angle is."""
+    """Observables (..., O, n) likewise; the scale is the angle's: the radius need not be loud where the angle is."""
     out = values * evidence.usable
     out[..., 0, :] /= evidence.scale
     return _cosine(out)

@@ -12,7 +12,6 @@ import numpy as np
 from diagnosis.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, tidy
 from diagnosis.noise_choice import plausible_members, radius_noise
 from diagnosis.screening import Base, Candidate, log_probability
-from twin.catalogue import base_name
 from twin.chain import Chain
 from twin.effect import Effect
 

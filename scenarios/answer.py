@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.discovery import Discovery, Named, raw_residual
+from diagnosis.discovery import Discovery
 from diagnosis.joint_fit import Fit
+from diagnosis.named import Named
+from diagnosis.rows import raw_residual
 from diagnosis.separation import advice
 from scenarios.facts import facts
 from twin.angles import wrap_deg

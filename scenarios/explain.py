@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.discovery import Discovery, discover, senses_of_channels
+from diagnosis.discovery import Discovery, discover
 from diagnosis.fit import fit_baseline
+from diagnosis.start import senses_of_channels
 from diagnosis.stretches import searched_part
 from scenarios.answer import to_json
 from twin.catalogue import CATALOGUE

@@ -7,7 +7,8 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from diagnosis.discovery import Discovery, Named
+from diagnosis.discovery import Discovery
+from diagnosis.named import Named
 from scenarios import report_causes, report_pictures, report_tables
 from scenarios.facts import facts
 from scenarios.report_data import Readings, readings, two_ways

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.discovery import Discovery, Named
+from diagnosis.discovery import Discovery
+from diagnosis.named import Named
 from scenarios.report_data import Readings, binned, share_deg, unexplained_by
 from scenarios.report_pictures import ANGLE, angle_bins, ways
 from scenarios.svg import Axis, Layer, Plot

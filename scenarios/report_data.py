@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.discovery import Discovery, raw_residual
+from diagnosis.discovery import Discovery
 from diagnosis.linear import Linear
+from diagnosis.rows import raw_residual
 from scenarios.facts import angle_error_deg
 from twin.angles import TAU, Array, wrap
 from twin.effect import BoolArray

@@ -1,0 +1,75 @@
+"""Which causes stay: judged once more in the final fit, and proven on readings that no fit has seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.joint_fit import Fit, evaluate, solve
+from diagnosis.named import Named
+from diagnosis.proof import held_out_residuals, rms_deg
+from diagnosis.search import STAIRS_LOG_P, Cause, judge
+from diagnosis.trial import drop, settle
+from twin.angles import Array
+from twin.effect import Effect
+
+SLACK = 1.004
+
+
+def prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fit, list[Named], list[Array]]:
+    """Entries with their held-out figures; what gains nothing on readings it never saw is no cause."""
+    keys = list(keys)
+    while True:
+        causes = sorted((_judged(fit, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
+        use = fit.evidence.usable
+        ordered = [cause.key for cause in causes]
+        held = held_out_residuals(fit, ordered)
+        weighed = [rms_deg(residual / fit.evidence.scale, use) for residual in held]
+        idle = None
+        listed = float(np.log(0.01 / max(len(effects), 1)))
+        for place, key in enumerate(ordered):
+            if causes[place].log_p > listed:
+                # What was added after it has taken over what it was added for.
+                idle = key
+                break
+            if weighed[place + 1] < weighed[place]:
+                continue
+            # Not the last step: its turn may come only with what was added after it.
+            alone = held_out_residuals(fit, [*(k for k in ordered if k != key), key])
+            # The RMS counts correlated noise in full: a strong cause that leaves it as it is shows elsewhere.
+            slack = SLACK if causes[place].log_p < np.log(1e-10) else 1.0
+            before, after = (rms_deg(residual / fit.evidence.scale, use) for residual in alone[-2:])
+            if after >= slack * before:
+                idle = key
+                break
+        if idle is None:
+            break
+        fit, _ = settle(drop(fit, idle))
+        keys.remove(idle)
+    figures = [rms_deg(residual, use) for residual in held]
+    entries = [
+        Named(
+            (cause.key,),
+            cause.log_p,
+            cause.gain,
+            cause.rivals,
+            before_deg=figures[place],
+            after_deg=figures[place + 1],
+        )
+        for place, cause in enumerate(causes)
+    ]
+    return fit, entries, held
+
+
+def _judged(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:
+    """The cause as judged; a weak one on coloured noise also as judged without the output's stairs.
+
+    A slow noise shifts whole runs of readings against the stairs, which a cause may then seem to set right.
+    """
+    cause = judge(fit, key, effects, keys)
+    if cause.log_p < STAIRS_LOG_P or fit.setting.member == 0 or "output_quantisation" not in fit.chain.values:
+        return cause
+    chain = fit.chain.without("output_quantisation")
+    smooth, _ = settle(solve(evaluate(chain, fit.free, fit.evidence, fit.setting)))
+    return max(cause, judge(smooth, key, effects, keys), key=lambda one: one.log_p)

@@ -66,7 +66,7 @@ def _scores(residual: Array, columns: Array, family: NoiseFamily, rows: int) -> 
         along = white @ residual
         left = float(residual @ (weight * residual) - along @ np.linalg.solve(gram, along))
         _, log_det = np.linalg.slogdet(gram)
-        score[member] = -0.5 * (dof * np.log(max(left, 1e-300)) + family.log_det[member] + log_det)
+        score[member] = -0.5 * (dof * np.log(max(left, 1e-300)) + family.cost[member] + log_det)
         variance[member] = left / dof
     return score, variance
 

@@ -33,6 +33,10 @@ _PINK = ((0.5, 0.0), (1.0, 0.0), (1.0, 0.3), (1.0, 0.6))
 """Exponent of 1/f noise, and the share of white noise beside it (that of an output's grid, say)."""
 
 
+COLOUR_ODDS = 3.0
+"""Log odds of white noise against each coloured one before a reading is seen: twenty to one."""
+
+
 @dataclass(frozen=True, eq=False)
 class NoiseFamily:
     """Spectra (families, n) of unit variance over the cosine coefficients, and what to call each."""
@@ -47,9 +51,13 @@ class NoiseFamily:
         return np.asarray(1.0 / self.spectra)
 
     @property
-    def log_det(self) -> Array:
-        """Log determinant (families,) of each member's covariance."""
-        return np.asarray(np.sum(np.log(self.spectra), axis=1))
+    def cost(self) -> Array:
+        """What each member (families,) adds to minus twice the log likelihood before any residual is seen.
+
+        The log determinant of its covariance, and the prior odds: colour is what readings must show.
+        """
+        odds = np.array([0.0 if label == "white" else 2.0 * COLOUR_ODDS for label in self.labels])
+        return np.asarray(np.sum(np.log(self.spectra), axis=1) + odds)
 
 
 def noise_family(n: int) -> NoiseFamily:

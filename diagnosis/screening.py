@@ -82,7 +82,7 @@ class Base:
             log_det = 2.0 * float(np.sum(np.log(np.abs(np.diag(triangle)[kept])))) + 2.0 * float(
                 np.sum(np.log(scale[scale > 0]))
             )
-            likelihood.append(-0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + family.log_det[member] + log_det))
+            likelihood.append(-0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + family.cost[member] + log_det))
             residuals.append(r)
             rows.append(q)
         return cls(fit, np.stack(roots), residuals, rows, np.array(likelihood), dof)

@@ -178,6 +178,10 @@ def parameters(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
             spread = 360.0 * half_s * _T95 * deviation.get((key, effect.line.param), 0.0)
             half = float(np.hypot(0.5 * (told["high"] - told["low"]), spread))
             told |= {"value": value, "low": value - half, "high": value + half}
+        if fit.evidence.observables == 1:
+            for name, (low, high) in effect.angle_only(values).items():
+                told, value = answer[name + suffix], float(values[name])
+                told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
         for name, (value, low, high, unit) in effect.derived(values).items():
             answer[name + suffix] = {"value": value, "low": low, "high": high, "unit": unit}
         for name, (low, high) in cause.intervals.items():

@@ -98,6 +98,10 @@ def _nothing_derived(values: Parameters) -> Mapping[str, tuple[float, float, flo
     return {}
 
 
+def _all_told(values: Parameters) -> Mapping[str, tuple[float, float]]:
+    return {}
+
+
 @dataclass(frozen=True, kw_only=True)
 class Effect:
     """One physical effect: what it does, what it needs to be seen, and where its definition comes from.
@@ -110,6 +114,7 @@ class Effect:
     ``begin``     parameters of a first-order fit -> those that an exact fit sets out from.
     ``line``      for sinusoids: the shape parameter that is found by a spectrum.
     ``derived``   parameters -> further figures to report: value, low, high, unit.
+    ``angle_only`` parameters -> low and high of those that an angle alone leaves open, as others make up for them.
     ``spread``    for the footprint "spread": angle (n,), parameters -> added variance of the angle [rad^2].
     ``attainable`` for the footprint "values": parameters -> all angles [rad] a reading can take.
     ``marks``     for the footprint "sequence": see :class:`Marks`.
@@ -133,6 +138,7 @@ class Effect:
     begin: Callable[[Parameters], Parameters] = field(default=_as_they_are)
     line: Line | None = None
     derived: Callable[[Parameters], Mapping[str, tuple[float, float, float, str]]] = field(default=_nothing_derived)
+    angle_only: Callable[[Parameters], Mapping[str, tuple[float, float]]] = field(default=_all_told)
     spread: Callable[[Array, Parameters], Array] | None = None
     attainable: Callable[[Parameters], Array] | None = None
     marks: Marks | None = None

@@ -133,6 +133,7 @@ def draw(
         "floor_deg": float(np.hypot(np.std(readings.noise_deg), step / np.sqrt(12.0))),
         "output_bits": bits,
         "baseline": own.parameters(),
+        "frame": _frame(own, motion, columns),
         "protocol": chosen,
         "channels": channels,
         "bench": bench,
@@ -145,6 +146,16 @@ def draw(
         "repeats": motion.repeats,
     }
     return Hidden(columns, truth)
+
+
+def _frame(own: baselines.Baseline, motion: Motion, columns: dict[str, Array]) -> dict[str, float]:
+    """What the truth needs to be told in another convention: the scale, the first reading, the record's length."""
+    return {
+        "amplitude_x": own.amplitude_x,
+        "first_time_s": float(motion.time_s[0]),
+        "first_reference_deg": float(columns["reference_deg"][0]),
+        "duration_s": float(np.ptp(motion.time_s)),
+    }
 
 
 def suitable_protocols(labels: Sequence[str], structure: str | None = None) -> tuple[str, ...]:

@@ -13,6 +13,8 @@ from twin.motion import Motion
 HARMONICS = 6
 BITS = 14
 """Word length that the bit's number is counted in (the paper's converter)."""
+WORDS = (12, 16)
+"""Shortest and longest word that the converter of an angle sensor is taken to have."""
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
@@ -36,11 +38,17 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 
 def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
-    """The bit's number in a 14-bit code whose full scale lies between 1 and 2 amplitudes."""
+    """The bit's number in a 14-bit code whose full scale lies between 1 and 2 amplitudes.
+
+    Neither is known: low and high are those of words of 12 to 16 bits, full scale from 1 to 4 amplitudes.
+    """
     step = 0.01 * float(np.ravel(values["step_percent"])[0])
-    bit = float(np.floor(np.log2(step * 2.0 ** (BITS - 1)))) if step > 0 else 0.0
-    # Full scale is not known to better than the factor of two that one bit is.
-    return {"bit": (bit, bit - 1.0, bit + 1.0, "bit")}
+    if step <= 0.0:
+        return {"bit": (0.0, 0.0, 0.0, "bit")}
+    # Full scale is step 2^halvings.
+    halvings = float(np.ceil(-np.log2(step)))
+    low, high = (bits - 1.0 - halvings for bits in WORDS)
+    return {"bit": (max(BITS - 1.0 - halvings, 0.0), max(low - 1.0, 0.0), max(high, 0.0), "bit")}
 
 
 def within(step_percent: Array) -> BoolArray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from twin.angles import TAU, Array, channels_of, radians
@@ -27,6 +29,22 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 def begin(values: Parameters) -> Parameters:
     """The delay spelt out, so that a fit can move it."""
     return {**values, "delay_us": values["delay_us"] or 1e6 / (6.0 * values["frequency_Hz"])}
+
+
+def angle_only(values: Parameters) -> Mapping[str, tuple[float, float]]:
+    """All that amplitude, delay and phase may be for the same angle, the delay up to half a period.
+
+    The angle shows amplitude times sin(pi f delay) and phase plus 180 f delay alone.
+    """
+    frequency, phase = float(values["frequency_Hz"]), float(values["phase_deg"])
+    share = 1e-6 * float(values["delay_us"]) * frequency or 1.0 / 6.0
+    visible_percent = abs(float(values["amplitude_percent"]) * float(np.sin(np.pi * share)))
+    visible_deg = phase + 180.0 * share
+    return {
+        "amplitude_percent": (visible_percent, REFERENCE_RIPPLE.params["amplitude_percent"].upper),
+        "delay_us": (0.0, 0.5e6 / frequency),
+        "phase_deg": (visible_deg - 90.0, visible_deg),
+    }
 
 
 def limits(motion: Motion) -> tuple[float, float]:
@@ -62,6 +80,7 @@ REFERENCE_RIPPLE = Effect(
     forward=forward,
     channel_shapes=("delay_us",),
     begin=begin,
+    angle_only=angle_only,
     needs=frozenset({"time_s", "moving shaft"}),
     line=Line(param="frequency_Hz", clock="time", limits=limits, within=within),
     source="ratio of the signal to the converter's reference; paper, Eq. 3, for a periodic fluctuation",

@@ -55,22 +55,24 @@ def likeness(fit: Fit, *, rng: np.random.Generator, colour: Colour | None = None
     None where there are too few readings, or nothing but digits is left.
     """
     use = fit.evidence.usable
-    if fit.rows < FEWEST_ROWS + len(fit.free) or np.mean(fit.residual[0][use] ** 2) < _SMALLEST_RMS_RAD**2:
+    left = float(np.mean(fit.residual[0][use] ** 2))
+    # Less than the noise ahead of the stairs: no reading lies near an edge, and only the file's digits are left.
+    if fit.rows < FEWEST_ROWS + len(fit.free) or left < max(_SMALLEST_RMS_RAD, 0.9 * fit.setting.blur) ** 2:
         return None
     colour = colour or colour_of(fit)
     plan = _Plan.of(fit)
     whiten = 1.0 / np.sqrt(colour.spectrum)
-    names, measured = plan.statistics(to_rows(fit.cosine_residual[:1] * whiten))
-    table = [measured]
     refit = _Refit.of(fit)
+    names, measured = plan.statistics(to_rows(refit.settled(fit.cosine_residual[0])[None] * whiten))
+    table = [measured]
     ahead, sigma = _ahead_of_stairs(fit, colour)
-    left = SWEEPS
-    while left > 0:
-        count = min(left, max(_CHUNK // len(use), 1))
+    to_come = SWEEPS
+    while to_come > 0:
+        count = min(to_come, max(_CHUNK // len(use), 1))
         noise = sigma * to_rows(np.sqrt(ahead) * rng.standard_normal((count, len(use)))) * fit.evidence.scale
         residual = to_cosine(fit.evidence, _behind_stairs(fit, noise))
         table.append(plan.statistics(to_rows(refit(residual, rng) * whiten))[1])
-        left -= count
+        to_come -= count
     scores = _standardised(np.concatenate(table))
     together = scores.max(axis=1)
     worst = int(np.argmax(scores[0]))
@@ -122,6 +124,7 @@ class _Refit:
     rows: Array
     elsewhere: Array
     pull: Array
+    behind: Array
 
     @classmethod
     def of(cls, fit: Fit) -> _Refit:
@@ -137,7 +140,11 @@ class _Refit:
         values, vectors = np.linalg.eigh(square)
         elsewhere = sigma * vectors * np.sqrt(np.maximum(values, 0.0))
         pull = right[:, n * fit.evidence.observables :] @ fit.prior_residual
-        return cls(root_weights(fit.setting, fit.evidence.observables)[0], right[:, :n], elsewhere, pull)
+        return cls(root_weights(fit.setting, fit.evidence.observables)[0], right[:, :n], elsewhere, pull, right @ r)
+
+    def settled(self, coefficients: Array) -> Array:
+        """The fit's own cosine coefficients (n,) after the last fraction of a step that its solver has left undone."""
+        return np.asarray(coefficients - (self.behind @ self.rows) / self.root)
 
     def __call__(self, coefficients: Array, rng: np.random.Generator) -> Array:
         """Cosine coefficients (count, n) of residuals before the fit -> after it."""

@@ -17,6 +17,7 @@ from twin.motion import Motion
 SPIKE_SIGMA = 7.0
 LONGEST_SPIKE = 4
 FEWEST_WORDS = 40
+_T95 = 1.959964
 
 
 def robust_rms(values: Array) -> float:
@@ -157,15 +158,18 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
         shape = effect.spread(angle, {name: effect.params[name].typical})[use]
         if np.ptp(shape) < 1e-3 * np.mean(shape):
             continue
-        gain, ratios = _variance_gain(square, shape / np.mean(shape), expected)
-        if ratios[1] <= 0.0:
+        gain, ratio = _variance_gain(square, shape / np.mean(shape), expected)
+        if ratio <= 0.0:
             continue
-        # A ratio is the mean added variance over the constant part.
+        (base, added), deviation = _variances(square, expected, shape / np.mean(shape), ratio)
+        # The fit has taken its share out of the mean square.
+        unit = sigma2 * fit.rows / max(fit.rows - len(fit.free), 1) / float(np.mean(shape))
+        typical = effect.params[name].typical
         low, value, high = (
-            float(effect.params[name].typical * np.sqrt(sigma2 * ratio / (1.0 + ratio) / np.mean(shape)))
-            for ratio in ratios
+            typical * float(np.sqrt(max(v, 0.0) * unit))
+            for v in (added - _T95 * deviation, added, added + _T95 * deviation)
         )
-        full = effect.spread(angle, {name: value}) + sigma2 / (1.0 + ratios[1])
+        full = effect.spread(angle, {name: value}) + sigma2 * base
         log_p = _half_chi_square(gain)
         found.append(SpreadFinding(effect.name, {name: value}, gain, log_p, full, {name: (low, high)}))
     return found
@@ -198,11 +202,8 @@ def _expected_variance(fit: Fit, square: Array) -> Array:
     return min(profiles, key=lambda v: square.size * np.log(np.mean(square / v)) + np.sum(np.log(v)))
 
 
-def _variance_gain(square: Array, shape: Array, expected: Array) -> tuple[float, tuple[float, float, float]]:
-    """Twice the gain of variance ``expected + ratio shape`` over ``expected`` for squares (n,); the ratio.
-
-    The ratio comes as its 95 % interval around the best one: low, best, high.
-    """
+def _variance_gain(square: Array, shape: Array, expected: Array) -> tuple[float, float]:
+    """Twice the gain of variance ``expected + ratio shape`` over ``expected`` for squares (n,), and the best ratio."""
     n = square.size
     flat = n * np.log(np.mean(square / expected)) + np.sum(np.log(expected))
     ratios = np.concatenate([[0.0], np.geomspace(0.02, 200.0, 160)])
@@ -211,9 +212,25 @@ def _variance_gain(square: Array, shape: Array, expected: Array) -> tuple[float,
         profile = expected + ratio * shape
         gains[place] = flat - (n * np.log(np.mean(square / profile)) + np.sum(np.log(profile)))
     best = int(np.argmax(gains))
-    inside = np.flatnonzero(gains > gains[best] - 3.84)
-    low, high = ratios[max(inside[0] - 1, 0)], ratios[min(inside[-1] + 1, ratios.size - 1)]
-    return float(gains[best]), (float(low), float(ratios[best]), float(high))
+    return float(gains[best]), float(ratios[best])
+
+
+def _variances(square: Array, expected: Array, shape: Array, ratio: float) -> tuple[tuple[float, float], float]:
+    """Maximum likelihood of variance ``base expected + added shape`` from a first ratio: (base, added), sd of added.
+
+    Both are free: where the shape is all there is, what it adds is known as well as the variance itself, no better.
+    """
+    parts = np.stack([expected, shape])
+    found = np.array([1.0, ratio]) * float(np.mean(square / (expected + ratio * shape)))
+    inverse = np.eye(2)
+    for _ in range(4):
+        variance = found @ parts
+        relative = parts / variance
+        # Fisher scoring: the information of a square about its variance is half of one over the variance squared.
+        inverse = np.linalg.inv(0.5 * relative @ relative.T)
+        step = inverse @ (0.5 * relative @ (square / variance - 1.0))
+        found = np.maximum(found + step, 0.1 * found)
+    return (float(found[0]), float(found[1])), float(np.sqrt(inverse[1, 1]))
 
 
 def _half_chi_square(gain: float) -> float:

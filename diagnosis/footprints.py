@@ -221,15 +221,15 @@ def _variances(square: Array, expected: Array, shape: Array, ratio: float) -> tu
     Both are free: where the shape is all there is, what it adds is known as well as the variance itself, no better.
     """
     parts = np.stack([expected, shape])
-    found = np.array([1.0, ratio]) * float(np.mean(square / (expected + ratio * shape)))
-    inverse = np.eye(2)
+    found: Array = np.array([1.0, ratio]) * float(np.mean(square / (expected + ratio * shape)))
+    inverse: Array = np.eye(2)
     for _ in range(4):
         variance = found @ parts
         relative = parts / variance
         # Fisher scoring: the information of a square about its variance is half of one over the variance squared.
-        inverse = np.linalg.inv(0.5 * relative @ relative.T)
+        inverse = np.asarray(np.linalg.inv(0.5 * relative @ relative.T), dtype=np.float64)
         step = inverse @ (0.5 * relative @ (square / variance - 1.0))
-        found = np.maximum(found + step, 0.1 * found)
+        found = np.asarray(np.maximum(found + step, 0.1 * found), dtype=np.float64)
     return (float(found[0]), float(found[1])), float(np.sqrt(inverse[1, 1]))
 
 

@@ -56,12 +56,14 @@ def draw(
     protocol: str | None = None,
     structure: str | None = None,
     remeasured: Motion | None = None,
+    strength_deg: float | None = None,
 ) -> Hidden:
     """A sweep with the named causes, and with a structure outside the catalogue if one is asked for.
 
     `protocol` is one of protocols.PROTOCOLS, "+channels" or "-channels" appended to force vx, vy in
     or out; without it one is drawn that shows all the causes. ValueError where none does. `remeasured`
     is another motion of the same device and bench: its sweep has every column that belongs to it.
+    `strength_deg` is given to every cause in place of one drawn from the range; all else stays as it is.
     """
     labels = sorted(causes)
     key = "+".join([*labels, structure or "", bench, strength])
@@ -99,7 +101,7 @@ def draw(
     channels = bool(forced) or (channels and not barred)
     setting = Setting(motion, own, noise, _bits(rng, bench, noise, labels), strength == "weak")
 
-    injected = [_settle(name, stream(seed, key, "cause", name), setting) for name in labels]
+    injected = [_settle(name, stream(seed, key, "cause", name), setting, strength_deg) for name in labels]
     if structure is not None:
         one = stream(seed, key, "structure", structure)
         size = float(one.uniform(*STRENGTHS[strength]))
@@ -178,8 +180,9 @@ def demanded(labels: Sequence[str], structure: str | None, bench: str) -> Demand
     return demands
 
 
-def _settle(name: str, rng: np.random.Generator, setting: Setting) -> Injected:
-    return CAUSES[name].plan(rng, float(rng.uniform(*STRENGTHS["weak" if setting.weak else "normal"])), setting)
+def _settle(name: str, rng: np.random.Generator, setting: Setting, strength_deg: float | None) -> Injected:
+    drawn = float(rng.uniform(*STRENGTHS["weak" if setting.weak else "normal"]))
+    return CAUSES[name].plan(rng, drawn if strength_deg is None else strength_deg, setting)
 
 
 def _bits(rng: np.random.Generator, bench: str, noise: Noise, labels: Sequence[str]) -> int:

@@ -19,12 +19,14 @@ from diagnosis.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve
 from diagnosis.linear import Linear
 from diagnosis.menu import MENU, Measurement, Recording
 from diagnosis.noise_model import noise_family, to_cosine
+from diagnosis.stretches import stretches
 from twin.angles import Array
 from twin.catalogue import base_name, find
 from twin.chain import Chain
 
 ENOUGH_SIGMA = 5.0
 LEAST_SIGMA = 3.0
+MOST_PLANNED = 4_000
 _ITERATIONS = 4
 _FIELD_POWERS = {
     ("saturation", "k_percent"): 2.0,
@@ -63,11 +65,15 @@ def options(fit: Fit, rivals: Mapping[str, Fit], menu: Sequence[Measurement] = M
     """What each measurement of the menu would part a fit's cause by from its rivals' fits; cheapest first."""
     if not rivals:
         return ()
-    found = []
+    motion, found = fit.evidence.motion, []
+    # A long record is planned on a part of itself: the square of the separation grows with the readings.
+    part = motion.part(stretches(motion, MOST_PLANNED)) if len(motion) > MOST_PLANNED else motion
+    longer = float(np.sqrt(len(motion) / len(part)))
     for entry in sorted(menu, key=lambda entry: entry.cost):
-        planned = entry.plan(fit.evidence.motion)
+        planned = entry.plan(part)
         if planned is not None and _worth_it(fit, rivals, planned):
-            found.append(Option(entry.name, entry.words, _least_sigma(fit, rivals, planned), entry.cost))
+            sigma = longer * _least_sigma(fit, rivals, planned)
+            found.append(Option(entry.name, entry.words, sigma, entry.cost))
     return tuple(found)
 
 

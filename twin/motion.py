@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -94,6 +94,18 @@ class Motion:
             else np.unique(turn, return_inverse=True)[1].astype(np.int64),
             temperature_c=temperature,
             columns=frozenset(columns),
+        )
+
+    def part(self, rows: IntArray) -> Motion:
+        """The motion with these rows (m,) alone, turns numbered anew."""
+        return replace(
+            self,
+            shaft_rad=self.shaft_rad[rows],
+            time_s=self.time_s[rows],
+            direction=self.direction[rows],
+            speed_rad_s=self.speed_rad_s[rows],
+            turn=np.unique(self.turn[rows], return_inverse=True)[1].astype(np.int64),
+            temperature_c=self.temperature_c[rows],
         )
 
     @cached_property

@@ -49,11 +49,15 @@ def test_every_rms_of_an_averaged_sweep_is_that_of_single_readings() -> None:
 def test_a_long_recording_is_searched_in_stretches_without_a_jump_of_the_shaft() -> None:
     sweep = _sweep(10 * LONGEST, 360)
     part = searched_part(sweep)
-    assert 0.9 * LONGEST < len(part) <= LONGEST
+    # Each stretch gives up half a turn at most for its beginning to follow on.
+    assert LONGEST - STRETCHES * 181 <= len(part) <= LONGEST
     assert part.rows == len(sweep)
     assert np.count_nonzero(np.diff(part.numbers) != 1) == STRETCHES - 1
     assert part.numbers[0] == 1
-    assert part.numbers[-1] == len(sweep)
+    assert part.numbers[-1] > 0.95 * len(sweep)
+    # The one reversal is in it: what follows a reversal tells a lag from a slip.
+    reversal = len(sweep) // 2
+    assert {reversal - 50, reversal, reversal + 50} <= set(part.numbers.tolist())
     assert {1.0, -1.0} == set(part.motion().direction)
     step = np.abs(np.diff(part.motion().shaft_rad))
     assert np.degrees(step.max()) < 2.0 + 1e-9

@@ -49,8 +49,8 @@ def test_every_rms_of_an_averaged_sweep_is_that_of_single_readings() -> None:
 def test_a_long_recording_is_searched_in_stretches_without_a_jump_of_the_shaft() -> None:
     sweep = _sweep(10 * LONGEST, 360)
     part = searched_part(sweep)
-    # Each stretch gives up half a turn at most for its beginning to follow on.
-    assert LONGEST - STRETCHES * 181 <= len(part) <= LONGEST
+    # Each stretch gives up as much as half a turn for its beginning to follow on, those about the reversal more.
+    assert 0.8 * LONGEST < len(part) <= LONGEST
     assert part.rows == len(sweep)
     assert np.count_nonzero(np.diff(part.numbers) != 1) == STRETCHES - 1
     assert part.numbers[0] == 1

@@ -21,6 +21,7 @@ from diagnosis.rounds import searched, trusting
 from diagnosis.rows import mask_spikes, raw_residual, scaled, without_rows
 from diagnosis.search import ALPHA, SWAP_MARGIN
 from diagnosis.separation import options
+from diagnosis.stairs import with_slopes
 from diagnosis.start import first_fit, mirrored
 from diagnosis.trial import likelihood, settle
 from twin.angles import TAU
@@ -126,6 +127,7 @@ def discover(
     glitch_mask, glitches = _sequence(fit, sweep, candidates, step, "bus_glitch", sequence_mask)
     masked = sequence_mask | glitch_mask
     quantisation(fit, bits, step, values_found)
+    fit = with_slopes(fit)
     everything = merge([*entries, *values_found, *sequence_found, *glitches, *spread_found])
     use = fit.evidence.usable
     everything = [of_single_readings(with_figures(c, fit, held, use), evidence) for c in everything]

@@ -40,7 +40,8 @@ class Setting:
 
     ``radius_weight`` multiplies the radius' whitened squares; ``radius_member`` is its own family member. ``members``
     are the family members that the noise may be; none given: all of them. ``radius_trusted``: what the radius does at
-    some angles is taken for a cause's work, never for noise.
+    some angles is taken for a cause's work, never for noise. ``slopes``: those of blurred edges count, see
+    :class:`~diagnosis.linear.Linear`.
     """
 
     family: NoiseFamily
@@ -50,6 +51,7 @@ class Setting:
     radius_weight: float = 0.0
     members: tuple[int, ...] = ()
     radius_trusted: bool = False
+    slopes: bool = False
 
     @property
     def plausible(self) -> tuple[int, ...]:
@@ -115,7 +117,8 @@ def root_weights(setting: Setting, observables: int, member: int | None = None) 
 
 def evaluate(chain: Chain, free: tuple[Free, ...], evidence: Evidence, setting: Setting) -> Fit:
     """Residual and Jacobian of a chain at its present parameters."""
-    linear = Linear(chain, evidence.motion, blur=setting.blur, observables=evidence.observables)
+    observables = evidence.observables
+    linear = Linear(chain, evidence.motion, blur=setting.blur, observables=observables, slopes=setting.slopes)
     residual = np.empty((evidence.observables, len(evidence)))
     residual[0] = wrap(evidence.measured - linear.angle)
     nuisance: list[Array] = []

@@ -45,10 +45,13 @@ class Linear:
     ``angle`` (n,) [rad] is the expected reading. With ``blur`` [rad] the stairs of quantisers are averaged over noise
     of that size, which is what readings do; ``stair_variance`` (n,) [rad^2] is then the variance of a reading, which
     depends on where it lies between two steps. ``log_radius`` (n,) is the log of the channels' amplitude.
+    ``slopes``: edges that noise has blurred have slopes; else a stuck bit passes changes on as they are, which leads a
+    search well from afar, but not to the very optimum.
     """
 
-    def __init__(self, chain: Chain, recorded: Motion, *, blur: float, observables: int) -> None:
+    def __init__(self, chain: Chain, recorded: Motion, *, blur: float, observables: int, slopes: bool = False) -> None:
         self.chain = chain
+        self.slopes = slopes
         self.motion = chain.shaft(recorded)
         self.observables = observables
         self._order = {effect.name: place for place, effect in enumerate(chain.effects)}
@@ -93,7 +96,7 @@ class Linear:
             else:
                 points.append((place, Insertion(step.after, sense)))
                 # A quantiser's edges are no slopes: it passes changes on as they are.
-                if step.effect.acts_on != "angle" and not _is_staircase(step.effect):
+                if step.effect.acts_on != "angle" and (self.slopes or not is_staircase(step.effect)):
                     sense = _through(step.effect, step.before, self.motion, step.values, sense)
         points.append((-1.0, Insertion(np.broadcast_to(self.motion.shaft_rad, (2, n)), sense)))
         self._points = sorted(points, key=lambda item: item[0])
@@ -153,7 +156,8 @@ class Linear:
             zeros[turn] += step
             moved[name] = zeros
         else:
-            if name == "order" or name == "frequency_Hz":
+            if effect.line is not None and name == effect.line.param:
+                # Over the whole clock a small change of a frequency turns the phase by much.
                 step = 1e-7 * max(abs(float(values[name])), 1.0)
             moved[name] = float(values[name]) + step
         return self.change(effect, values, moved) / step
@@ -209,7 +213,8 @@ def _through(effect: Effect, before: Array, motion: Motion, values: Parameters, 
     return out
 
 
-def _is_staircase(effect: Effect) -> bool:
+def is_staircase(effect: Effect) -> bool:
+    """Whether an effect acts on the channels in steps."""
     return effect.line is not None and effect.line.clock == "channels"
 
 

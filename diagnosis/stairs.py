@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis import footprints
-from diagnosis.joint_fit import Fit, evaluate
-from diagnosis.linear import Linear
+from diagnosis.joint_fit import Fit, evaluate, solve
+from diagnosis.linear import Linear, is_staircase
 from twin.angles import Array, wrap
 from twin.chain import Chain
 
@@ -36,3 +36,15 @@ def without_stairs(fit: Fit, key: str) -> Array:
     """Angle residual (n,) [rad] against the smooth angle ahead of one effect's stairs."""
     smooth = Linear(fit.chain.without(key), fit.evidence.motion, blur=fit.setting.blur, observables=1)
     return wrap(fit.evidence.measured - smooth.angle)
+
+
+def with_slopes(fit: Fit) -> Fit:
+    """The fit at the very optimum of a blurred staircase in the channels, its slopes counted; else as it is.
+
+    The bit's edges move with offset and gain: left out, the bit's weight stops short of its best by more than its
+    interval.
+    """
+    active = list(fit.chain.active("channels"))
+    if not any(is_staircase(effect) and float(own.get("blur_percent", 0.0)) > 0.0 for _, effect, own in active):
+        return fit
+    return solve(evaluate(fit.chain, fit.free, fit.evidence, replace(fit.setting, slopes=True)), iterations=30)

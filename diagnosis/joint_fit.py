@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.evidence import Evidence
 from diagnosis.linear import Linear
-from diagnosis.noise_model import NoiseFamily, observables_to_cosine
+from diagnosis.noise_model import NoiseFamily, observables_to_cosine, to_rows
 from twin.angles import Array, wrap
 from twin.catalogue import find
 from twin.chain import Chain
@@ -99,11 +99,23 @@ class Fit:
         u, s, _ = np.linalg.svd(j / scale[:, None], full_matrices=False)
         good = s > 1e-9 * s[0]
         inverse = (u[:, good] / s[good] ** 2) @ u[:, good].T
-        if not good.all():
-            inverse += np.diag(np.where(np.abs(u[:, ~good]).max(axis=1) > 0.1, np.inf, 0.0))
         dof = max(self.rows * self.evidence.observables - int(good.sum()), 1)
-        variance = float(r @ r) / dof
-        return np.asarray(variance * inverse / np.outer(scale, scale))
+        if self.setting.slopes:
+            # At the edges of stairs a reading is either above or below: just where it tells most it scatters most.
+            rows = inverse @ (self._in_rows(j) * self._in_rows(r) / scale[:, None])
+            spread = rows @ rows.T * (self.rows * self.evidence.observables / dof)
+        else:
+            spread = inverse * (float(r @ r) / dof)
+        if not good.all():
+            spread = spread + np.diag(np.where(np.abs(u[:, ~good]).max(axis=1) > 0.1, np.inf, 0.0))
+        return np.asarray(spread / np.outer(scale, scale))
+
+    def _in_rows(self, whitened: Array) -> Array:
+        """Whitened coefficients (..., N) of the observables back over the rows; the priors' stay as they are."""
+        size = self.evidence.observables * len(self.evidence)
+        shape = (*whitened.shape[:-1], self.evidence.observables, len(self.evidence))
+        rows = to_rows(whitened[..., :size].reshape(shape)).reshape(*whitened.shape[:-1], size)
+        return np.concatenate([rows, whitened[..., size:]], axis=-1)
 
 
 def root_weights(setting: Setting, observables: int, member: int | None = None) -> Array:

@@ -14,6 +14,9 @@ from twin.angles import Array, wrap
 from twin.effect import BoolArray
 from twin.sweep import Sweep
 
+FALLEN_OUT = 0.2
+"""Change of the log of the channels' amplitude that no cause makes."""
+
 
 def mask_spikes(fit: Fit, step: float, also: BoolArray | None = None) -> tuple[Evidence, Fit]:
     """The fit without the rows that stand out alone; fitted anew where there are any, until the set is stable."""
@@ -21,9 +24,11 @@ def mask_spikes(fit: Fit, step: float, also: BoolArray | None = None) -> tuple[E
         mask, _sigma = footprints.spikes(fit.residual[0], fit.evidence.motion, max(step, stair_step(fit.chain, step)))
         usable = ~mask & fit.evidence.sure
         if fit.evidence.observables == 2:
-            # Channels that fall out for a reading say nothing true about the radius.
-            radius = fit.residual[1] - np.median(fit.residual[1])
-            usable &= np.abs(radius) < 10.0 * max(footprints.robust_rms(radius), 1e-6)
+            # Channels that fall out say nothing true about the radius: alone for a reading, or by more than any cause
+            # would change it.
+            radius = fit.residual[1]
+            alone, _ = footprints.spikes(radius, fit.evidence.motion, 0.0)
+            usable &= ~alone & (np.abs(radius - np.median(radius)) < FALLEN_OUT)
         if also is not None:
             usable &= ~rows_of(fit.evidence, also)
         if np.array_equal(usable, fit.evidence.usable):

@@ -27,7 +27,7 @@ def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> li
     open_to = [e for e in effects if e.name not in present or e.name in REPEATABLE or e.name.startswith("unnamed")]
     found = screen(base, open_to)
     found += multiples(base, effects, keys)
-    return sorted(found, key=lambda c: c.log_p + handicap(c.effect))
+    return sorted(found, key=lambda c: c.log_p + handicap(c.effect, base.fit))
 
 
 def multiples(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
@@ -63,15 +63,15 @@ def best_addition(
     fit: Fit, base: Base, effects: Sequence[Effect], keys: Sequence[str], threshold: float
 ) -> Step | None:
     """The joint fit with the best significant candidate, contenders compared by exact fits; None if there is none."""
-    ranked = [c for c in candidates(base, effects, keys) if c.log_p + handicap(c.effect) < threshold]
+    ranked = [c for c in candidates(base, effects, keys) if c.log_p + handicap(c.effect, base.fit) < threshold]
     if not ranked:
         return None
-    top = ranked[0].log_p + handicap(ranked[0].effect)
-    near = [c for c in ranked if c.log_p + handicap(c.effect) < top + max(8.0, -0.1 * top)][:5]
+    top = ranked[0].log_p + handicap(ranked[0].effect, fit)
+    near = [c for c in ranked if c.log_p + handicap(c.effect, base.fit) < top + max(8.0, -0.1 * top)][:5]
     trials = [Trial.of(fit, c) for c in near]
     # All are judged by the same noises: those that any of them leaves.
     members = tuple(sorted(set().union(*(t.members for t in trials))))
-    judged = [(t.log_p(fit, members, base.dof) + handicap(t.candidate.effect), k) for k, t in enumerate(trials)]
+    judged = [(t.log_p(fit, members, base.dof) + handicap(t.candidate.effect, fit), k) for k, t in enumerate(trials)]
     score, place = min(judged)
     if score > threshold:
         return None
@@ -81,16 +81,16 @@ def best_addition(
         trial.fit,
         {trial.key: list(fair.values())},
         degrees(chosen.effect, chosen.terms),
-        float(np.log(chosen.looks)) + handicap(chosen.effect),
+        float(np.log(chosen.looks)) + handicap(chosen.effect, fit),
     )
 
 
 def best_together(
     fit: Fit, base: Base, effects: Sequence[Effect], keys: Sequence[str], threshold: float
 ) -> Step | None:
-    """Two or three causes that together explain what none of them does alone; None if there are none.
+    """One to three causes that together explain what none of them does alone; None if there are none.
 
-    Structure left by several causes passes for coloured noise to each of them. So they are looked for as if the noise
+    One: where weights of coloured noise lead its fit astray. Structure left by several causes passes for coloured noise to each of them. So they are looked for as if the noise
     were white, one after the other, and then judged together with the noise free to be what it is; that there are
     many such sets to choose from is paid for.
     """
@@ -109,8 +109,6 @@ def best_together(
         added.update(step.added)
         terms, log_looks = terms + step.terms, log_looks + step.log_looks
         trial, white = settle(step.fit)
-        if depth == 0:
-            continue
         joint, _ = settle(solve(evaluate(trial.chain, trial.free, fit.evidence, fit.setting)))
         members = tuple(sorted({*fit.setting.plausible, *joint.setting.plausible}))
         gain = 2.0 * (likelihood(joint, members) - likelihood(fit, members))

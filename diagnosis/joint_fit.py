@@ -40,7 +40,8 @@ class Setting:
 
     ``radius_weight`` multiplies the radius' whitened squares; ``radius_member`` is its own family member. ``members``
     are the family members that the noise may be; none given: all of them. ``radius_trusted``: what the radius does at
-    some angles is taken for a cause's work, never for noise. ``slopes``: those of blurred edges count, see
+    some angles is taken for a cause's work, never for noise. ``coarse``: stairs
+    make most of the spread. ``slopes``: those of blurred edges count, see
     :class:`~diagnosis.linear.Linear`.
     """
 
@@ -51,6 +52,7 @@ class Setting:
     radius_weight: float = 0.0
     members: tuple[int, ...] = ()
     radius_trusted: bool = False
+    coarse: bool = False
     slopes: bool = False
 
     @property

@@ -9,12 +9,14 @@ import numpy as np
 from diagnosis.joint_fit import Fit, evaluate, solve
 from diagnosis.named import Named
 from diagnosis.proof import held_out_residuals, rms_deg
-from diagnosis.search import STAIRS_LOG_P, Cause, judge
+from diagnosis.search import Cause, judge
 from diagnosis.trial import drop, settle
 from twin.angles import Array
 from twin.effect import Effect
 
 SLACK = 1.004
+WEAK_LOG_P = -40.0
+"""Log probability above which a cause may owe its gain to how the noise and the stairs are modelled."""
 
 
 def prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fit, list[Named], list[Array]]:
@@ -68,7 +70,7 @@ def _judged(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) 
     A slow noise shifts whole runs of readings against the stairs, which a cause may then seem to set right.
     """
     cause = judge(fit, key, effects, keys)
-    if cause.log_p < STAIRS_LOG_P or fit.setting.member == 0 or "output_quantisation" not in fit.chain.values:
+    if cause.log_p < WEAK_LOG_P or fit.setting.member == 0 or "output_quantisation" not in fit.chain.values:
         return cause
     chain = fit.chain.without("output_quantisation")
     smooth, _ = settle(solve(evaluate(chain, fit.free, fit.evidence, fit.setting)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -32,8 +32,11 @@ SWAP_MARGIN = 2.0
 """What a swap must gain (in nats): less is noise."""
 SAME_FIT = 9.0
 """Difference of twice the log likelihood, three sigma, below which two causes cannot be told apart."""
-STAIRS_LOG_P = -40.0
+STAIRS_LOG_P = -20.0
+"""Log probability that a cause must fall below beside coarse stairs."""
 MOST_CAUSES = 8
+MOST_IN_PLACE = 2
+"""So many named causes are tried in the place of one shape without a name."""
 SMALLEST_RMS_RAD = 1e-6
 """Residual RMS below which nothing is searched for: 6e-5 deg, less than a step of a 22-bit word."""
 
@@ -69,8 +72,9 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
     """
     effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
     threshold = float(np.log(alpha / max(len(effects), 1)))
-    if stairs_rule(fit):
-        # Stairs alias into lines and steps that no smooth model of them takes out: only what is beyond doubt counts.
+    fit = replace(fit, setting=replace(fit.setting, coarse=stairs_rule(fit)))
+    if fit.setting.coarse:
+        # No smooth model of coarse stairs takes all of them out: only what is beyond doubt counts.
         threshold = min(threshold, STAIRS_LOG_P)
     keys = list(keys)
     contenders: dict[str, list[Effect]] = {}
@@ -91,6 +95,8 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
         fit, base = settle(fit)
         # Pruned or swapped out at once: offered again, it would only go round.
         barred.update(base_name(key) for key in step.added if key not in keys)
+    for key in [k for k in keys if base_name(k).startswith("unnamed")]:
+        fit, keys = in_its_place(fit, key, effects, keys, threshold)
     return Found(fit, tuple(keys), len(effects))
 
 
@@ -123,28 +129,59 @@ def improve(
             own = screen_one(base, effect)
             looks = own.looks if own is not None else 1.0
             log_p = judged_p(gain, terms, base.dof, looks)
-            if log_p + handicap(effect) > threshold:
+            if log_p + handicap(effect, fit) > threshold:
                 fit, keys, changed = without, others, True
                 continue
             # First order undervalues a large gain, of the cause itself as of its rivals: like is held against like.
             own_first = own.log_p if own is not None else log_p
-            score = max(log_p, own_first) + handicap(effect)
+            score = max(log_p, own_first) + handicap(effect, fit)
             ranked = candidates(base, contenders.get(key, effects), others)
             # The zeros of the turns cost a scatter, not a coefficient each: first order undervalues them.
             for rival in [*ranked[:3], *(c for c in ranked[3:] if c.effect.roles("per turn"))]:
-                if rival.effect.name == effect.name or rival.log_p + handicap(rival.effect) > score + 8.0:
+                if rival.effect.name == effect.name or rival.log_p + handicap(rival.effect, fit) > score + 8.0:
                     continue
                 trial = Trial.of(removed, rival)
                 members = tuple(sorted({*plausible_members(fit), *trial.members}))
                 own_gain = 2.0 * (likelihood(fit, members) - likelihood(without, members))
                 own_p = judged_p(own_gain, terms, base.dof, looks)
-                lead = own_p + handicap(effect) - trial.log_p(without, members, base.dof) - handicap(rival.effect)
+                lead = (
+                    own_p
+                    + handicap(effect, fit)
+                    - trial.log_p(without, members, base.dof)
+                    - handicap(rival.effect, fit)
+                )
                 if lead > SWAP_MARGIN:
                     contenders[trial.key] = contenders.get(key, list(effects))
                     fit, keys, changed = trial.fit, [*others, trial.key], True
                     break
         if not changed:
             break
+    return fit, keys
+
+
+def in_its_place(
+    fit: Fit, key: str, effects: Sequence[Effect], keys: list[str], threshold: float
+) -> tuple[Fit, list[str]]:
+    """The fit with several named causes in the place of one shape without a name, where they explain as much."""
+    named = [e for e in effects if not e.name.startswith("unnamed")]
+    without, base = settle(drop(fit, key))
+    effect = find(key, fit.chain.effects)
+    trial, others = without, [k for k in keys if k != key]
+    added: list[str] = []
+    terms, log_looks = 0, 0.0
+    for _ in range(MOST_IN_PLACE):
+        step = best_addition(trial, base, named, [*others, *added], threshold)
+        if step is None:
+            return fit, keys
+        added += step.added
+        terms, log_looks = terms + step.terms, log_looks + step.log_looks
+        trial, base = settle(step.fit)
+        members = tuple(sorted({*fit.setting.plausible, *trial.setting.plausible}))
+        before = likelihood(without, members)
+        own = 2.0 * (likelihood(fit, members) - before)
+        own_p = judged_p(own, degrees(effect, len(without.linear.terms(effect))), base.dof, 1.0) + handicap(effect, fit)
+        if judged_p(2.0 * (likelihood(trial, members) - before), terms, base.dof, 1.0) + log_looks < own_p:
+            return trial, [*others, *added]
     return fit, keys
 
 
@@ -163,19 +200,21 @@ def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) ->
     looks = own.looks if own is not None else 1.0
     log_p = judged_p(gain, terms, base.dof, looks)
     rivals: dict[str, Fit] = {}
+    # What a fit's stairs leave of themselves favours now one smooth shape, now another.
+    same = SAME_FIT * (4.0 if fit.setting.coarse else 1.0)
     if not effect.name.startswith("unnamed"):
         present = {base_name(k) for k in keys}
         for other in effects:
             if other.name == effect.name or other.name in present or other.name.startswith("unnamed"):
                 continue
             rival = screen_one(base, other)
-            if rival is None or rival.gain < 0.3 * min(gain, own.gain if own is not None else gain) - SAME_FIT:
+            if rival is None or rival.gain < 0.3 * min(gain, own.gain if own is not None else gain) - same:
                 continue
             trial, _ = add(removed, rival)
             rival_gain = 2.0 * (likelihood(trial) - before)
             if other.roles("per turn"):
                 # A step between two turns is a special case of a zero for each turn: what fits counts, not its price.
                 rival_gain = max(rival_gain, rival.gain)
-            if rival_gain > gain - SAME_FIT:
+            if rival_gain > gain - same:
                 rivals[other.name] = trial
     return Cause(key, gain, log_p, rivals)

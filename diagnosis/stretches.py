@@ -15,7 +15,7 @@ STRETCHES = 12
 
 
 def searched_part(sweep: Sweep) -> Sweep:
-    """The sweep, or where it is too long to be searched in full twelve stretches of it, evenly spaced over the record."""
+    """The sweep, or where it is too long to be searched in full twelve stretches of it, spread over the record."""
     motion = sweep.motion()
     block = block_length(motion)
     if len(sweep) <= LONGEST * block:

@@ -17,6 +17,9 @@ from twin.effect import Effect
 
 HANDICAP = 6.0
 """What a shape without a name must gain (in nats) beyond one with a name."""
+ALIASED = 20.0
+"""What an effect must gain beyond the others where coarse stairs may pass for it."""
+MOST_SHAPES = 20
 
 
 def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
@@ -147,9 +150,18 @@ class Trial:
         return judged_p(gain, terms, dof, self.candidate.looks)
 
 
-def handicap(effect: Effect) -> float:
-    """What an effect without a name has to gain beyond the others."""
-    if effect.name == "unnamed_tone":
-        # On a shaft that steps evenly a tone in time is an order too: the order is the plainer description.
-        return HANDICAP + 2.0
-    return HANDICAP if effect.name.startswith("unnamed") else 0.0
+def handicap(effect: Effect, fit: Fit) -> float:
+    """What an effect has to gain beyond the others: without a name, or of the kind that coarse stairs pass for."""
+    extra = 0.0
+    if fit.setting.coarse and _aliased(effect, fit):
+        extra = ALIASED
+    if not effect.name.startswith("unnamed"):
+        return extra
+    # On a shaft that steps evenly a tone in time is an order too: the order is the plainer description.
+    return extra + HANDICAP + (2.0 if effect.name == "unnamed_tone" else 0.0)
+
+
+def _aliased(effect: Effect, fit: Fit) -> bool:
+    """Whether an effect has so many shapes, lines and places, that stairs' own pattern resembles one of them."""
+    many = effect.line is not None or effect.name.startswith("unnamed")
+    return many or len(effect.shapes(fit.linear.motion)) > MOST_SHAPES

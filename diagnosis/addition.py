@@ -10,8 +10,8 @@ import numpy as np
 from diagnosis.joint_fit import Fit, evaluate, solve
 from diagnosis.noise_model import NoiseFamily
 from diagnosis.screening import Base, Candidate, screen, screen_one
-from diagnosis.trial import Trial, degrees, handicap, judged_p, likelihood, settle
-from twin.catalogue import base_name
+from diagnosis.trial import SWAP_MARGIN, Trial, degrees, handicap, judged_p, likelihood, settle, take_out
+from twin.catalogue import base_name, find
 from twin.effect import Effect
 
 FAIR_SHARE = 0.15
@@ -108,11 +108,31 @@ def best_together(
             return None
         added.update(step.added)
         terms, log_looks = terms + step.terms, log_looks + step.log_looks
-        trial, white = settle(step.fit)
-        joint, _ = settle(solve(evaluate(trial.chain, trial.free, fit.evidence, fit.setting)))
+        trial, white = settle(retuned(step.fit, keys))
+        # White at first: by another weight it might be led astray again.
+        joint, _ = settle(solve(evaluate(trial.chain, trial.free, fit.evidence, replace(fit.setting, member=0))))
         members = tuple(sorted({*fit.setting.plausible, *joint.setting.plausible}))
         gain = 2.0 * (likelihood(joint, members) - likelihood(fit, members))
         choices = depth * float(np.log(max(len(effects), 1)))
         if judged_p(gain, terms, base.dof, 1.0) + log_looks + choices < threshold:
             return Step(joint, added, terms, log_looks)
     return None
+
+
+def retuned(fit: Fit, keys: Sequence[str]) -> Fit:
+    """The fit with each stuck bit among the keys found afresh, where that fits better.
+
+    Its edges are so narrow that a weight found before the rest was known holds on to the wrong ones.
+    """
+    for key in keys:
+        effect = find(key, fit.chain.effects)
+        if effect.line is None or effect.line.clock != "channels":
+            continue
+        removed = take_out(fit, key)
+        again = screen_one(Base.of(removed), effect)
+        if again is None:
+            continue
+        trial = Trial.of(removed, again)
+        if likelihood(trial.fit, fit.setting.plausible) > likelihood(fit) + SWAP_MARGIN:
+            fit = trial.fit
+    return fit

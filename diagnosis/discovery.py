@@ -19,11 +19,11 @@ from diagnosis.proven import prove
 from diagnosis.quantisers import quantisation, with_stairs
 from diagnosis.rounds import searched, trusting
 from diagnosis.rows import mask_spikes, raw_residual, scaled, without_rows
-from diagnosis.search import ALPHA, SWAP_MARGIN
+from diagnosis.search import ALPHA
 from diagnosis.separation import options
 from diagnosis.stairs import with_slopes
 from diagnosis.start import first_fit, mirrored
-from diagnosis.trial import likelihood, settle
+from diagnosis.trial import SWAP_MARGIN, likelihood, settle
 from twin.angles import TAU
 from twin.catalogue import CATALOGUE
 from twin.chain import Chain

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from diagnosis.addition import best_addition, best_together, candidates
+from diagnosis.addition import best_addition, best_together, candidates, retuned
 from diagnosis.footprints import stairs_rule
 from diagnosis.joint_fit import Fit
 from diagnosis.noise_choice import plausible_members
 from diagnosis.screening import Base, screen_one
 from diagnosis.trial import (
+    SWAP_MARGIN,
     Trial,
     add,
     degrees,
@@ -28,8 +29,6 @@ from twin.effect import Effect
 
 ALPHA = 0.003
 """Family-wise probability of a false alarm above which nothing is added."""
-SWAP_MARGIN = 2.0
-"""What a swap must gain (in nats): less is noise."""
 SAME_FIT = 9.0
 """Difference of twice the log likelihood, three sigma, below which two causes cannot be told apart."""
 STAIRS_LOG_P = -20.0
@@ -115,6 +114,7 @@ def improve(
     """Prune what no longer pays, then try every swap with what contended for its place; repeat while all changes."""
     for _ in range(3):
         changed = False
+        fit = retuned(fit, keys)
         for key in list(keys):
             if key not in keys or len(keys) < 2:
                 continue

@@ -17,6 +17,8 @@ from twin.effect import Effect
 
 HANDICAP = 6.0
 """What a shape without a name must gain (in nats) beyond one with a name."""
+SWAP_MARGIN = 2.0
+"""What a swap must gain (in nats): less is noise."""
 ALIASED = 20.0
 """What an effect must gain beyond the others where coarse stairs may pass for it."""
 MOST_SHAPES = 20

@@ -90,9 +90,9 @@ def best_together(
 ) -> Step | None:
     """One to three causes that together explain what none of them does alone; None if there are none.
 
-    One: where weights of coloured noise lead its fit astray. Structure left by several causes passes for coloured noise to each of them. So they are looked for as if the noise
-    were white, one after the other, and then judged together with the noise free to be what it is; that there are
-    many such sets to choose from is paid for.
+    One, where the weights of coloured noise lead its fit astray. Several, because what they leave passes for coloured
+    noise to each of them: so they are looked for as if the noise were white, one after the other, and then judged
+    together with the noise free to be what it is. That there are many such sets to choose from is paid for.
     """
     if base.member == 0:
         return None

@@ -165,5 +165,5 @@ def handicap(effect: Effect, fit: Fit) -> float:
 
 def _aliased(effect: Effect, fit: Fit) -> bool:
     """Whether an effect has so many shapes, lines and places, that stairs' own pattern resembles one of them."""
-    many = effect.line is not None or effect.name.startswith("unnamed")
-    return many or len(effect.shapes(fit.linear.motion)) > MOST_SHAPES
+    any_order = effect.line is not None or "order" in effect.params or effect.name.startswith("unnamed")
+    return any_order or len(effect.shapes(fit.linear.motion)) > MOST_SHAPES

@@ -27,7 +27,7 @@ from diagnosis.trial import (
 from twin.catalogue import base_name, find
 from twin.effect import Effect
 
-ALPHA = 0.003
+ALPHA = 0.001
 """Family-wise probability of a false alarm above which nothing is added."""
 SAME_FIT = 9.0
 """Difference of twice the log likelihood, three sigma, below which two causes cannot be told apart."""

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from . import confusion, coverage, power
-from .generator import draw
-from .study import DEFAULT_ANSWERER, load
+from tests.benchmarks import confusion, power
+from tests.hidden import coverage
+from tests.hidden.generator import draw
+from tests.hidden.study import DEFAULT_ANSWERER, load
 
 RARE = 1e-3
 FIRST_SEED = 8400

@@ -1,6 +1,6 @@
 """The smallest amplitude of a cause that is found half the time, against the limit of a matched test.
 
-    python -m tests.hidden.power -o power.json --plot power.svg
+    python -m tests.benchmarks.power -o power.json --plot power.svg
 
 Every draw has a bench of its own (baseline, noise, points), so the ladder of amplitudes is laid in units of that
 draw's own limit. The limit is that of a test which knows the cause's shape and the noise: the cause's signature with
@@ -24,11 +24,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from .generator import draw
-from .motion import Array
-from .scoring import named
-from .streams import derived_seed
-from .study import DEFAULT_ANSWERER, ONE_THREAD, load
+from tests.hidden.generator import draw
+from tests.hidden.motion import Array
+from tests.hidden.scoring import named
+from tests.hidden.streams import derived_seed
+from tests.hidden.study import DEFAULT_ANSWERER, ONE_THREAD, load
 
 FIRST_DEG = 0.05
 """Strength at which a draw's clearance is taken: signatures are proportional to it."""
@@ -233,7 +233,7 @@ def plot(powers: Sequence[Power], shots: Sequence[Shot], path: Path) -> None:
 
 def parser() -> argparse.ArgumentParser:
     """Options of the command."""
-    made = argparse.ArgumentParser(prog="python -m tests.hidden.power", description=__doc__.splitlines()[0])
+    made = argparse.ArgumentParser(prog="python -m tests.benchmarks.power", description=__doc__.splitlines()[0])
     made.add_argument("--only", default="", help="comma-separated causes to keep")
     made.add_argument("--draws", type=int, default=12, help="draws of each rung")
     made.add_argument("--rungs", type=int, default=6)

@@ -1,6 +1,6 @@
 """The confusion matrix of one or several studies, as picture and table.
 
-    python -m tests.hidden.confusion study1.json study2.json -o confusion.svg --table confusion.md
+    python -m tests.benchmarks.confusion study1.json study2.json -o confusion.svg --table confusion.md
 
 A row for everything that was hidden, a column for everything that was named. Each hidden cause counts once: where its
 own name was given, else where the name of an entry was given that says it cannot be told from it, else where a name
@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from .catalogue import CAUSES
+from tests.hidden.catalogue import CAUSES
 
 Kind = Literal["named", "not told apart", "wrong", "missed"]
 KINDS: tuple[Kind, ...] = ("named", "not told apart", "missed", "wrong")
@@ -168,7 +168,7 @@ def plot(matrix: Confusion, path: Path) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    made = argparse.ArgumentParser(prog="python -m tests.hidden.confusion", description=__doc__.splitlines()[0])
+    made = argparse.ArgumentParser(prog="python -m tests.benchmarks.confusion", description=__doc__.splitlines()[0])
     made.add_argument("studies", nargs="+", type=Path, help="JSON files of tests.hidden.study")
     made.add_argument("-o", "--output", type=Path, help="picture: .svg, .png or .pdf")
     made.add_argument("--table", type=Path, help="the same as a Markdown table")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from diagnosis.addition import best_addition, best_together, candidates, retuned
+from diagnosis.addition import FAIR_SHARE, best_addition, best_together, candidates, retuned
 from diagnosis.footprints import stairs_rule
 from diagnosis.joint_fit import Fit
 from diagnosis.noise_choice import plausible_members
@@ -162,12 +162,16 @@ def improve(
 def in_its_place(
     fit: Fit, key: str, effects: Sequence[Effect], keys: list[str], threshold: float
 ) -> tuple[Fit, list[str]]:
-    """The fit with several named causes in the place of one shape without a name, where they explain as much."""
+    """The fit with several named causes in the place of one shape without a name, where they explain as much.
+
+    Each has to do a fair share of it: any shape can be had from a cause that is near to it and another's small help.
+    """
     named = [e for e in effects if not e.name.startswith("unnamed")]
     without, base = settle(drop(fit, key))
     effect = find(key, fit.chain.effects)
     trial, others = without, [k for k in keys if k != key]
     added: list[str] = []
+    gains = [0.0]
     terms, log_looks = 0, 0.0
     for _ in range(MOST_IN_PLACE):
         step = best_addition(trial, base, named, [*others, *added], threshold)
@@ -180,7 +184,9 @@ def in_its_place(
         before = likelihood(without, members)
         own = 2.0 * (likelihood(fit, members) - before)
         own_p = judged_p(own, degrees(effect, len(without.linear.terms(effect))), base.dof, 1.0) + handicap(effect, fit)
-        if judged_p(2.0 * (likelihood(trial, members) - before), terms, base.dof, 1.0) + log_looks < own_p:
+        gains.append(2.0 * (likelihood(trial, members) - before))
+        fair = min(np.diff(gains)) > FAIR_SHARE * gains[-1]
+        if fair and judged_p(gains[-1], terms, base.dof, 1.0) + log_looks < own_p:
             return trial, [*others, *added]
     return fit, keys
 

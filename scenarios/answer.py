@@ -161,6 +161,9 @@ def parameters(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
                 continue
             value = float(values[name])
             half = _T95 * deviation.get((key, name), 0.0)
+            if param.role == "phase":
+                # Of a phase no less can be known than nothing.
+                half = min(half, 180.0)
             answer[name + suffix] = {"value": value, "low": value - half, "high": value + half, "unit": param.unit}
             if name == "time_s" and (key, name) not in deviation and name in effect.zoomed:
                 # A step's instant lies between two readings.

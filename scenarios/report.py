@@ -58,8 +58,8 @@ def _headline(answer: Mapping[str, Any]) -> str:
         ("times closer on readings it never saw", number(answer["extended"]["gain"]), ""),
         ("noise floor", number(answer["noise_floor_deg"]), "deg"),
     ]
-    sentence = f"Verdict: {answer['verdict']}{told}. {verdict_words(answer)}"
-    return f'<p class="verdict">{escape(sentence)}</p>{_cards(cards)}'
+    verdict = f"Verdict: {answer['verdict']}{told}."
+    return f'<p class="verdict">{escape(verdict)}</p><p>{escape(verdict_words(answer))}</p>{_cards(cards)}'
 
 
 def _cards(cards: list[tuple[str, str, str]]) -> str:

@@ -103,7 +103,10 @@ def measured(label: str) -> bool:
 
 def chance(hits: int, total: int, share: float = 0.95) -> float:
     """Probability of so few hits or fewer if each comes with this probability."""
-    return sum(math.comb(total, k) * share**k * (1.0 - share) ** (total - k) for k in range(hits + 1))
+    log = math.log
+    ways = (math.lgamma(total + 1) - math.lgamma(k + 1) - math.lgamma(total - k + 1) for k in range(hits + 1))
+    terms = (math.exp(w + k * log(share) + (total - k) * log(1.0 - share)) for k, w in enumerate(ways))
+    return min(sum(terms), 1.0)
 
 
 def counted(records: Iterable[Mapping[str, bool]]) -> dict[str, tuple[int, int]]:

@@ -211,11 +211,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     only = frozenset(one.strip() for one in options.only.split(",") if one.strip())
     todo = [job for group in groups for job in jobs(group, draws=options.draws, seed=options.seed, only=only)]
     results = run(todo, answerer=options.answerer, processes=options.jobs, console=console)
-    for group in groups:
-        print_group(console, group, [result for result in results if result.job.group == group])
-    intervals = [result.intervals for result in results if result.verdict == "right"]
-    if any(intervals):
-        console.print(coverage_table(intervals))
     if options.output is not None:
         record = {
             "answerer": options.answerer,
@@ -225,6 +220,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             "results": [result.record() for result in results],
         }
         options.output.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    for group in groups:
+        print_group(console, group, [result for result in results if result.job.group == group])
+    intervals = [result.intervals for result in results if result.verdict == "right"]
+    if any(intervals):
+        console.print(coverage_table(intervals))
     return 0
 
 

@@ -78,6 +78,7 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
     keys = list(keys)
     contenders: dict[str, list[Effect]] = {}
     barred: set[str] = set()
+    seen: set[frozenset[str]] = set()
     fit, base = settle(fit)
     if keys:
         fit, keys = improve(fit, effects, keys, threshold, contenders)
@@ -93,7 +94,12 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
         fit, keys = improve(fit, effects, [*keys, *step.added], threshold, contenders)
         fit, base = settle(fit)
         # Pruned or swapped out at once: offered again, it would only go round.
-        barred.update(base_name(key) for key in step.added if key not in keys)
+        idle = {base_name(key) for key in step.added if key not in keys}
+        barred |= idle
+        if not idle and frozenset(keys) in seen:
+            # Two causes that take each other's place in turns.
+            break
+        seen.add(frozenset(keys))
     for key in [k for k in keys if base_name(k).startswith("unnamed")]:
         fit, keys = in_its_place(fit, key, effects, keys, threshold)
     return Found(fit, tuple(keys), len(effects))

@@ -15,8 +15,6 @@ from twin.angles import Array
 from twin.effect import Effect
 
 SLACK = 1.004
-WEAK_LOG_P = -40.0
-"""Log probability above which a cause may owe its gain to how the noise and the stairs are modelled."""
 
 
 def prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fit, list[Named], list[Array]]:
@@ -65,12 +63,12 @@ def prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fit
 
 
 def _judged(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:
-    """The cause as judged; a weak one on coloured noise also as judged without the output's stairs.
+    """The cause as judged; on coloured noise also as judged without the output's stairs.
 
     A slow noise shifts whole runs of readings against the stairs, which a cause may then seem to set right.
     """
     cause = judge(fit, key, effects, keys)
-    if cause.log_p < WEAK_LOG_P or fit.setting.member == 0 or "output_quantisation" not in fit.chain.values:
+    if fit.setting.member == 0 or "output_quantisation" not in fit.chain.values:
         return cause
     chain = fit.chain.without("output_quantisation")
     smooth, _ = settle(solve(evaluate(chain, fit.free, fit.evidence, fit.setting)))

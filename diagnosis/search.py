@@ -13,6 +13,7 @@ from diagnosis.joint_fit import Fit
 from diagnosis.noise_choice import plausible_members
 from diagnosis.screening import Base, screen_one
 from diagnosis.trial import (
+    HANDICAP,
     SWAP_MARGIN,
     Trial,
     add,
@@ -85,8 +86,8 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
         fit, base = settle(fit)
     while len(keys) < MOST_CAUSES and _stands_out(fit):
         offered = [e for e in effects if e.name not in barred]
-        step = best_addition(fit, base, offered, keys, threshold)
-        step = step or best_together(fit, base, offered, keys, threshold)
+        level = beside(keys, threshold)
+        step = best_addition(fit, base, offered, keys, level) or best_together(fit, base, offered, keys, level)
         if step is None:
             break
         contenders.update({key: list(others) for key, others in step.added.items()})
@@ -103,6 +104,14 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
     for key in [k for k in keys if base_name(k).startswith("unnamed")]:
         fit, keys = in_its_place(fit, key, effects, keys, threshold)
     return Found(fit, tuple(keys), len(effects))
+
+
+def beside(keys: Sequence[str], threshold: float) -> float:
+    """The log probability to fall below, lower beside a shape without a name.
+
+    Such a shape describes something only nearly, and what it leaves may pass for a weak cause.
+    """
+    return threshold - (HANDICAP if any(base_name(key).startswith("unnamed") for key in keys) else 0.0)
 
 
 def _stands_out(fit: Fit) -> bool:
@@ -135,7 +144,7 @@ def improve(
             own = screen_one(base, effect)
             looks = own.looks if own is not None else 1.0
             log_p = judged_p(gain, terms, base.dof, looks)
-            if log_p + handicap(effect, fit) > threshold:
+            if log_p + handicap(effect, fit) > beside(others, threshold):
                 fit, keys, changed = without, others, True
                 continue
             # First order undervalues a large gain, of the cause itself as of its rivals: like is held against like.

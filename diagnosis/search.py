@@ -86,7 +86,7 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
         fit, base = settle(fit)
     while len(keys) < MOST_CAUSES and _stands_out(fit):
         offered = [e for e in effects if e.name not in barred]
-        level = beside(keys, threshold)
+        level = beside(fit, keys, threshold)
         step = best_addition(fit, base, offered, keys, level) or best_together(fit, base, offered, keys, level)
         if step is None:
             break
@@ -106,12 +106,14 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
     return Found(fit, tuple(keys), len(effects))
 
 
-def beside(keys: Sequence[str], threshold: float) -> float:
+def beside(fit: Fit, keys: Sequence[str], threshold: float) -> float:
     """The log probability to fall below, lower beside a shape without a name.
 
-    Such a shape describes something only nearly, and what it leaves may pass for a weak cause.
+    Such a shape describes something only nearly, and what it leaves may pass for a weak cause; unless the noise is
+    coloured, which what it leaves is taken for.
     """
-    return threshold - (HANDICAP if any(base_name(key).startswith("unnamed") for key in keys) else 0.0)
+    nearly = fit.setting.member == 0 and any(base_name(key).startswith("unnamed") for key in keys)
+    return threshold - (HANDICAP if nearly else 0.0)
 
 
 def _stands_out(fit: Fit) -> bool:
@@ -144,7 +146,7 @@ def improve(
             own = screen_one(base, effect)
             looks = own.looks if own is not None else 1.0
             log_p = judged_p(gain, terms, base.dof, looks)
-            if log_p + handicap(effect, fit) > beside(others, threshold):
+            if log_p + handicap(effect, fit) > beside(fit, others, threshold):
                 fit, keys, changed = without, others, True
                 continue
             # First order undervalues a large gain, of the cause itself as of its rivals: like is held against like.

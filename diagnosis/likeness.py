@@ -17,8 +17,8 @@ import numpy as np
 from diagnosis.joint_fit import Fit, root_weights
 from diagnosis.noise_colour import Colour, colour_of
 from diagnosis.noise_model import to_cosine, to_rows
-from twin.angles import TAU, Array, IntArray, wrap
-from twin.catalogue import find
+from diagnosis.simulated import ahead_of_stairs, simulated
+from twin.angles import TAU, Array, IntArray
 
 SWEEPS = 199
 """Simulated sweeps: the smallest p is 0.005."""
@@ -30,8 +30,6 @@ _LAGS = (2, 3, 4, 5, 8, 13, 21, 34)
 _BLOCKS = 24
 _CHUNK = 1_500_000
 """Numbers in one array while sweeps are simulated: 12 MB."""
-_QUIETEST = 0.02
-"""Least noise ahead of the stairs at any frequency, as a share of its mean."""
 _SMALLEST_RMS_RAD = 1e-6
 _LEAST_SPREAD = 1e-3
 """Smallest spread that a statistic is credited with: any that is not projected away scatters more."""
@@ -65,12 +63,11 @@ def likeness(fit: Fit, *, rng: np.random.Generator, colour: Colour | None = None
     refit = _Refit.of(fit)
     names, measured = plan.statistics(to_rows(refit.settled(fit.cosine_residual[0])[None] * whiten))
     table = [measured]
-    ahead, sigma = _ahead_of_stairs(fit, colour)
+    noise = ahead_of_stairs(fit, colour)
     to_come = SWEEPS
     while to_come > 0:
         count = min(to_come, max(_CHUNK // len(use), 1))
-        noise = sigma * to_rows(np.sqrt(ahead) * rng.standard_normal((count, len(use)))) * fit.evidence.scale
-        residual = to_cosine(fit.evidence, _behind_stairs(fit, noise))
+        residual = to_cosine(fit.evidence, simulated(fit, noise, count=count, rng=rng))
         table.append(plan.statistics(to_rows(refit(residual, rng) * whiten))[1])
         to_come -= count
     scores = _standardised(np.concatenate(table))
@@ -80,40 +77,7 @@ def likeness(fit: Fit, *, rng: np.random.Generator, colour: Colour | None = None
     return Likeness(rank / len(scores), names[worst], float(scores[0, worst]))
 
 
-# ---- simulating ---------------------------------------------------------------------------------------------------
-
-
-def _ahead_of_stairs(fit: Fit, colour: Colour) -> tuple[Array, float]:
-    """Spectrum (n,) of mean 1 and RMS [rad] of the noise ahead of the stairs: rounding adds white noise of its own."""
-    rms = float(np.sqrt(np.mean((fit.residual[0] / fit.evidence.scale)[fit.evidence.usable] ** 2)))
-    blur = fit.setting.blur
-    if not 0.0 < blur < rms:
-        return colour.spectrum, rms
-    ahead = colour.spectrum * rms**2 - (rms**2 - blur**2)
-    ahead = np.maximum(ahead, _QUIETEST * blur**2)
-    return ahead / np.mean(ahead), blur
-
-
-def _behind_stairs(fit: Fit, noise: Array) -> Array:
-    """Residuals (count, n) [rad] of readings whose noise (count, n) [rad] turns the channels ahead of all stairs."""
-    chain, linear = fit.chain, fit.linear
-    stepped = any(effect.line and effect.line.clock == "channels" for _, effect, _ in chain.active("channels"))
-    if not stepped and not any(effect.footprint == "values" for _, effect, _ in chain.active("angle")):
-        return noise
-    signal = (linear.sensor_angle + noise)[:, None]
-    if stepped:
-        # The channels' stairs want the noise ahead of them.
-        place = [effect.name for effect in chain.effects].index("noise")
-        x, y = linear.at(find("noise", chain.effects)).signal
-        cos, sin = np.cos(noise), np.sin(noise)
-        signal = np.stack([x * cos - y * sin, x * sin + y * cos], axis=1)
-        for _, effect, values in chain.active("channels"):
-            if chain.effects.index(effect) > place:
-                signal = effect.forward(signal, linear.motion, values, None)
-        signal = np.arctan2(signal[:, 1:], signal[:, :1])
-    for _, effect, values in chain.active("angle"):
-        signal = effect.forward(signal, linear.motion, values, None)
-    return wrap(chain.output_sense * signal[:, 0] - linear.angle)
+# ---- the fit's own projection ---------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ residual as well as a candidate does leaves the candidate no gain.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -44,53 +44,67 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Base:
-    """What is fitted already, whitened by each family member: residual (N,), orthonormal rows (P, N), likelihood."""
+    """What is fitted already, whitened by each family member, for one residual or for a batch of simulated ones.
+
+    Residuals (batch, N), orthonormal rows (P, N), log determinants (members,), likelihood (batch, members).
+    """
 
     fit: Fit
     roots: Array
     residuals: list[Array]
     rows: list[Array]
+    log_det: Array
     likelihood: Array
     dof: int
 
     @classmethod
     def of(cls, fit: Fit) -> Base:
         """Prepare a fit for screening."""
-        family = fit.setting.family
         roots: list[Array] = []
-        residuals: list[Array] = []
         rows: list[Array] = []
-        likelihood: list[float] = []
-        dof = fit.rows * fit.evidence.observables - len(fit.free) + fit.prior_residual.size
-        for member in range(len(family.labels)):
-            if member not in fit.setting.plausible:
-                roots.append(
-                    np.zeros_like(roots[-1]) if roots else np.zeros((fit.evidence.observables, len(fit.evidence)))
-                )
-                residuals.append(np.zeros(0))
-                rows.append(np.zeros((0, 0)))
-                likelihood.append(-np.inf)
-                continue
+        log_det: list[float] = []
+        for member in range(len(fit.setting.family.labels)):
             roots.append(root_weights(fit.setting, fit.evidence.observables, member))
-            r, j = fit.whitened(member)
+            if member not in fit.setting.plausible:
+                rows.append(np.zeros((0, 0)))
+                log_det.append(np.inf)
+                continue
+            _, j = fit.whitened(member)
             scale = np.linalg.norm(j, axis=1, keepdims=True)
             q, triangle = np.linalg.qr((j / np.where(scale > 0.0, scale, 1.0)).T)
             kept = np.abs(np.diag(triangle)) > 1e-7
-            q = q[:, kept].T
-            r = r - (r @ q.T) @ q
+            rows.append(q[:, kept].T)
             # Restricted likelihood: the baseline's coefficients are integrated out, not maximised.
-            log_det = 2.0 * float(np.sum(np.log(np.abs(np.diag(triangle)[kept])))) + 2.0 * float(
-                np.sum(np.log(scale[scale > 0]))
+            log_det.append(
+                2.0 * float(np.sum(np.log(np.abs(np.diag(triangle)[kept]))))
+                + 2.0 * float(np.sum(np.log(scale[scale > 0])))
             )
-            likelihood.append(-0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + family.cost[member] + log_det))
+        dof = fit.rows * fit.evidence.observables - len(fit.free) + fit.prior_residual.size
+        empty = cls(fit, np.stack(roots), [], rows, np.array(log_det), np.zeros((0, 0)), dof)
+        return empty.with_residuals(fit.cosine_residual[None])
+
+    def with_residuals(self, cosine_residuals: Array) -> Base:
+        """The same fit with residuals (batch, O, n) in the place of its own, as cosine coefficients."""
+        prior = self.fit.prior_residual
+        residuals: list[Array] = []
+        likelihood = np.full((len(cosine_residuals), len(self.rows)), -np.inf)
+        for member, q in enumerate(self.rows):
+            if member not in self.fit.setting.plausible:
+                residuals.append(np.zeros((0, 0)))
+                continue
+            white = (cosine_residuals * self.roots[member]).reshape(len(cosine_residuals), -1)
+            r = np.concatenate([white, np.broadcast_to(prior, (len(white), prior.size))], axis=1)
+            r = r - (r @ q.T) @ q
             residuals.append(r)
-            rows.append(q)
-        return cls(fit, np.stack(roots), residuals, rows, np.array(likelihood), dof)
+            squares = np.maximum(np.einsum("sn,sn->s", r, r), 1e-300)
+            cost = self.fit.setting.family.cost[member] + self.log_det[member]
+            likelihood[:, member] = -0.5 * (self.dof * np.log(squares) + cost)
+        return replace(self, residuals=residuals, likelihood=likelihood)
 
     @property
     def member(self) -> int:
-        """The family member that fits best."""
-        return int(np.argmax(self.likelihood))
+        """The family member that fits best (the first residual of a batch)."""
+        return int(np.argmax(self.likelihood[0]))
 
 
 def log_probability(gain: Array, terms: int, dof: int) -> Array:
@@ -129,7 +143,7 @@ def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, floa
     if not shapes:
         return None
     looks = max(looks, float(len(shapes)))
-    gains, coefficients = _gains(base, effect, shapes)
+    gains, coefficients = (found[0] for found in gains_of(base, effect, shapes))
     if not np.any(gains > 0.0):
         return None
     best = int(np.argmax(gains))
@@ -138,22 +152,29 @@ def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, floa
         shape, gain, coefficient = _zoom(base, effect, shapes, shape, name, gain, coefficient)
     terms = coefficient.size
     values = {**effect.null(), **shape, **_parameters(effect, fit.linear.terms(effect), coefficient, motion)}
+    return Candidate(effect, values, gain, terms, looks, float(by_chance(base, effect, np.array(gain), terms, looks)))
+
+
+def by_chance(base: Base, effect: Effect, gain: Array, terms: int, looks: float) -> Array:
+    """Log of the probability that noise gains as much by an effect at the best of so many looks."""
     if effect.roles("per turn"):
         # Draws from a distribution of their own: integrating them out costs each about half the log of its evidence
         # (Laplace), and what is left to test is one scatter.
-        marginal = gain - terms * (1.0 + np.log(max(gain / terms, 1.0)))
-        log_p = float(log_probability(np.array(marginal), 1, base.dof))
-    else:
-        log_p = float(log_probability(np.array(gain), terms, base.dof)) + np.log(looks)
-    return Candidate(effect, values, gain, terms, looks, log_p)
+        return log_probability(gain - terms * (1.0 + np.log(np.maximum(gain / terms, 1.0))), 1, base.dof)
+    return np.asarray(log_probability(gain, terms, base.dof) + np.log(looks))
 
 
 def matched(base: Base) -> list[Array]:
     """The angle's residual (n,) weighted by the inverse noise spectrum: of white noise, and of the best member."""
+    return matched_to(base, base.fit.cosine_residual[0], base.member)
+
+
+def matched_to(base: Base, cosine_residual: Array, best: int) -> list[Array]:
+    """An angle's residual, cosine coefficients (n,), weighted likewise and back over the rows."""
     fit = base.fit
     rows = []
-    for member in dict.fromkeys((0, base.member)):
-        weighted = fit.cosine_residual[0] * fit.setting.family.weights[member]
+    for member in dict.fromkeys((0, best)):
+        weighted = cosine_residual * fit.setting.family.weights[member]
         rows.append(to_rows(weighted) * (fit.evidence.usable / fit.evidence.scale))
     return rows
 
@@ -168,8 +189,8 @@ def _is_line(effect: Effect, name: str) -> bool:
     return effect.line is not None and effect.line.param == name
 
 
-def _gains(base: Base, effect: Effect, shapes: Sequence[Mapping[str, float]]) -> tuple[Array, Array]:
-    """Gain (G,) of each shape, and the coefficients (G, T) of its fit."""
+def gains_of(base: Base, effect: Effect, shapes: Sequence[Mapping[str, float]]) -> tuple[Array, Array]:
+    """Gain (batch, G) of each shape, and the coefficients (batch, G, T) of its fit."""
     fit = base.fit
     n = len(fit.evidence)
     terms = len(fit.linear.terms(effect))
@@ -180,7 +201,7 @@ def _gains(base: Base, effect: Effect, shapes: Sequence[Mapping[str, float]]) ->
         g, c = _gains_of_columns(base, effect, columns)
         gains.append(g)
         coefficients.append(c)
-    return np.concatenate(gains), np.concatenate(coefficients)
+    return np.concatenate(gains, axis=1), np.concatenate(coefficients, axis=1)
 
 
 def project_radius(evidence: Evidence, columns: Array) -> Array:
@@ -196,55 +217,53 @@ def project_radius(evidence: Evidence, columns: Array) -> Array:
 def _gains_of_columns(base: Base, effect: Effect, columns: Array) -> tuple[Array, Array]:
     fit = base.fit
     count, terms = columns.shape[:2]
+    batch = len(base.likelihood)
     cosine = observables_to_cosine(fit.evidence, project_radius(fit.evidence, columns))
-    best_gain = np.full(count, -np.inf)
-    best_coefficient = np.zeros((count, terms))
-    top = float(base.likelihood.max())
+    best_gain = np.full((batch, count), -np.inf)
+    best_coefficient = np.zeros((batch, count, terms))
+    top = base.likelihood.max(axis=1)
     for member in sorted({base.member, *COARSE} if len(fit.setting.plausible) > len(COARSE) else fit.setting.plausible):
-        likelihood = base.likelihood[member]
-        if likelihood == -np.inf:
+        if member not in fit.setting.plausible:
             continue
         white = (cosine * base.roots[member]).reshape(count * terms, -1)
         q = base.rows[member]
         r = base.residuals[member]
         along = white @ q[:, : white.shape[1]].T
         size = np.einsum("ij,ij->i", white, white).reshape(count, terms)
-        dot = (white @ r[: white.shape[1]]).reshape(count, terms)
+        dot = (r[:, : white.shape[1]] @ white.T).reshape(batch, count, terms)
         # The part of q that lies in the priors' rows is orthogonal to the candidate.
         if terms == 1:
             norm = size[:, 0] - np.einsum("ij,ij->i", along, along)
             good = norm > 1e-6 * np.maximum(size[:, 0], 1e-300)
-            safe = np.where(good, norm, 1.0)
-            coefficient = np.where(good, dot[:, 0] / safe, 0.0)[:, None]
-            explained = np.where(good, dot[:, 0] ** 2 / safe, 0.0)
+            coefficient = np.where(good[:, None], dot / np.where(good, norm, 1.0)[:, None], 0.0)
         else:
             white3 = white.reshape(count, terms, -1)
             along3 = along.reshape(count, terms, -1)
             gram = white3 @ white3.transpose(0, 2, 1) - along3 @ along3.transpose(0, 2, 1)
             scale = np.sqrt(np.maximum(np.einsum("gtt->gt", white3 @ white3.transpose(0, 2, 1)), 1e-300))
             unit = gram / (scale[:, :, None] * scale[:, None, :]) + 1e-7 * np.eye(terms)
-            solved = np.linalg.solve(unit, (dot / scale)[..., None])[..., 0]
-            coefficient = solved / scale
-            explained = np.einsum("gt,gt->g", dot, coefficient)
+            solved = np.linalg.solve(unit, (dot / scale).transpose(1, 2, 0))
+            coefficient = solved.transpose(2, 0, 1) / scale
+        explained = np.einsum("sgt,sgt->sg", dot, coefficient)
         explained = np.where(_allowed(effect, fit.linear.terms(effect), coefficient), explained, 0.0)
-        rss = float(r @ r)
+        rss = np.maximum(np.einsum("sn,sn->s", r, r), 1e-300)[:, None]
         remaining = np.maximum(rss - explained, 1e-12 * rss)
-        gain = 2.0 * (likelihood - top) - base.dof * np.log(remaining / rss)
+        gain = 2.0 * (base.likelihood[:, member] - top)[:, None] - base.dof * np.log(remaining / rss)
         better = gain > best_gain
         best_gain = np.where(better, gain, best_gain)
-        best_coefficient = np.where(better[:, None], coefficient, best_coefficient)
+        best_coefficient = np.where(better[..., None], coefficient, best_coefficient)
     return best_gain, best_coefficient
 
 
 def _allowed(effect: Effect, terms: tuple[Term, ...], coefficients: Array) -> Array:
-    """Which fits (G,) have physical coefficients: a lag is no lead, a level's change comes whole."""
-    ok = np.ones(coefficients.shape[0], dtype=bool)
+    """Which fits (...) of coefficients (..., T) are physical: a lag is no lead, a level's change comes whole."""
+    ok = np.ones(coefficients.shape[:-1], dtype=bool)
     for place, term in enumerate(terms):
         param = effect.params[term.param]
         if param.role == "level":
-            ok &= (coefficients[:, place] > 0.5) & (coefficients[:, place] < 1.6)
+            ok &= (coefficients[..., place] > 0.5) & (coefficients[..., place] < 1.6)
         elif term.phase_deg is None and term.turn is None and param.lower == 0.0:
-            ok &= coefficients[:, place] > 0.0
+            ok &= coefficients[..., place] > 0.0
     return ok
 
 
@@ -270,7 +289,7 @@ def _zoom(
             fine = [f for f, good in zip(fine, inside, strict=True) if good]
         if not fine:
             break
-        gains, coefficients = _gains(base, effect, fine)
+        gains, coefficients = (found[0] for found in gains_of(base, effect, fine))
         best = int(np.argmax(gains))
         if gains[best] > gain:
             shape, gain, coefficient = fine[best], float(gains[best]), coefficients[best]

@@ -16,19 +16,21 @@ PEAKS = 8
 _LARGEST_GRID = 1 << 21
 
 
-def line_shapes(matched: Sequence[Array], fit: Fit, effect: Effect) -> tuple[Sequence[Mapping[str, float]], float]:
+def line_shapes(
+    matched: Sequence[Array], fit: Fit, effect: Effect, *, peaks: int = PEAKS
+) -> tuple[Sequence[Mapping[str, float]], float]:
     """The orders or frequencies at which the effect's line matches the residual best, and how many were looked at.
 
     ``matched`` holds residuals (n,) filtered by the inverse covariance of the noises in question. The effect's column
     at frequency f is Re[A exp(i 2 pi f clock)] with an amplitude A (n,) that does not depend on f, so one transform
-    serves all f.
+    serves all f. ``peaks`` of each spectrum are looked at closely.
     """
     line = effect.line
     assert line is not None
     motion = fit.linear.motion
     low, high = line.limits(motion)
     if line.clock == "channels":
-        return _weights_of_a_bit(matched[0], fit, effect, low, high)
+        return _weights_of_a_bit(matched[0], fit, effect, low, high, peaks)
     clock = (
         motion.shaft_rad / TAU
         if line.clock == "shaft"
@@ -82,7 +84,7 @@ def line_shapes(matched: Sequence[Array], fit: Fit, effect: Effect) -> tuple[Seq
     if whole_only:
         whole = np.arange(np.ceil(low), np.floor(high) + 1)
         whole = whole[line.within(whole)]
-        ranked = [np.argsort(np.interp(whole, frequency, power))[::-1][:PEAKS] for power in powers]
+        ranked = [np.argsort(np.interp(whole, frequency, power))[::-1][:peaks] for power in powers]
         order = np.unique(np.concatenate(ranked))
         return [{line.param: float(f)} for f in whole[order]], float(whole.size)
     picked = []
@@ -90,7 +92,7 @@ def line_shapes(matched: Sequence[Array], fit: Fit, effect: Effect) -> tuple[Seq
         power = np.where(inside, power, 0.0)
         peak = np.flatnonzero((power[1:-1] >= power[:-2]) & (power[1:-1] > power[2:])) + 1
         peak = peak[line.within(frequency[peak])]
-        picked.append(frequency[peak[np.argsort(power[peak])[::-1][:PEAKS]]])
+        picked.append(frequency[peak[np.argsort(power[peak])[::-1][:peaks]]])
     chosen = np.unique(np.concatenate(picked))
     # A line at a whole order that belongs to the effect is tried as such.
     whole = np.round(chosen)
@@ -111,7 +113,7 @@ def _level(power: Array, oversampling: int) -> Array:
 
 
 def _weights_of_a_bit(
-    weighted: Array, fit: Fit, effect: Effect, low: float, high: float
+    weighted: Array, fit: Fit, effect: Effect, low: float, high: float, peaks: int
 ) -> tuple[Sequence[Mapping[str, float]], float]:
     """Weights [%] at which a square wave in the channels' value, matches the residual best.
 
@@ -136,7 +138,7 @@ def _weights_of_a_bit(
     match = np.where(inside, np.fft.fft(grid)[: bins // 2].real, 0.0)
     size = np.abs(match)
     peak = np.flatnonzero((size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:])) + 1
-    chosen = peak[np.argsort(size[peak])[::-1][: 2 * PEAKS]]
+    chosen = peak[np.argsort(size[peak])[::-1][: 2 * peaks]]
     looks = max(2.0 * float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
     # Noise ahead of the bit of a fifth of its weight to begin with: the fit finds its own.
     return [

@@ -81,8 +81,9 @@ def discover(
     """Explain a sweep.
 
     ``start`` is the fitted baseline (or a given twin, passed as ``given`` too: then only its zeros are fitted).
-    ``rng`` draws the sweeps that the measured one is compared with (seed 0 if not given).
+    ``rng`` draws the simulated sweeps that the measured one is compared with (seed 0 if not given).
     """
+    rng = rng or np.random.default_rng(0)
     evidence = collect(sweep)
     candidates = [e for e in effects if not e.baseline]
     means = [e for e in candidates if e.footprint == "mean"]
@@ -119,7 +120,7 @@ def discover(
     if spread_found:
         # Rows weighed by their noise tell more than they told before.
         fit, keys, looked = searched(fit, means, keys, step, sequence_mask)
-    fit, entries, held = prove(fit, means, keys)
+    fit, entries, held = prove(fit, means, keys, rng=rng)
     if not sequence_found:
         # Repeats that structure hid at first.
         sequence_mask, sequence_found = _sequence(fit, sweep, candidates, step, "stale_frames", sequence_mask)
@@ -155,7 +156,7 @@ def discover(
         looked_at=looked,
         given=given,
         invisible=invisible,
-        likeness=likeness(fit, rng=rng or np.random.default_rng(0), colour=colour),
+        likeness=likeness(fit, rng=rng, colour=colour),
     )
 
 

@@ -21,12 +21,14 @@ from diagnosis.noise_model import to_cosine
 from diagnosis.screening import Base, by_chance, gains_of, matched_to
 from diagnosis.simulated import ahead_of_stairs, simulated
 from diagnosis.spectrum import line_shapes
-from diagnosis.trial import handicap
+from diagnosis.trial import HANDICAP
 from twin.angles import Array
 from twin.effect import Effect
 
-SWEEPS = 96
-"""Simulated sweeps."""
+SWEEPS = (32, 96)
+"""Fewest and most simulated sweeps."""
+_NUMBERS = 400_000
+"""Numbers in the simulated residuals, between these bounds: the family's sixteen whitened copies take 50 MB."""
 TAIL = 0.5
 """Share of the simulated scores that the tail is fitted to."""
 PEAKS = 2
@@ -35,7 +37,7 @@ PEAKS = 2
 
 @dataclass(frozen=True, eq=False)
 class FamilyWise:
-    """The best scores (sweeps,) on simulated sweeps, lowest first: logs of a probability, handicap included."""
+    """The best scores (sweeps,) on simulated sweeps, lowest first."""
 
     scores: Array
 
@@ -54,31 +56,40 @@ class FamilyWise:
         return float(np.log(TAIL) - self.rate * (tail - score))
 
 
+def weighed(effect: Effect, log_p: Array | float) -> Array | float:
+    """The score of an effect: its log probability, with the handicap of a shape without a name.
+
+    What coarse stairs add needs no handicap here: they are simulated.
+    """
+    return log_p + (HANDICAP if effect.name.startswith("unnamed") else 0.0)
+
+
 def family_wise(
     baseline: Fit, extended: Fit, colour: Colour, effects: Sequence[Effect], *, rng: np.random.Generator
 ) -> FamilyWise:
     """Simulate the baseline with the noise of the extended fit, and screen ``effects`` on every sweep."""
     base = Base.of(baseline)
     noise = ahead_of_stairs(extended, colour)
-    residuals = np.empty((SWEEPS, baseline.evidence.observables, len(baseline.evidence)))
-    residuals[:, 0] = to_cosine(baseline.evidence, simulated(baseline, noise, count=SWEEPS, rng=rng))
+    count = int(np.clip(_NUMBERS // len(baseline.evidence), *SWEEPS))
+    residuals = np.empty((count, baseline.evidence.observables, len(baseline.evidence)))
+    residuals[:, 0] = to_cosine(baseline.evidence, simulated(baseline, noise, count=count, rng=rng))
     if baseline.evidence.observables == 2:
-        residuals[:, 1] = _radius(extended, rng)
+        residuals[:, 1] = _radius(extended, count, rng)
     base = base.with_residuals(residuals)
     # Lines are looked for in what the baseline's own parameters leave.
     member = baseline.setting.member
     left = base.residuals[member][:, : len(baseline.evidence)] / base.roots[member][0]
-    best = np.full(SWEEPS, np.inf)
+    best = np.full(count, np.inf)
     for effect in effects:
         best = np.minimum(best, _scores(base, effect, left))
     return FamilyWise(np.sort(best))
 
 
-def _radius(extended: Fit, rng: np.random.Generator) -> Array:
-    """Cosine coefficients (SWEEPS, n) of radii with the noise that the extended fit has left there."""
+def _radius(extended: Fit, count: int, rng: np.random.Generator) -> Array:
+    """Cosine coefficients (count, n) of radii with the noise that the extended fit has left there."""
     root = root_weights(extended.setting, 2)[1]
     sigma = float(np.sqrt(np.mean((extended.cosine_residual[1] * root) ** 2)))
-    return np.asarray(sigma * rng.standard_normal((SWEEPS, root.size)) / root)
+    return np.asarray(sigma * rng.standard_normal((count, root.size)) / root)
 
 
 def _scores(base: Base, effect: Effect, left: Array) -> Array:
@@ -100,4 +111,4 @@ def _scores(base: Base, effect: Effect, left: Array) -> Array:
     gains, coefficients = gains_of(base, effect, shapes)
     best_gain = gains.max(axis=1)
     log_p = by_chance(base, effect, best_gain, coefficients.shape[2], looks)
-    return np.asarray(np.where(best_gain > 0.0, log_p + handicap(effect, fit), np.inf))
+    return np.asarray(np.where(best_gain > 0.0, weighed(effect, log_p), np.inf))

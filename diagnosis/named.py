@@ -21,6 +21,7 @@ from twin.effect import BoolArray
 class Named:
     """One entry of the answer: a cause, its probability, rivals, and the held-out RMS around it [deg].
 
+    ``log_p`` is the log probability by chance of this effect alone, ``family_log_p`` that of any effect, where known.
     ``rivals`` are the fits with another effect in its place, ``options`` the measurements that would part them.
     ``rows`` are the raw rows (from 0) that a cause of single readings has touched; ``intervals`` are of parameters
     that no fit of the mean has.
@@ -35,6 +36,12 @@ class Named:
     after_deg: float = float("nan")
     rows: tuple[int, ...] = ()
     intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    family_log_p: float | None = None
+
+    def false_alarm_probability(self, looked_at: int) -> float:
+        """Probability that noise looks as much like any of so many effects."""
+        log_p = self.log_p + float(np.log(max(looked_at, 1))) if self.family_log_p is None else self.family_log_p
+        return float(np.exp(max(min(log_p, 0.0), -300.0)))
 
     @property
     def name(self) -> str:
@@ -53,6 +60,7 @@ def merge(entries: list[Named]) -> list[Named]:
                 first,
                 keys=(*first.keys, *entry.keys),
                 log_p=min(first.log_p, entry.log_p),
+                family_log_p=_smaller(first.family_log_p, entry.family_log_p),
                 gain=first.gain + entry.gain,
                 rivals={name: fit for name, fit in first.rivals.items() if name in entry.rivals},
                 after_deg=entry.after_deg,
@@ -60,6 +68,10 @@ def merge(entries: list[Named]) -> list[Named]:
         else:
             merged[entry.name] = entry
     return sorted(merged.values(), key=lambda e: -e.gain)
+
+
+def _smaller(one: float | None, other: float | None) -> float | None:
+    return other if one is None else one if other is None else min(one, other)
 
 
 def of_readings(row_rms_deg: float, evidence: Evidence) -> float:

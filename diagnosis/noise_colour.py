@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.joint_fit import Fit
-from diagnosis.noise_model import spectrum
+from diagnosis.noise_model import NoiseFamily, spectrum
 from twin.angles import Array
 
 _HALVINGS = 5
@@ -36,23 +36,43 @@ class Colour:
 
 
 def colour_of(fit: Fit) -> Colour:
-    """The colour of highest restricted likelihood in the neighbourhood of the member that the fit is weighed by.
+    """The colour of highest restricted likelihood near the plausible members of the family, one of each kind.
 
-    The member was chosen with structure set aside; farther away structure that is left could pass for colour.
+    These were chosen with structure set aside; farther away structure that is left could pass for colour.
     """
-    family, member, n = fit.setting.family, fit.setting.member, len(fit.evidence)
+    family, member = fit.setting.family, fit.setting.member
     if fit.rows <= 2 * len(fit.free) or float(np.mean(fit.residual[0] ** 2)) < _SMALLEST_RMS_RAD**2:
         return Colour(family.spectra[member], *family.correlation[member])
+    cost = _restricted_cost(fit)
+    near = [_nearby(family, start, cost) for start in _one_of_each_kind(fit, cost)]
+    return min(near, key=lambda colour: cost(colour.spectrum))
+
+
+def _nearby(family: NoiseFamily, member: int, cost: Callable[[Array], float]) -> Colour:
+    """The best colour in the neighbourhood of a member."""
+    n = family.spectra.shape[1]
     start, bounds, pink = _neighbourhood(family.correlation, family.labels, member)
 
     def of(first: float, white: float) -> Array:
         return spectrum(n, pink=first, white=white) if pink else spectrum(n, phi=first, white=white)
 
-    cost = _restricted_cost(fit)
     first, white = _descended(lambda first, white: cost(of(first, white)), start, bounds)
     # The twin's noise is autoregressive: 1/f noise gets the correlation that lies nearest.
     correlation = 0.5 + 0.4 * first if pink else first
     return Colour(of(first, white), min(correlation, 0.995), 1.0 - white)
+
+
+def _one_of_each_kind(fit: Fit, cost: Callable[[Array], float]) -> list[int]:
+    """The member in force and, where it is coloured, the best plausible one of the other coloured kind."""
+    family, member = fit.setting.family, fit.setting.member
+    if member == 0:
+        return [member]
+    other = [m for m in fit.setting.plausible if m and _is_pink(family.labels[m]) != _is_pink(family.labels[member])]
+    return [member, *([min(other, key=lambda m: cost(family.spectra[m]))] if other else [])]
+
+
+def _is_pink(label: str) -> bool:
+    return label.startswith("1/f")
 
 
 def _descended(
@@ -82,7 +102,7 @@ def _neighbourhood(
     """Start, bounds of (correlation or exponent, white share), and whether it is 1/f noise."""
     phi, share = table[member]
     white = 1.0 - share
-    pink = labels[member].startswith("1/f")
+    pink = _is_pink(labels[member])
     whites = (max(white - _REACH_WHITE, 0.0), min(white + _REACH_WHITE, _MOST_WHITE))
     if pink:
         alpha = float(labels[member].removeprefix("1/f^").split()[0])
@@ -90,7 +110,7 @@ def _neighbourhood(
     if phi == 0.0:
         # Without correlation there is nothing for white noise to stand beside.
         whites = (0.0, 0.0)
-    others = sorted({phi for (phi, _), label in zip(table, labels, strict=True) if not label.startswith("1/f")})
+    others = sorted({phi for (phi, _), label in zip(table, labels, strict=True) if not _is_pink(label)})
     place = others.index(phi)
     low, high = others[max(place - 2, 0)], (*others, 0.995, 0.995)[place + 2]
     return (phi, white), ((low, high), whites), False

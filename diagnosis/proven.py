@@ -6,19 +6,32 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from diagnosis.family_wise import FamilyWise, family_wise, weighed
 from diagnosis.joint_fit import Fit, evaluate, solve
 from diagnosis.named import Named
+from diagnosis.noise_colour import colour_of
 from diagnosis.proof import held_out_residuals, rms_deg
 from diagnosis.search import Cause, judge
-from diagnosis.trial import drop, settle
+from diagnosis.trial import drop, settle, take_out
 from twin.angles import Array
+from twin.catalogue import find
 from twin.effect import Effect
 
 SLACK = 1.004
+LISTED_LOG_P = float(np.log(0.001))
+"""Log of the family-wise probability below which a cause is listed."""
+NO_DOUBT_LOG_P = -40.0
+"""Log probability of the F test below which no simulation of a size that can be afforded says more."""
 
 
-def prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fit, list[Named], list[Array]]:
-    """Entries with their held-out figures; what gains nothing on readings it never saw is no cause."""
+def prove(
+    fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.random.Generator
+) -> tuple[Fit, list[Named], list[Array]]:
+    """Entries with their held-out figures; what gains nothing on readings it never saw is no cause.
+
+    ``rng`` draws the sweeps on which the family-wise probabilities are calibrated.
+    """
+    effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
     keys = list(keys)
     while True:
         causes = sorted((_judged(fit, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
@@ -27,10 +40,10 @@ def prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fit
         held = held_out_residuals(fit, ordered)
         weighed = [rms_deg(residual / fit.evidence.scale, use) for residual in held]
         idle = None
-        listed = float(np.log(0.01 / max(len(effects), 1)))
+        family = _calibrated(fit, effects, causes, rng)
         for place, key in enumerate(ordered):
-            if causes[place].log_p > listed:
-                # What was added after it has taken over what it was added for.
+            if _by_chance(fit, family, causes[place], effects) > LISTED_LOG_P:
+                # Or what was added after it has taken over what it was added for.
                 idle = key
                 break
             if weighed[place + 1] < weighed[place]:
@@ -54,12 +67,32 @@ def prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str]) -> tuple[Fit
             cause.log_p,
             cause.gain,
             cause.rivals,
+            family_log_p=_by_chance(fit, family, cause, effects),
             before_deg=figures[place],
             after_deg=figures[place + 1],
         )
         for place, cause in enumerate(causes)
     ]
     return fit, entries, held
+
+
+def _calibrated(
+    fit: Fit, effects: Sequence[Effect], causes: Sequence[Cause], rng: np.random.Generator
+) -> FamilyWise | None:
+    """The scores that the effects reach on sweeps without any of the causes; None where none of these is in doubt."""
+    if all(cause.log_p < NO_DOUBT_LOG_P for cause in causes):
+        return None
+    baseline = fit
+    for cause in causes:
+        baseline = take_out(baseline, cause.key)
+    return family_wise(solve(baseline), fit, colour_of(fit), effects, rng=rng)
+
+
+def _by_chance(fit: Fit, family: FamilyWise | None, cause: Cause, effects: Sequence[Effect]) -> float:
+    """Log of the family-wise probability of a cause: calibrated, or the F test's where that leaves no doubt."""
+    if family is None:
+        return cause.log_p + float(np.log(max(len(effects), 1)))
+    return family.log_p(float(weighed(find(cause.key, fit.chain.effects), cause.log_p)))
 
 
 def _judged(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:

@@ -131,7 +131,7 @@ def _cause(found: Discovery, cause: Named) -> dict[str, Any]:
         "name": cause.name,
         "stage": effect.stage,
         "parameters": parameters(found, cause),
-        "false_alarm_probability": float(np.exp(max(min(cause.log_p + np.log(max(found.looked_at, 1)), 0.0), -300.0))),
+        "false_alarm_probability": cause.false_alarm_probability(found.looked_at),
         "heldout_rms_deg_before": cause.before_deg,
         "heldout_rms_deg_after": cause.after_deg,
         "indistinguishable_from": list(cause.rivals),

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.joint_fit import Fit, evaluate, solve
+from diagnosis.noise_choice import either
 from diagnosis.noise_model import NoiseFamily
 from diagnosis.screening import Base, Candidate, screen, screen_one
 from diagnosis.trial import SWAP_MARGIN, Trial, degrees, handicap, judged_p, likelihood, settle, take_out
-from twin.catalogue import base_name, find
+from twin.catalogue import base_name, find, unnamed
 from twin.effect import Effect
 
 FAIR_SHARE = 0.15
@@ -24,7 +25,7 @@ MOST_TOGETHER = 3
 def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
     """Every effect that may still be added, at its best shape, best first after the handicap."""
     present = {base_name(key) for key in keys}
-    open_to = [e for e in effects if e.name not in present or e.name in REPEATABLE or e.name.startswith("unnamed")]
+    open_to = [e for e in effects if e.name not in present or e.name in REPEATABLE or unnamed(e.name)]
     found = screen(base, open_to)
     found += multiples(base, effects, keys)
     return sorted(found, key=lambda c: c.log_p + handicap(c.effect, base.fit))
@@ -70,7 +71,7 @@ def best_addition(
     near = [c for c in ranked if c.log_p + handicap(c.effect, base.fit) < top + max(8.0, -0.1 * top)][:5]
     trials = [Trial.of(fit, c) for c in near]
     # All are judged by the same noises: those that any of them leaves.
-    members = tuple(sorted(set().union(*(t.members for t in trials))))
+    members = either(*(t.members for t in trials))
     judged = [(t.log_p(fit, members, base.dof) + handicap(t.candidate.effect, fit), k) for k, t in enumerate(trials)]
     score, place = min(judged)
     if score > threshold:
@@ -111,7 +112,7 @@ def best_together(
         trial, white = settle(retuned(step.fit, keys))
         # White at first: by another weight it might be led astray again.
         joint, _ = settle(solve(evaluate(trial.chain, trial.free, fit.evidence, replace(fit.setting, member=0))))
-        members = tuple(sorted({*fit.setting.plausible, *joint.setting.plausible}))
+        members = either(fit.setting.plausible, joint.setting.plausible)
         gain = 2.0 * (likelihood(joint, members) - likelihood(fit, members))
         choices = depth * float(np.log(max(len(effects), 1)))
         if judged_p(gain, terms, base.dof, 1.0) + log_looks + choices < threshold:

@@ -23,9 +23,9 @@ from diagnosis.search import ALPHA
 from diagnosis.separation import options
 from diagnosis.stairs import with_slopes
 from diagnosis.start import first_fit, mirrored
-from diagnosis.trial import SWAP_MARGIN, likelihood, settle
+from diagnosis.trial import HANDICAP, SWAP_MARGIN, likelihood, settle
 from twin.angles import TAU
-from twin.catalogue import CATALOGUE
+from twin.catalogue import CATALOGUE, unnamed
 from twin.chain import Chain
 from twin.effect import BoolArray, Effect
 from twin.sweep import Sweep
@@ -141,7 +141,7 @@ def discover(
     invisible = {
         e.name: e.missing(evidence.motion.provides)
         for e in candidates
-        if not e.name.startswith("unnamed") and not e.visible_in(evidence.motion.provides)
+        if not unnamed(e.name) and not e.visible_in(evidence.motion.provides)
     }
     return Discovery(
         sweep=sweep,
@@ -193,7 +193,7 @@ def _spread(fit: Fit, effects: Sequence[Effect], looked: int) -> tuple[list[Name
     if not shapes:
         # What looked like uneven noise before the search was structure: a scale that no cause carries goes.
         return [], fit if np.all(fit.evidence.scale == 1.0) else scaled(fit, np.ones(len(fit.evidence)))
-    best = min(shapes, key=lambda s: s.log_p + (6.0 if s.name.startswith("unnamed") else 0.0))
+    best = min(shapes, key=lambda s: s.log_p + (HANDICAP if unnamed(s.name) else 0.0))
     chain = fit.chain.with_values({best.name: best.values})
     fit = evaluate(chain, fit.free, fit.evidence, fit.setting)
     named = Named((best.name,), best.log_p, best.gain, intervals=best.intervals)

@@ -23,6 +23,7 @@ from diagnosis.simulated import ahead_of_stairs, simulated
 from diagnosis.spectrum import line_shapes
 from diagnosis.trial import HANDICAP
 from twin.angles import Array
+from twin.catalogue import unnamed
 from twin.effect import Effect
 
 SWEEPS = (32, 96)
@@ -61,7 +62,7 @@ def weighed(effect: Effect, log_p: Array | float) -> Array | float:
 
     What coarse stairs add needs no handicap here: they are simulated.
     """
-    return log_p + (HANDICAP if effect.name.startswith("unnamed") else 0.0)
+    return log_p + (HANDICAP if unnamed(effect.name) else 0.0)
 
 
 def family_wise(

@@ -13,7 +13,7 @@ from diagnosis.proof import rms_deg
 from diagnosis.separation import Option
 from diagnosis.stairs import without_stairs
 from twin.angles import Array
-from twin.catalogue import base_name, find
+from twin.catalogue import base_name, find, unnamed
 from twin.effect import BoolArray
 
 
@@ -47,7 +47,7 @@ class Named:
     def name(self) -> str:
         """The catalogue's name, or ``unnamed``."""
         name = base_name(self.keys[0])
-        return "unnamed" if name.startswith("unnamed") else name
+        return "unnamed" if unnamed(name) else name
 
 
 def merge(entries: list[Named]) -> list[Named]:

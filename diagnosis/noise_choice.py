@@ -37,6 +37,11 @@ def plausible_members(fit: Fit) -> tuple[int, ...]:
     return tuple(int(k) for k in np.flatnonzero(score > score.max() - REACH))
 
 
+def either(*members: tuple[int, ...]) -> tuple[int, ...]:
+    """The family members that are plausible by any of several fits."""
+    return tuple(sorted(set().union(*members)))
+
+
 def radius_noise(fit: Fit) -> tuple[int, float] | None:
     """Family member and variance of the radius' noise, all that could be locked to the angle set aside.
 

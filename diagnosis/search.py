@@ -10,8 +10,9 @@ import numpy as np
 from diagnosis.addition import FAIR_SHARE, best_addition, best_together, candidates, retuned
 from diagnosis.footprints import stairs_rule
 from diagnosis.joint_fit import Fit
-from diagnosis.noise_choice import plausible_members
-from diagnosis.screening import Base, screen_one
+from diagnosis.noise_choice import either, plausible_members
+from diagnosis.screening import screen_one
+from diagnosis.standing import Standing
 from diagnosis.trial import (
     HANDICAP,
     SWAP_MARGIN,
@@ -23,9 +24,8 @@ from diagnosis.trial import (
     judged_p,
     likelihood,
     settle,
-    take_out,
 )
-from twin.catalogue import base_name, find
+from twin.catalogue import base_name, find, unnamed
 from twin.effect import Effect
 
 ALPHA = 0.001
@@ -49,11 +49,6 @@ class Cause:
     gain: float
     log_p: float
     rivals: Mapping[str, Fit] = field(default_factory=dict)
-
-    @property
-    def named(self) -> bool:
-        """Whether the catalogue has a name for it."""
-        return not base_name(self.key).startswith("unnamed")
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +96,7 @@ def search(fit: Fit, effects: Sequence[Effect], *, keys: Sequence[str] = (), alp
             # Two causes that take each other's place in turns.
             break
         seen.add(frozenset(keys))
-    for key in [k for k in keys if base_name(k).startswith("unnamed")]:
+    for key in [k for k in keys if unnamed(k)]:
         fit, keys = in_its_place(fit, key, effects, keys, threshold)
     return Found(fit, tuple(keys), len(effects))
 
@@ -112,7 +107,7 @@ def beside(fit: Fit, keys: Sequence[str], threshold: float) -> float:
     Such a shape describes something only nearly, and what it leaves may pass for a weak cause; unless the noise is
     coloured, which what it leaves is taken for.
     """
-    nearly = fit.setting.member == 0 and any(base_name(key).startswith("unnamed") for key in keys)
+    nearly = fit.setting.member == 0 and any(unnamed(key) for key in keys)
     return threshold - (HANDICAP if nearly else 0.0)
 
 
@@ -135,39 +130,25 @@ def improve(
         for key in list(keys):
             if key not in keys or len(keys) < 2:
                 continue
-            without = drop(fit, key)
             others = [k for k in keys if k != key]
-            removed = take_out(fit, key)
-            base = Base.of(removed)
-            effect = find(key, fit.chain.effects)
-            before = likelihood(without)
-            gain = 2.0 * (likelihood(fit) - before)
-            terms = degrees(effect, len(without.linear.terms(effect)))
-            own = screen_one(base, effect)
-            looks = own.looks if own is not None else 1.0
-            log_p = judged_p(gain, terms, base.dof, looks)
-            if log_p + handicap(effect, fit) > beside(fit, others, threshold):
+            standing = Standing.of(fit, key)
+            without, effect = standing.without, standing.effect
+            if standing.log_p + handicap(effect, fit) > beside(fit, others, threshold):
                 fit, keys, changed = without, others, True
                 continue
             # First order undervalues a large gain, of the cause itself as of its rivals: like is held against like.
-            own_first = own.log_p if own is not None else log_p
-            score = max(log_p, own_first) + handicap(effect, fit)
-            ranked = candidates(base, contenders.get(key, effects), others)
+            own_first = standing.own.log_p if standing.own is not None else standing.log_p
+            score = max(standing.log_p, own_first) + handicap(effect, fit)
+            ranked = candidates(standing.base, contenders.get(key, effects), others)
             # The zeros of the turns cost a scatter, not a coefficient each: first order undervalues them.
             for rival in [*ranked[:3], *(c for c in ranked[3:] if c.effect.roles("per turn"))]:
                 if rival.effect.name == effect.name or rival.log_p + handicap(rival.effect, fit) > score + 8.0:
                     continue
-                trial = Trial.of(removed, rival)
-                members = tuple(sorted({*plausible_members(fit), *trial.members}))
+                trial = Trial.of(standing.removed, rival)
+                members = either(plausible_members(fit), trial.members)
                 own_gain = 2.0 * (likelihood(fit, members) - likelihood(without, members))
-                own_p = judged_p(own_gain, terms, base.dof, looks)
-                lead = (
-                    own_p
-                    + handicap(effect, fit)
-                    - trial.log_p(without, members, base.dof)
-                    - handicap(rival.effect, fit)
-                )
-                if lead > SWAP_MARGIN:
+                own_p = standing.judged(own_gain) + handicap(effect, fit)
+                if own_p - trial.log_p(without, members, standing.base.dof) - handicap(rival.effect, fit) > SWAP_MARGIN:
                     contenders[trial.key] = contenders.get(key, list(effects))
                     fit, keys, changed = trial.fit, [*others, trial.key], True
                     break
@@ -183,7 +164,7 @@ def in_its_place(
 
     Each has to do a fair share of it: any shape can be had from a cause that is near to it and another's small help.
     """
-    named = [e for e in effects if not e.name.startswith("unnamed")]
+    named = [e for e in effects if not unnamed(e.name)]
     without, base = settle(drop(fit, key))
     effect = find(key, fit.chain.effects)
     trial, others = without, [k for k in keys if k != key]
@@ -197,7 +178,7 @@ def in_its_place(
         added += step.added
         terms, log_looks = terms + step.terms, log_looks + step.log_looks
         trial, base = settle(step.fit)
-        members = tuple(sorted({*fit.setting.plausible, *trial.setting.plausible}))
+        members = either(fit.setting.plausible, trial.setting.plausible)
         before = likelihood(without, members)
         own = 2.0 * (likelihood(fit, members) - before)
         own_p = judged_p(own, degrees(effect, len(without.linear.terms(effect))), base.dof, 1.0) + handicap(effect, fit)
@@ -211,33 +192,25 @@ def in_its_place(
 def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:
     """What a cause gains in the final fit, and which named effects in its place would fit as well."""
     effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
-    # Without it the noise stays what it is with it: else structure that comes back would pass for noise.
-    without = drop(fit, key)
-    removed = take_out(fit, key)
-    base = Base.of(removed)
-    before = likelihood(without)
-    gain = 2.0 * (likelihood(fit) - before)
-    effect = find(key, fit.chain.effects)
-    terms = degrees(effect, len(without.linear.terms(effect)))
-    own = screen_one(base, effect)
-    looks = own.looks if own is not None else 1.0
-    log_p = judged_p(gain, terms, base.dof, looks)
+    standing = Standing.of(fit, key)
+    effect, own, gain = standing.effect, standing.own, standing.gain
+    before = likelihood(standing.without)
     rivals: dict[str, Fit] = {}
     # What a fit's stairs leave of themselves favours now one smooth shape, now another.
     same = SAME_FIT * (4.0 if fit.setting.coarse else 1.0)
-    if not effect.name.startswith("unnamed"):
+    if not unnamed(effect.name):
         present = {base_name(k) for k in keys}
         for other in effects:
-            if other.name == effect.name or other.name in present or other.name.startswith("unnamed"):
+            if other.name == effect.name or other.name in present or unnamed(other.name):
                 continue
-            rival = screen_one(base, other)
+            rival = screen_one(standing.base, other)
             if rival is None or rival.gain < 0.3 * min(gain, own.gain if own is not None else gain) - same:
                 continue
-            trial, _ = add(removed, rival)
+            trial, _ = add(standing.removed, rival)
             rival_gain = 2.0 * (likelihood(trial) - before)
             if other.roles("per turn"):
                 # A step between two turns is a special case of a zero for each turn: what fits counts, not its price.
                 rival_gain = max(rival_gain, rival.gain)
             if rival_gain > gain - same:
                 rivals[other.name] = trial
-    return Cause(key, gain, log_p, rivals)
+    return Cause(key, gain, standing.log_p, rivals)

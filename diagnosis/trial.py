@@ -12,6 +12,7 @@ import numpy as np
 from diagnosis.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, tidy
 from diagnosis.noise_choice import plausible_members, radius_noise
 from diagnosis.screening import Base, Candidate, log_probability
+from twin.catalogue import unnamed
 from twin.chain import Chain
 from twin.effect import Effect
 
@@ -157,7 +158,7 @@ def handicap(effect: Effect, fit: Fit) -> float:
     extra = 0.0
     if fit.setting.coarse and _aliased(effect, fit):
         extra = ALIASED
-    if not effect.name.startswith("unnamed"):
+    if not unnamed(effect.name):
         return extra
     # On a shaft that steps evenly a tone in time is an order too: the order is the plainer description.
     return extra + HANDICAP + (2.0 if effect.name == "unnamed_tone" else 0.0)
@@ -165,5 +166,5 @@ def handicap(effect: Effect, fit: Fit) -> float:
 
 def _aliased(effect: Effect, fit: Fit) -> bool:
     """Whether an effect has so many shapes, lines and places, that stairs' own pattern resembles one of them."""
-    any_order = effect.line is not None or "order" in effect.params or effect.name.startswith("unnamed")
+    any_order = effect.line is not None or "order" in effect.params or unnamed(effect.name)
     return any_order or len(effect.shapes(fit.linear.motion)) > MOST_SHAPES

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from scenarios.wording import unit_shown
-from twin.catalogue import CATALOGUE
+from twin.catalogue import CATALOGUE, unnamed
 from twin.effect import Effect
 from twin.extensions import effects_with
 
@@ -21,7 +21,7 @@ FOOTPRINTS = {
 
 def groups(effects: Sequence[Effect] = CATALOGUE) -> Iterator[tuple[str, list[Effect]]]:
     """The catalogue in three parts: always fitted, searched for, and carriers of structure without a name."""
-    empirical = [effect for effect in effects if effect.name.startswith("unnamed_")]
+    empirical = [effect for effect in effects if unnamed(effect.name)]
     baseline = [effect for effect in effects if effect.baseline]
     yield "Baseline: always fitted", baseline
     yield "Hidden causes: searched for", [e for e in effects if e not in baseline and e not in empirical]

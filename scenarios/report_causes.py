@@ -14,7 +14,7 @@ from scenarios.report_pictures import ANGLE, angle_bins, ways
 from scenarios.svg import Axis, Layer, Plot
 from scenarios.wording import minus
 from twin.angles import TAU, Array
-from twin.catalogue import find
+from twin.catalogue import find, unnamed
 from twin.effect import BoolArray, Effect
 
 _PERIODS = 8.0
@@ -31,7 +31,7 @@ def pictures(found: Discovery, read: Readings, cause: Named) -> Iterator[tuple[s
     effect = find(cause.keys[0], found.fit.chain.effects)
     if cause.rows:
         yield _single_readings(read, cause)
-    elif effect.name.startswith("unnamed"):
+    elif unnamed(effect.name):
         for key in cause.keys:
             yield _one(found, read, (key,))
     else:

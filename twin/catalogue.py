@@ -34,6 +34,11 @@ def base_name(key: str) -> str:
     return key.split("#", 1)[0]
 
 
+def unnamed(key: str) -> bool:
+    """Whether an instance key is of an empirical shape, for which the catalogue has no cause's name."""
+    return base_name(key).startswith("unnamed")
+
+
 def find(key: str, effects: tuple[Effect, ...] = CATALOGUE) -> Effect:
     """The effect with this name or instance key.
 

@@ -1,11 +1,12 @@
-"""Family-wise false alarms: how strong the best of all effects looks on sweeps simulated from the fitted baseline.
+"""Family-wise false alarms: how strong each effect looks on sweeps simulated from the fitted baseline.
 
 The F test's probability of a cause holds for noise of exactly the family's spectra, for independent looks, and without
-stairs. None of this is quite so. So sweeps are simulated from the baseline with the noise that is left (its colour, its
-dependence on the rows, the stairs behind it), every effect is screened on each as on the measured one, and the best
-score of each is kept. A cause's family-wise probability is the share of them that reach its own score; beyond the
-simulated ones their tail is taken to fall off exponentially, as that of a minimum of many probabilities does, and never
-faster than a single F test's.
+stairs. None of this is quite so, for some effects less than for others: slow noise passes for a drift long before it
+passes for an order. So sweeps are simulated from the baseline with the noise that is left (its colour, its dependence
+on the rows, the stairs behind it), and every effect is screened on each as on the measured one. An effect's own
+simulated scores calibrate its probability; the smallest of these on each simulated sweep calibrate the probability that
+any effect reaches it (the single-step minP procedure of Westfall and Young, Resampling-Based Multiple Testing, 1993).
+Beyond the simulated scores a tail is taken to fall off exponentially, and never faster than a single F test's.
 """
 
 from __future__ import annotations
@@ -21,9 +22,7 @@ from diagnosis.noise_model import to_cosine
 from diagnosis.screening import Base, by_chance, gains_of, matched_to
 from diagnosis.simulated import ahead_of_stairs, simulated
 from diagnosis.spectrum import line_shapes
-from diagnosis.trial import HANDICAP
 from twin.angles import Array
-from twin.catalogue import unnamed
 from twin.effect import Effect
 
 SWEEPS = (32, 96)
@@ -32,37 +31,48 @@ _NUMBERS = 400_000
 """Numbers in the simulated residuals, between these bounds: the family's sixteen whitened copies take 50 MB."""
 TAIL = 0.5
 """Share of the simulated scores that the tail is fitted to."""
+FEWEST = 8
+"""Fewest scores that a tail is fitted to."""
 PEAKS = 2
 """Lines looked at on each simulated sweep, of each of its spectra: the strongest is among them."""
 
 
 @dataclass(frozen=True, eq=False)
-class FamilyWise:
-    """The best scores (sweeps,) on simulated sweeps, lowest first."""
+class Tail:
+    """Scores (sweeps,) simulated without a cause, lowest first; those of sweeps without any gain are infinite."""
 
     scores: Array
 
-    @property
-    def rate(self) -> float:
-        """How fast the tail falls off with a score, 1 at most: what a single F test has."""
-        tail = self.scores[: max(int(TAIL * self.scores.size), 2)]
-        return min(1.0, (tail.size - 1) / max(float(np.sum(tail[-1] - tail)), 1e-300))
+    @classmethod
+    def of(cls, scores: Array) -> Tail:
+        """Fit the tail."""
+        return cls(np.sort(scores))
 
-    def log_p(self, score: float) -> float:
-        """Log probability that any effect reaches a score on a sweep without a cause."""
-        tail = self.scores[max(int(TAIL * self.scores.size), 2) - 1]
-        if score >= tail:
-            reached = np.count_nonzero(self.scores <= score)
-            return float(np.log((1.0 + reached) / (1.0 + self.scores.size)))
-        return float(np.log(TAIL) - self.rate * (tail - score))
+    def log_p(self, score: Array) -> Array:
+        """Log probabilities that a score is reached without a cause."""
+        count = self.scores.size
+        reached = np.searchsorted(self.scores, score, side="right")
+        ranked = np.log((1.0 + reached) / (1.0 + count))
+        tail = self.scores[: int(TAIL * count)]
+        tail = tail[np.isfinite(tail)]
+        if tail.size < FEWEST:
+            # Hardly ever any gain at all: less often than its score says.
+            return np.asarray(np.minimum(np.where(reached > 0, ranked, score), 0.0))
+        rate = min(1.0, (tail.size - 1) / max(float(np.sum(tail[-1] - tail)), 1e-300))
+        beyond = np.log(tail.size / count) - rate * (tail[-1] - score)
+        return np.asarray(np.where(score < tail[-1], beyond, ranked))
 
 
-def weighed(effect: Effect, log_p: Array | float) -> Array | float:
-    """The score of an effect: its log probability, with the handicap of a shape without a name.
+@dataclass(frozen=True, eq=False)
+class FamilyWise:
+    """The tails of each effect's scores, by name, and that of the smallest probability among them."""
 
-    What coarse stairs add needs no handicap here: they are simulated.
-    """
-    return log_p + (HANDICAP if unnamed(effect.name) else 0.0)
+    tails: Mapping[str, Tail]
+    smallest: Tail
+
+    def log_p(self, name: str, score: float) -> float:
+        """Log probability that any effect stands out as much as the named one does with this score."""
+        return float(self.smallest.log_p(self.tails[name].log_p(np.array(score))))
 
 
 def family_wise(
@@ -80,10 +90,10 @@ def family_wise(
     # Lines are looked for in what the baseline's own parameters leave.
     member = baseline.setting.member
     left = base.residuals[member][:, : len(baseline.evidence)] / base.roots[member][0]
-    best = np.full(count, np.inf)
-    for effect in effects:
-        best = np.minimum(best, _scores(base, effect, left))
-    return FamilyWise(np.sort(best))
+    scores = {effect.name: _scores(base, effect, left) for effect in effects}
+    tails = {name: Tail.of(values) for name, values in scores.items()}
+    smallest = np.min([tails[name].log_p(values) for name, values in scores.items()], axis=0)
+    return FamilyWise(tails, Tail.of(smallest))
 
 
 def _radius(extended: Fit, count: int, rng: np.random.Generator) -> Array:
@@ -94,7 +104,7 @@ def _radius(extended: Fit, count: int, rng: np.random.Generator) -> Array:
 
 
 def _scores(base: Base, effect: Effect, left: Array) -> Array:
-    """Best score (sweeps,) of one effect on each of a batch of residuals."""
+    """Score (sweeps,) of one effect, the log probability of the F test, at its best shape for each residual."""
     fit = base.fit
     if effect.line is None:
         shapes = list(effect.shapes(fit.linear.motion))
@@ -112,4 +122,4 @@ def _scores(base: Base, effect: Effect, left: Array) -> Array:
     gains, coefficients = gains_of(base, effect, shapes)
     best_gain = gains.max(axis=1)
     log_p = by_chance(base, effect, best_gain, coefficients.shape[2], looks)
-    return np.asarray(np.where(best_gain > 0.0, weighed(effect, log_p), np.inf))
+    return np.asarray(np.where(best_gain > 0.0, log_p, np.inf))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.family_wise import FamilyWise, family_wise, weighed
+from diagnosis.family_wise import FamilyWise, family_wise
 from diagnosis.joint_fit import Fit, evaluate, solve
 from diagnosis.named import Named
 from diagnosis.noise_colour import colour_of
@@ -14,7 +14,7 @@ from diagnosis.proof import held_out_residuals, rms_deg
 from diagnosis.search import Cause, judge
 from diagnosis.trial import drop, settle, take_out
 from twin.angles import Array
-from twin.catalogue import find
+from twin.catalogue import base_name
 from twin.effect import Effect
 
 SLACK = 1.004
@@ -42,7 +42,7 @@ def prove(
         idle = None
         family = _calibrated(fit, effects, causes, rng)
         for place, key in enumerate(ordered):
-            if _by_chance(fit, family, causes[place], effects) > LISTED_LOG_P:
+            if _by_chance(family, causes[place], effects) > LISTED_LOG_P:
                 # Or what was added after it has taken over what it was added for.
                 idle = key
                 break
@@ -67,7 +67,7 @@ def prove(
             cause.log_p,
             cause.gain,
             cause.rivals,
-            family_log_p=_by_chance(fit, family, cause, effects),
+            family_log_p=_by_chance(family, cause, effects),
             before_deg=figures[place],
             after_deg=figures[place + 1],
         )
@@ -88,11 +88,11 @@ def _calibrated(
     return family_wise(solve(baseline), fit, colour_of(fit), effects, rng=rng)
 
 
-def _by_chance(fit: Fit, family: FamilyWise | None, cause: Cause, effects: Sequence[Effect]) -> float:
+def _by_chance(family: FamilyWise | None, cause: Cause, effects: Sequence[Effect]) -> float:
     """Log of the family-wise probability of a cause: calibrated, or the F test's where that leaves no doubt."""
     if family is None:
         return cause.log_p + float(np.log(max(len(effects), 1)))
-    return family.log_p(float(weighed(find(cause.key, fit.chain.effects), cause.log_p)))
+    return family.log_p(base_name(cause.key), cause.log_p)
 
 
 def _judged(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:

@@ -18,7 +18,7 @@ from twin.catalogue import base_name
 from twin.effect import Effect
 
 SLACK = 1.004
-LISTED_LOG_P = float(np.log(0.001))
+LISTED_LOG_P = float(np.log(0.003))
 """Log of the family-wise probability below which a cause is listed."""
 NO_DOUBT_LOG_P = -40.0
 """Log probability of the F test below which no simulation of a size that can be afforded says more."""

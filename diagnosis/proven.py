@@ -34,7 +34,8 @@ def prove(
     effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
     keys = list(keys)
     while True:
-        causes = sorted((_judged(fit, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
+        views = _views(fit)
+        causes = sorted((_judged(views, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
         use = fit.evidence.usable
         ordered = [cause.key for cause in causes]
         held = held_out_residuals(fit, ordered)
@@ -95,14 +96,17 @@ def _by_chance(family: FamilyWise | None, cause: Cause, effects: Sequence[Effect
     return family.log_p(base_name(cause.key), cause.log_p)
 
 
-def _judged(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:
-    """The cause as judged; on coloured noise also as judged without the output's stairs.
+def _views(fit: Fit) -> list[Fit]:
+    """The fit; on coloured noise also the fit without the output's stairs.
 
     A slow noise shifts whole runs of readings against the stairs, which a cause may then seem to set right.
     """
-    cause = judge(fit, key, effects, keys)
     if fit.setting.member == 0 or "output_quantisation" not in fit.chain.values:
-        return cause
+        return [fit]
     chain = fit.chain.without("output_quantisation")
-    smooth, _ = settle(solve(evaluate(chain, fit.free, fit.evidence, fit.setting)))
-    return max(cause, judge(smooth, key, effects, keys), key=lambda one: one.log_p)
+    return [fit, settle(solve(evaluate(chain, fit.free, fit.evidence, fit.setting)))[0]]
+
+
+def _judged(views: Sequence[Fit], key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:
+    """The cause as the least favourable view judges it."""
+    return max((judge(view, key, effects, keys) for view in views), key=lambda cause: cause.log_p)

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from scenarios.cli_effects import EffectFiles, check_effect, new_effect
+from scenarios.cli_options import BothDirections, Points, Seed, SpeedRpm, Temperatures, Turns
 from scenarios.cli_studies import design, generate, recover
 
 app = typer.Typer(
@@ -19,8 +20,6 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-
-Seed = Annotated[int, typer.Option(min=0, help="Seed of everything random; the same seed gives the same bytes.")]
 
 
 @app.command()
@@ -65,11 +64,11 @@ def simulate(
     twin: Annotated[str, typer.Argument(help="Twin TOML, or the name of a preset.")] = "imc-14bit",
     output: Annotated[Path, typer.Option("-o", "--output", help="Sweep to write: CSV or .csv.gz.")] = Path("sweep.csv"),
     motion: Annotated[Path | None, typer.Option(help="Simulate on the motion of this recorded sweep.")] = None,
-    turns: Annotated[int, typer.Option(help="Turns in each direction.")] = 1,
-    points: Annotated[int, typer.Option(help="Readings a turn.")] = 360,
-    both_directions: Annotated[bool, typer.Option("--both-directions", help="And back over the same angles.")] = False,
-    speed_rpm: Annotated[list[float] | None, typer.Option(help="Speed; may be repeated. 0: stop and measure.")] = None,
-    temperatures: Annotated[str, typer.Option(help="Temperatures in C, e.g. 25,60,85.")] = "",
+    turns: Turns = 1,
+    points: Points = 360,
+    both_directions: BothDirections = False,
+    speed_rpm: SpeedRpm = None,
+    temperatures: Temperatures = "",
     channels: Annotated[bool, typer.Option(help="Record vx and vy as well.")] = True,
     reference_lines: Annotated[int | None, typer.Option(help="Lines of the reference encoder (4 counts each).")] = None,
     trace: Annotated[Path | None, typer.Option(help="Write every intermediate signal as CSV.")] = None,
@@ -205,11 +204,11 @@ def bench(
     hide: Annotated[
         list[str] | None, typer.Option(help="Effect to hide in it, EFFECT:PARAMETER=VALUE[,...]; may be repeated.")
     ] = None,
-    points: Annotated[int, typer.Option(help="Readings a turn.")] = 360,
-    turns: Annotated[int, typer.Option(help="Turns in each direction.")] = 1,
-    both_directions: Annotated[bool, typer.Option("--both-directions", help="And back over the same angles.")] = False,
-    speed_rpm: Annotated[list[float] | None, typer.Option(help="Speed; may be repeated. 0: stop and measure.")] = None,
-    temperatures: Annotated[str, typer.Option(help="Temperatures in C, e.g. 25,60,85.")] = "",
+    points: Points = 360,
+    turns: Turns = 1,
+    both_directions: BothDirections = False,
+    speed_rpm: SpeedRpm = None,
+    temperatures: Temperatures = "",
     settle: Annotated[float, typer.Option(help="Time in s from the last step to a reading.")] = 0.3,
     channels: Annotated[bool, typer.Option(help="The encoder sends vx and vy as well.")] = True,
     chamber: Annotated[bool, typer.Option(help="A climate chamber on the bus tells the temperature.")] = True,

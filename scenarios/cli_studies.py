@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-Seed = Annotated[int, typer.Option(min=0, help="Seed of everything random; the same seed gives the same bytes.")]
+from scenarios.cli_options import BothDirections, Points, Seed, SpeedRpm, Temperatures, Turns
+
 Workers = Annotated[int | None, typer.Option(help="Worker processes; without it one for each core.")]
 Scheduler = Annotated[
     str | None, typer.Option(help="Hand the work to a Dask cluster: its address, or 'local' to start one.")
@@ -22,11 +23,11 @@ def generate(
     most_causes: Annotated[int, typer.Option(help="Most causes in a sweep; none is as likely as any number.")] = 3,
     strength: Annotated[str, typer.Option(help="Strengths in deg, log-uniform.")] = "0.02:0.3",
     noise: Annotated[str, typer.Option(help="RMS noise in deg, log-uniform.")] = "0.003:0.05",
-    turns: Annotated[int, typer.Option(help="Turns in each direction.")] = 1,
-    points: Annotated[int, typer.Option(help="Readings a turn.")] = 360,
-    both_directions: Annotated[bool, typer.Option("--both-directions", help="And back over the same angles.")] = False,
-    speed_rpm: Annotated[list[float] | None, typer.Option(help="Speed; may be repeated. 0: stop and measure.")] = None,
-    temperatures: Annotated[str, typer.Option(help="Temperatures in C, e.g. 25,60,85.")] = "",
+    turns: Turns = 1,
+    points: Points = 360,
+    both_directions: BothDirections = False,
+    speed_rpm: SpeedRpm = None,
+    temperatures: Temperatures = "",
     channels: Annotated[bool, typer.Option("--channels", help="Store the two channels as well.")] = False,
     chunk: Annotated[int, typer.Option(help="Sweeps a chunk.")] = 1000,
     workers: Workers = None,

@@ -102,9 +102,9 @@ ol.chain { list-style: none; display: grid; gap: .55rem 1.1rem; padding: 0; marg
     --third:#c8402a; --fourth:#6a3d9a; --new:#b84f00; }
   @page { margin: 16mm 14mm; }
   body { max-width: none; padding: 0; font-size: 10.5pt; }
-  h2, h3 { break-after: avoid; } table, .told, .figures, .cause-head { break-inside: avoid; }
+  h2, h3, h2 + p, h3 + p { break-after: avoid; } table, .told, .figures, .cause-head, .chain { break-inside: avoid; }
   .figures div, .told { border: 1px solid var(--rule); } .plots { grid-template-columns: 1fr 1fr; gap: 4mm 6mm; }
-  .beside { display: grid; grid-template-columns: 1fr 1fr; gap: 0 6mm; } .beside .plots { grid-template-columns: 1fr; }
+  .beside { display: block; } .beside .plots { grid-template-columns: 95mm; }
   .chain .new { print-color-adjust: exact; -webkit-print-color-adjust: exact; } .scroll { overflow: visible; }
 }
 """

@@ -75,29 +75,31 @@ class FamilyWise:
         return float(self.smallest.log_p(self.tails[name].log_p(np.array(score))))
 
 
-def family_wise(fit: Fit, colour: Colour, effects: Sequence[Effect], *, rng: np.random.Generator) -> FamilyWise:
-    """Simulate a fit with its noise of this colour, and screen ``effects`` on every sweep."""
-    base = Base.of(fit)
-    noise = ahead_of_stairs(fit, colour)
-    count = int(np.clip(_NUMBERS // len(fit.evidence), *SWEEPS))
-    residuals = np.empty((count, fit.evidence.observables, len(fit.evidence)))
-    residuals[:, 0] = to_cosine(fit.evidence, simulated(fit, noise, count=count, rng=rng))
-    if fit.evidence.observables == 2:
-        residuals[:, 1] = _radius(fit, count, rng)
+def family_wise(
+    baseline: Fit, extended: Fit, colour: Colour, effects: Sequence[Effect], *, rng: np.random.Generator
+) -> FamilyWise:
+    """Simulate the baseline with the noise of the extended fit, and screen ``effects`` on every sweep."""
+    base = Base.of(baseline)
+    noise = ahead_of_stairs(extended, colour)
+    count = int(np.clip(_NUMBERS // len(baseline.evidence), *SWEEPS))
+    residuals = np.empty((count, baseline.evidence.observables, len(baseline.evidence)))
+    residuals[:, 0] = to_cosine(baseline.evidence, simulated(baseline, noise, count=count, rng=rng))
+    if baseline.evidence.observables == 2:
+        residuals[:, 1] = _radius(extended, count, rng)
     base = base.with_residuals(residuals)
     # Lines are looked for in what the baseline's own parameters leave.
-    member = fit.setting.member
-    left = base.residuals[member][:, : len(fit.evidence)] / base.roots[member][0]
+    member = baseline.setting.member
+    left = base.residuals[member][:, : len(baseline.evidence)] / base.roots[member][0]
     scores = {effect.name: _scores(base, effect, left) for effect in effects}
     tails = {name: Tail.of(values) for name, values in scores.items()}
     smallest = np.min([tails[name].log_p(values) for name, values in scores.items()], axis=0)
     return FamilyWise(tails, Tail.of(smallest))
 
 
-def _radius(fit: Fit, count: int, rng: np.random.Generator) -> Array:
-    """Cosine coefficients (count, n) of radii with the noise that the fit has left there."""
-    root = root_weights(fit.setting, 2)[1]
-    sigma = float(np.sqrt(np.mean((fit.cosine_residual[1] * root) ** 2)))
+def _radius(extended: Fit, count: int, rng: np.random.Generator) -> Array:
+    """Cosine coefficients (count, n) of radii with the noise that the extended fit has left there."""
+    root = root_weights(extended.setting, 2)[1]
+    sigma = float(np.sqrt(np.mean((extended.cosine_residual[1] * root) ** 2)))
     return np.asarray(sigma * rng.standard_normal((count, root.size)) / root)
 
 

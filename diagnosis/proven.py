@@ -80,17 +80,13 @@ def prove(
 def _calibrated(
     fit: Fit, effects: Sequence[Effect], causes: Sequence[Cause], rng: np.random.Generator
 ) -> FamilyWise | None:
-    """The scores that the effects reach on sweeps without the causes that are in doubt; None where none is.
-
-    The noise is what is left without them: with them a slow noise would have lost what passes for a cause.
-    """
-    doubted = [cause.key for cause in causes if cause.log_p > NO_DOUBT_LOG_P]
-    if not doubted:
+    """The scores that the effects reach on sweeps without any of the causes; None where none of these is in doubt."""
+    if all(cause.log_p < NO_DOUBT_LOG_P for cause in causes):
         return None
-    for key in doubted:
-        fit = take_out(fit, key)
-    fit, _ = settle(solve(fit))
-    return family_wise(fit, colour_of(fit), effects, rng=rng)
+    baseline = fit
+    for cause in causes:
+        baseline = take_out(baseline, cause.key)
+    return family_wise(solve(baseline), fit, colour_of(fit), effects, rng=rng)
 
 
 def _by_chance(family: FamilyWise | None, cause: Cause, effects: Sequence[Effect]) -> float:

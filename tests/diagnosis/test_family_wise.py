@@ -61,7 +61,7 @@ def test_an_effect_that_never_gains_is_judged_by_its_score() -> None:
 def test_same_seed_same_tails_and_a_strong_score_is_beyond_doubt() -> None:
     fit = baseline_of(FIRST_SEED, "hard")
     effects = [e for e in CATALOGUE if e.name in ("saturation", "magnet_harmonic", "index_slip")]
-    one, other = (family_wise(fit, colour_of(fit), effects, rng=np.random.default_rng(2)) for _ in range(2))
+    one, other = (family_wise(fit, fit, colour_of(fit), effects, rng=np.random.default_rng(2)) for _ in range(2))
     for name, tail in one.tails.items():
         assert np.array_equal(tail.scores, other.tails[name].scores)
     # A tail's rate is at least a third here: exp(-60 / 3) and the share of three effects.

@@ -22,10 +22,12 @@ def marks(measured: Array, residual: Array, noise: float, step: float, motion: M
     """Rows that repeat the reading before bit for bit while the shaft moved on by more than grid and noise allow.
 
     A repeat by chance needs the noise to cancel the movement: with a movement of ``move`` and a difference of two
-    noises of ``sqrt(2) noise`` its probability a row is the density there times the grid's step.
+    noises of ``sqrt(2) noise`` its probability a row is the density there times the grid's step. Where the direction
+    or the turn changes, slack or a new zero may undo the movement: no repeat is told there.
     """
     repeat = np.concatenate([[False], np.abs(wrap(np.diff(measured))) < 1e-9])
-    move = np.concatenate([[0.0], np.abs(np.diff(motion.shaft_rad))])
+    on = (np.diff(motion.direction) == 0) & (np.diff(motion.turn) == 0)
+    move = np.concatenate([[0.0], np.where(on, np.abs(np.diff(motion.shaft_rad)), 0.0)])
     grid = max(step, 1e-6)
     sigma = np.sqrt(2.0) * max(noise, 0.3 * grid)
     mask = repeat & (move > 1.5 * grid) & (move > 4.0 * sigma)

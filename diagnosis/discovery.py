@@ -32,6 +32,8 @@ from twin.sweep import Sweep
 
 BURST_LOG_P = float(np.log(1e-6))
 """A stretch of noise must be this improbable: its test takes the noise to be Gaussian, which is true only nearly."""
+GLITCH_ALPHA = 0.01
+"""Probability of a false alarm by which single readings are called flipped bits: only those that stand far out are."""
 SPREAD_LOG_P = -16.0
 """Log probability that a shape of the spread must fall below: as for a burst, noise is Gaussian only nearly."""
 BEYOND_DOUBT = -25.0
@@ -125,7 +127,7 @@ def discover(
         # Repeats that structure hid at first.
         sequence_mask, sequence_found = _sequence(fit, sweep, candidates, step, "stale_frames", sequence_mask)
         fit = without_rows(fit, sequence_mask)
-    glitch_mask, glitches = _sequence(fit, sweep, candidates, step, "bus_glitch", sequence_mask)
+    glitch_mask, glitches = _sequence(fit, sweep, candidates, step, "bus_glitch", sequence_mask, alpha=GLITCH_ALPHA)
     masked = sequence_mask | glitch_mask
     quantisation(fit, bits, step, values_found)
     fit = with_slopes(fit)
@@ -164,7 +166,14 @@ def discover(
 
 
 def _sequence(
-    fit: Fit, sweep: Sweep, effects: Sequence[Effect], step: float, name: str, spoken_for: BoolArray
+    fit: Fit,
+    sweep: Sweep,
+    effects: Sequence[Effect],
+    step: float,
+    name: str,
+    spoken_for: BoolArray,
+    *,
+    alpha: float = ALPHA,
 ) -> tuple[BoolArray, list[Named]]:
     """Raw rows that a single-reading effect has touched, and the effect where chance does not explain them.
 
@@ -177,7 +186,7 @@ def _sequence(
         return nothing, []
     sigma = footprints.robust_rms(footprints.local_residual(residual))
     mask, log_p = effect.marks(np.radians(sweep.measured_deg), residual, sigma, step, sweep.motion())
-    if log_p > np.log(ALPHA) or not mask.any():
+    if log_p > np.log(alpha) or not mask.any():
         return nothing, []
     return mask, [Named((name,), log_p, -2.0 * log_p, rows=tuple(int(row) for row in np.flatnonzero(mask)))]
 

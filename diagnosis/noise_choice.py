@@ -64,6 +64,7 @@ def _scores(residual: Array, columns: Array, family: NoiseFamily, rows: int) -> 
     columns = columns / np.maximum(np.linalg.norm(columns, axis=1, keepdims=True), 1e-300)
     dof = rows - len(columns)
     score, variance = np.empty(len(family.labels)), np.empty(len(family.labels))
+    cost = family.cost(rows)
     for member, weight in enumerate(family.weights):
         white = columns * weight
         gram = white @ columns.T
@@ -71,7 +72,7 @@ def _scores(residual: Array, columns: Array, family: NoiseFamily, rows: int) -> 
         along = white @ residual
         left = float(residual @ (weight * residual) - along @ np.linalg.solve(gram, along))
         _, log_det = np.linalg.slogdet(gram)
-        score[member] = -0.5 * (dof * np.log(max(left, 1e-300)) + family.cost[member] + log_det)
+        score[member] = -0.5 * (dof * np.log(max(left, 1e-300)) + cost[member] + log_det)
         variance[member] = left / dof
     return score, variance
 

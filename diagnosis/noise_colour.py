@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.joint_fit import Fit
-from diagnosis.noise_model import NoiseFamily, spectrum
+from diagnosis.noise_model import NoiseFamily, log_determinant, spectrum
 from twin.angles import Array
 
 _HALVINGS = 5
@@ -133,6 +133,6 @@ def _restricted_cost(fit: Fit) -> Callable[[Array], float]:
         along = weighted @ c + pull
         left = float(np.sum(c * c / shape)) + rest - float(along @ np.linalg.solve(gram, along))
         _, log_det = np.linalg.slogdet(gram)
-        return 0.5 * (dof * float(np.log(max(left, 1e-300))) + float(np.sum(np.log(shape))) + float(log_det))
+        return 0.5 * (dof * float(np.log(max(left, 1e-300))) + log_determinant(shape, fit.rows) + float(log_det))
 
     return cost

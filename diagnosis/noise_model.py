@@ -50,14 +50,21 @@ class NoiseFamily:
         """Inverse spectra (families, n)."""
         return np.asarray(1.0 / self.spectra)
 
-    @property
-    def cost(self) -> Array:
-        """What each member (families,) adds to minus twice the log likelihood before any residual is seen.
+    def cost(self, rows: int) -> Array:
+        """What each member (families,) adds to minus twice the log likelihood of so many rows in use.
 
         The log determinant of its covariance, and the prior odds: colour is what readings must show.
         """
         odds = np.array([0.0 if label == "white" else 2.0 * COLOUR_ODDS for label in self.labels])
-        return np.asarray(np.sum(np.log(self.spectra), axis=1) + odds)
+        return np.asarray([log_determinant(spectrum, rows) for spectrum in self.spectra] + odds)
+
+
+def log_determinant(spectrum: Array, rows: int) -> float:
+    """Log determinant of the covariance of so many rows in use of a sequence with this spectrum (n,).
+
+    Masked rows take their share of it with them: left in, it would favour the steeper spectra.
+    """
+    return float(np.sum(np.log(spectrum))) * (rows / spectrum.size)
 
 
 def noise_family(n: int) -> NoiseFamily:

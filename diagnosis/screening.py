@@ -86,6 +86,7 @@ class Base:
     def with_residuals(self, cosine_residuals: Array) -> Base:
         """The same fit with residuals (batch, O, n) in the place of its own, as cosine coefficients."""
         prior = self.fit.prior_residual
+        costs = self.fit.setting.family.cost(self.fit.rows)
         residuals: list[Array] = []
         likelihood = np.full((len(cosine_residuals), len(self.rows)), -np.inf)
         for member, q in enumerate(self.rows):
@@ -97,7 +98,7 @@ class Base:
             r = r - (r @ q.T) @ q
             residuals.append(r)
             squares = np.maximum(np.einsum("sn,sn->s", r, r), 1e-300)
-            cost = self.fit.setting.family.cost[member] + self.log_det[member]
+            cost = costs[member] + self.log_det[member]
             likelihood[:, member] = -0.5 * (self.dof * np.log(squares) + cost)
         return replace(self, residuals=residuals, likelihood=likelihood)
 

@@ -37,11 +37,12 @@ def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
     integrated = [*base, *turns]
     dof = fit.rows * fit.evidence.observables - len(base)
     prior = float(np.sum(np.log(np.abs(fit.prior_jacobian[turns].sum(axis=1))))) if turns else 0.0
+    cost = family.cost(fit.rows)
     best = -np.inf
     for member in members or fit.setting.plausible:
         r, j = fit.whitened(member)
         _, log_det = np.linalg.slogdet(j[integrated] @ j[integrated].T + 1e-300 * np.eye(len(integrated)))
-        best = max(best, -0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + family.cost[member] + log_det))
+        best = max(best, -0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + cost[member] + log_det))
     return float(best) + prior
 
 
@@ -102,7 +103,7 @@ def radius_as_left(fit: Fit) -> tuple[int, float]:
     """Family member and variance that describe all that is left of the radius, as if it were noise."""
     family = fit.setting.family
     squares = (fit.cosine_residual[1] ** 2) @ family.weights.T
-    member = int(np.argmax(-0.5 * (fit.rows * np.log(np.maximum(squares, 1e-300)) + family.cost)))
+    member = int(np.argmax(-0.5 * (fit.rows * np.log(np.maximum(squares, 1e-300)) + family.cost(fit.rows))))
     return member, float(squares[member] / len(fit.evidence))
 
 

@@ -5,6 +5,8 @@ common ground before they are compared (`common`); the generator's own conventio
 
 * A common scale of both channels is never visible. The answer counts in amplitudes of x, the generator in nominal
   ones: levels, steps and additive signals are divided by the generator's amplitude of x.
+* An offset and its drift stand ahead of the channel's gain in the answer, behind it in the generator: those of y are
+  counted in amplitudes of y.
 * One phase and an amplitude for each channel: (x, y, phase) is the same hum as (-x, -y, phase + 180 deg).
 * Phases in time: the generator counts time as the file does, the answer from the first reading.
 * The phase of an order that is no whole number depends on which turn is the first: the generator counts the shaft from
@@ -52,6 +54,8 @@ def common(name: str, given: Mapping[str, Any], truth: Mapping[str, Any]) -> dic
     frame = truth["frame"]
     for key in IN_AMPLITUDES.get(name, ()):
         actual[key] /= frame["amplitude_x"]
+    if name == "offset_drift":
+        actual["y_percent_per_K"] /= truth["baseline"]["gain_ratio"]
     if name == "mains_pickup":
         along = sum(actual[key] * float(given[key]["value"]) for key in ("x_percent", "y_percent"))
         if along < 0.0:

@@ -21,7 +21,7 @@ from diagnosis.rounds import searched, trusting
 from diagnosis.rows import mask_spikes, raw_residual, scaled, without_rows
 from diagnosis.search import ALPHA
 from diagnosis.separation import options
-from diagnosis.stairs import with_slopes
+from diagnosis.stairs import stair_step, with_slopes
 from diagnosis.start import first_fit, mirrored
 from diagnosis.trial import HANDICAP, SWAP_MARGIN, likelihood, settle
 from twin.angles import TAU
@@ -184,11 +184,15 @@ def _sequence(
     nothing = np.zeros(len(sweep), dtype=bool)
     if effect is None or effect.marks is None:
         return nothing, []
-    sigma = footprints.robust_rms(footprints.local_residual(residual))
+    # What a CORDIC's uneven stairs leave stands out of the noise too.
+    stairs = stair_step(fit.chain, step) / np.sqrt(12.0)
+    sigma = max(footprints.robust_rms(footprints.local_residual(residual)), stairs)
     mask, log_p = effect.marks(np.radians(sweep.measured_deg), residual, sigma, step, sweep.motion())
     if log_p > np.log(alpha) or not mask.any():
         return nothing, []
-    return mask, [Named((name,), log_p, -2.0 * log_p, rows=tuple(int(row) for row in np.flatnonzero(mask)))]
+    rows = tuple(int(row) for row in np.flatnonzero(mask))
+    # Looked for by itself, on readings that no other effect touches: there is no family to pay for.
+    return mask, [Named((name,), log_p, -2.0 * log_p, rows=rows, family_log_p=log_p)]
 
 
 def _spread(fit: Fit, effects: Sequence[Effect], looked: int) -> tuple[list[Named], Fit]:

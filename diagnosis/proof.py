@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.joint_fit import BASELINE, Fit, Free, evaluate, solve
-from twin.angles import TAU, Array, wrap
+from twin.angles import TAU, Array, IntArray, wrap
 from twin.catalogue import base_name
 from twin.effect import BoolArray
 
@@ -16,7 +16,7 @@ FOLDS = 4
 BLOCKS_A_TURN = 3
 
 
-def folds(fit: Fit) -> Array:
+def folds(fit: Fit) -> IntArray:
     """Fold (n,) of each row: thirds of a turn of travel, dealt out so that every third is held out in some turn.
 
     A third is shorter than a turn, so that each turn's own zero can be fitted from the rest of it.
@@ -25,15 +25,20 @@ def folds(fit: Fit) -> Array:
     block = np.floor(motion.travel_rad / TAU * BLOCKS_A_TURN + 1e-9).astype(np.int64)
     if block.max(initial=0) < 2 * FOLDS:
         block = np.floor(np.arange(len(motion)) * (3 * FOLDS) / max(len(motion), 1)).astype(np.int64)
-    return np.asarray(block % FOLDS)
+    return np.asarray(block % FOLDS, dtype=np.int64)
 
 
-def held_out_residuals(fit: Fit, keys: Sequence[str], known: Sequence[str] = ()) -> list[Array]:
+def scattered(fit: Fit) -> IntArray:
+    """Fold (n,) of each row where neighbours share none: for what is narrower than a block, in white noise."""
+    return np.arange(len(fit.evidence), dtype=np.int64) % FOLDS
+
+
+def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray | None = None) -> list[Array]:
     """Residuals (n,) [rad] on held-out rows: of the baseline, then of the baseline with one cause after the other.
 
-    ``known`` are instances that stay in all of them (a given twin, the readings' own grid).
+    ``fold`` (n,) is that of each row; without it :func:`folds`.
     """
-    fold = folds(fit)
+    fold = folds(fit) if fold is None else fold
     use = fit.evidence.usable
     base_free = [f for f in fit.free if base_name(f.key) not in {base_name(k) for k in keys}] or list(BASELINE)
     stages: list[tuple[list[str], list[Free]]] = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,7 +11,7 @@ from diagnosis.family_wise import FamilyWise, family_wise
 from diagnosis.joint_fit import Fit, evaluate, solve
 from diagnosis.named import Named
 from diagnosis.noise_colour import colour_of
-from diagnosis.proof import held_out_residuals, rms_deg
+from diagnosis.proof import folds, held_out_residuals, rms_deg, scattered
 from diagnosis.search import Cause, judge
 from diagnosis.trial import drop, settle, take_out
 from twin.angles import Array
@@ -18,6 +19,8 @@ from twin.catalogue import base_name
 from twin.effect import Effect
 
 SLACK = 1.004
+LOST = 1.5
+"""Growth of the held-out RMS with a cause above which its fit has not seen what it is about."""
 LISTED_LOG_P = float(np.log(0.003))
 """Log of the family-wise probability below which a cause is listed."""
 NO_DOUBT_LOG_P = -40.0
@@ -38,8 +41,14 @@ def prove(
         causes = sorted((_judged(views, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
         use = fit.evidence.usable
         ordered = [cause.key for cause in causes]
-        held = held_out_residuals(fit, ordered)
+        fold = folds(fit)
+        held = held_out_residuals(fit, ordered, fold)
         weighed = [rms_deg(residual / fit.evidence.scale, use) for residual in held]
+        if fit.setting.member == 0 and _lost(weighed):
+            # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere.
+            fold = scattered(fit)
+            held = held_out_residuals(fit, ordered, fold)
+            weighed = [rms_deg(residual / fit.evidence.scale, use) for residual in held]
         idle = None
         family = _calibrated(fit, effects, causes, rng)
         for place, key in enumerate(ordered):
@@ -50,7 +59,7 @@ def prove(
             if weighed[place + 1] < weighed[place]:
                 continue
             # Not the last step: its turn may come only with what was added after it.
-            alone = held_out_residuals(fit, [*(k for k in ordered if k != key), key])
+            alone = held_out_residuals(fit, [*(k for k in ordered if k != key), key], fold)
             # The RMS counts correlated noise in full: a strong cause that leaves it as it is shows elsewhere.
             slack = SLACK if causes[place].log_p < np.log(1e-10) else 1.0
             before, after = (rms_deg(residual / fit.evidence.scale, use) for residual in alone[-2:])
@@ -75,6 +84,11 @@ def prove(
         for place, cause in enumerate(causes)
     ]
     return fit, entries, held
+
+
+def _lost(rms: Sequence[float]) -> bool:
+    """Whether any step makes the held-out RMS much worse."""
+    return any(after > LOST * before for before, after in itertools.pairwise(rms))
 
 
 def _calibrated(

@@ -45,7 +45,7 @@ class Tail:
 
     @classmethod
     def of(cls, scores: Array) -> Tail:
-        """Fit the tail."""
+        """Sort the scores."""
         return cls(np.sort(scores))
 
     def log_p(self, score: Array) -> Array:

@@ -60,7 +60,7 @@ def merge(entries: list[Named]) -> list[Named]:
                 first,
                 keys=(*first.keys, *entry.keys),
                 log_p=min(first.log_p, entry.log_p),
-                family_log_p=_smaller(first.family_log_p, entry.family_log_p),
+                family_log_p=min((p for p in (first.family_log_p, entry.family_log_p) if p is not None), default=None),
                 gain=first.gain + entry.gain,
                 rivals={name: fit for name, fit in first.rivals.items() if name in entry.rivals},
                 after_deg=entry.after_deg,
@@ -68,10 +68,6 @@ def merge(entries: list[Named]) -> list[Named]:
         else:
             merged[entry.name] = entry
     return sorted(merged.values(), key=lambda e: -e.gain)
-
-
-def _smaller(one: float | None, other: float | None) -> float | None:
-    return other if one is None else one if other is None else min(one, other)
 
 
 def of_readings(row_rms_deg: float, evidence: Evidence) -> float:

@@ -33,12 +33,11 @@ def scattered(fit: Fit) -> IntArray:
     return np.arange(len(fit.evidence), dtype=np.int64) % FOLDS
 
 
-def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray | None = None) -> list[Array]:
+def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray) -> list[Array]:
     """Residuals (n,) [rad] on held-out rows: of the baseline, then of the baseline with one cause after the other.
 
-    ``fold`` (n,) is that of each row; without it :func:`folds`.
+    ``fold`` (n,) is that of each row.
     """
-    fold = folds(fit) if fold is None else fold
     use = fit.evidence.usable
     base_free = [f for f in fit.free if base_name(f.key) not in {base_name(k) for k in keys}] or list(BASELINE)
     stages: list[tuple[list[str], list[Free]]] = []

@@ -37,7 +37,7 @@ def prove(
     effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
     keys = list(keys)
     while True:
-        views = _views(fit)
+        views = _views(fit) if keys else []
         causes = sorted((_judged(views, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
         use = fit.evidence.usable
         ordered = [cause.key for cause in causes]

@@ -64,11 +64,12 @@ class Base:
         rows: list[Array] = []
         log_det: list[float] = []
         for member in range(len(fit.setting.family.labels)):
-            roots.append(root_weights(fit.setting, fit.evidence.observables, member))
             if member not in fit.setting.plausible:
+                roots.append(np.zeros_like(fit.cosine_residual))
                 rows.append(np.zeros((0, 0)))
                 log_det.append(np.inf)
                 continue
+            roots.append(root_weights(fit.setting, fit.evidence.observables, member))
             _, j = fit.whitened(member)
             scale = np.linalg.norm(j, axis=1, keepdims=True)
             q, triangle = np.linalg.qr((j / np.where(scale > 0.0, scale, 1.0)).T)

@@ -190,8 +190,7 @@ def in_its_place(
 
 
 def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:
-    """What a cause gains in the final fit, and which named effects in its place would fit as well."""
-    effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
+    """What a cause gains in the final fit, and which named effects (of these, all visible) would fit as well."""
     standing = Standing.of(fit, key)
     effect, own, gain = standing.effect, standing.own, standing.gain
     before = likelihood(standing.without)

@@ -14,7 +14,7 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.cli import main
+from scenarios.cli.main import main
 
 Array = NDArray[np.float64]
 

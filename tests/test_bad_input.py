@@ -277,7 +277,7 @@ def test_from_outside() -> None:
     """As a person runs it: exit code and one line, no traceback."""
     root = Path(__file__).parents[1]
     ended = subprocess.run(
-        [sys.executable, "-m", "scenarios.cli", "explain", "nothing.csv"], cwd=root, capture_output=True, text=True
+        [sys.executable, "-m", "scenarios.cli.main", "explain", "nothing.csv"], cwd=root, capture_output=True, text=True
     )
     assert ended.returncode == 2
     assert ended.stdout == ""

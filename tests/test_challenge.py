@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from scenarios.explain import explain_file
+from scenarios.commands.explain import explain_file
 
 from .hidden.scoring import right
 

@@ -230,7 +230,7 @@ def test_same_input_and_seed_give_the_same_bytes(folder: Path) -> None:
     outputs = []
     for number in ("1", "2"):
         names = [folder / f"bytes{number}.{ending}" for ending in ("json", "toml")]
-        command = [sys.executable, "-m", "scenarios.cli", "explain", str(path), "--seed", "3"]
+        command = [sys.executable, "-m", "scenarios.cli.main", "explain", str(path), "--seed", "3"]
         command += ["--json", str(names[0]), "--extended", str(names[1])]
         environment = {**os.environ, "PYTHONHASHSEED": number, "PYTHONPATH": str(ROOT)}
         ended = subprocess.run(command, cwd=folder, env=environment, capture_output=True, check=True)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.compensation import Correction, correction_of, to_dict
+from diagnosis.correction.compensation import Correction, correction_of, to_dict
 from scenarios.bench.faults import Opener
 from scenarios.bench.journal import Journal, finished_readings, running_path
 from scenarios.bench.measure import Measured, Measurement, measure
@@ -76,8 +76,8 @@ def run_loop(
 
     A run that was broken off in its second half goes on there.
     """
-    from scenarios.answer import to_json
-    from scenarios.explain import explain
+    from scenarios.commands.explain import explain
+    from scenarios.report.answer import to_json
     from twin.files import write_twin
 
     first = _half(job, "before")

@@ -8,7 +8,7 @@ import numpy as np
 
 from scenarios.bench.closed_loop import AIM_DEG, Loop
 from scenarios.bench.readings import Reading
-from scenarios.plotting import save, style
+from scenarios.report.plotting import save, style
 from twin.angles import Array
 
 _BEFORE, _AFTER = "#cc3311", "#4477aa"

@@ -96,7 +96,7 @@ def _measurement(options: Options) -> Measurement:
     from scenarios.bench.measure import Measurement
     from scenarios.bench.plan import Plan
     from scenarios.bench.sequence import Patience
-    from scenarios.protocol import numbers
+    from scenarios.commands.protocol import numbers
     from twin.limits import require_within
 
     require_within("timeout", options.timeout_s, 1e-3, 3600.0, "s")
@@ -134,7 +134,7 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
     from twin.extensions import effects_with
 
     if options.plot is not None:
-        from scenarios.plotting import style
+        from scenarios.report.plotting import style
 
         style(options.plot)
         if not options.closed_loop:

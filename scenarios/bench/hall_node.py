@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from diagnosis.compensation import Correction
+from diagnosis.correction.compensation import Correction
 from scenarios.bench.faults import FaultyBus
 from scenarios.bench.loading import RECEIVING, Loader
 from scenarios.bench.messages import CHANNEL_LIMIT, Frame

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from diagnosis.compensation import MOST_ORDERS, Correction
+from diagnosis.correction.compensation import MOST_ORDERS, Correction
 
 NONE, RECEIVING, ACTIVE, REFUSED = 0, 1, 2, 3
 """CorrectionStatus.State."""

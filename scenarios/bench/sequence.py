@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from diagnosis.compensation import Correction
+from diagnosis.correction.compensation import Correction
 from scenarios.bench.link import Link
 from scenarios.bench.loading import ACTIVE, RECEIVING, items, numbers
 from scenarios.bench.messages import Frame, messages

@@ -7,9 +7,9 @@ import time
 
 import numpy as np
 
-from diagnosis.error_model import Readings
-from diagnosis.fit import fit_equal
-from diagnosis.search_range import first_box
+from diagnosis.error_model.fit import fit_equal
+from diagnosis.error_model.model import Readings
+from diagnosis.error_model.search_range import first_box
 from twin.angles import TAU, Array
 
 READINGS = 360

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.compensation import Correction, correction_of
-from diagnosis.compensation_c import header
+from diagnosis.correction.compensation import Correction, correction_of
+from diagnosis.correction.compensation_c import header
 from tests.diagnosis.study import device
 from twin.angles import TAU, wrap
 from twin.chain import Chain

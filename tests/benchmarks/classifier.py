@@ -17,13 +17,13 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.fit import fit_baseline, fit_equal
-from scenarios.answer import to_json
-from scenarios.engine import Machines
-from scenarios.explain import explain
-from scenarios.protocol import Protocol
-from scenarios.training import STORE, Training, generate, recipe_of
-from scenarios.training_draw import Ranges
+from diagnosis.error_model.fit import fit_baseline, fit_equal
+from scenarios.commands.explain import explain
+from scenarios.commands.protocol import Protocol
+from scenarios.report.answer import to_json
+from scenarios.studies.engine import Machines
+from scenarios.studies.training.draw import Ranges
+from scenarios.studies.training.run import STORE, Training, generate, recipe_of
 from tests.benchmarks.classifier_features import Record, features
 from tests.hidden.generator import draw
 from tests.hidden.scoring import right

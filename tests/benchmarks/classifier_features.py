@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.baseline_fit import BaselineFit
-from diagnosis.error_model import ZERO
+from diagnosis.error_model.model import ZERO
+from diagnosis.error_model.result import BaselineFit
 from twin.angles import Array
 
 ORDERS = (*range(1, 9), 12, 16)

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.calibration import calibrate
-from diagnosis.compensation import correction_of
-from diagnosis.held_out import against
+from diagnosis.correction.calibration import calibrate
+from diagnosis.correction.compensation import correction_of
+from diagnosis.correction.cross_validation import against
 from twin.angles import TAU, Array, radians, wrap
 from twin.sweep import Sweep
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.design_field import Designs
+from scenarios.studies.design.field import Designs
 from tests.twin.geometries import one, random_designs
 from twin.angles import TAU, Array, wrap
 from twin.magnet.field import basis

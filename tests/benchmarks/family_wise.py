@@ -14,12 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.family_wise import family_wise
-from diagnosis.joint_fit import Fit, solve
-from diagnosis.noise_colour import colour_of
-from diagnosis.screening import Base, screen
-from diagnosis.trial import settle, take_out
-from scenarios.explain import explain
+from diagnosis.discovery.fitting.joint_fit import Fit, solve
+from diagnosis.discovery.fitting.noise_colour import colour_of
+from diagnosis.discovery.proof.family_wise import family_wise
+from diagnosis.discovery.search.likelihood_ratio import settle, take_out
+from diagnosis.discovery.search.screening import Base, screen
+from scenarios.commands.explain import explain
 from tests.hidden.generator import draw
 from twin.catalogue import CATALOGUE
 from twin.sweep import Sweep

@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.discovery import Discovery
-from diagnosis.likeness import Likeness, likeness
-from diagnosis.noise_colour import Colour
-from diagnosis.trial import drop
-from scenarios.answer import to_json
-from scenarios.explain import explain
+from diagnosis.discovery.fitting.noise_colour import Colour
+from diagnosis.discovery.pipeline import Discovery
+from diagnosis.discovery.proof.predictive_check import Likeness, likeness
+from diagnosis.discovery.search.likelihood_ratio import drop
+from scenarios.commands.explain import explain
+from scenarios.report.answer import to_json
 from tests.hidden.scoring import verdict
 from tests.hidden.sets import Job, jobs
 from twin.sweep import Sweep

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.protocol import Protocol
+from scenarios.commands.protocol import Protocol
 from twin.angles import Array, wrap
 from twin.chain import Chain
 from twin.sweep import Sweep
@@ -48,8 +48,8 @@ def peak_mb() -> float:
 
 def explained(path: Path) -> str:
     """CPU time [s], peak memory [MB] and what was found."""
-    from scenarios.answer import to_json
-    from scenarios.explain import explain
+    from scenarios.commands.explain import explain
+    from scenarios.report.answer import to_json
 
     start = time.process_time()
     answer = to_json(explain(Sweep.read(path)))

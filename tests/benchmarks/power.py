@@ -192,7 +192,7 @@ def power_table(powers: Sequence[Power]) -> Table:
 
 def plot(powers: Sequence[Power], shots: Sequence[Shot], path: Path) -> None:
     """Share found over the amplitude, one panel a cause. UserError where the picture cannot be drawn."""
-    from scenarios.plotting import save, style
+    from scenarios.report.plotting import save, style
 
     plt = style(path)
     columns = min(4, len(powers))
@@ -251,7 +251,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
     # the rate that the search allows itself is the one the matched test gets
-    from diagnosis.search import ALPHA
+    from diagnosis.discovery.search.stepwise import ALPHA
 
     console = Console() if Console().is_terminal else Console(width=100)
     only = {one.strip() for one in options.only.split(",") if one.strip()}

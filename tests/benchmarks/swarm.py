@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis import error_model, ordinary, swarm
-from diagnosis.error_model import NOMINAL, ZERO, Readings
-from diagnosis.fit import QUICK, fit_baseline
-from diagnosis.search_range import first_box
+from diagnosis.error_model import grid_search, model, swarm
+from diagnosis.error_model.fit import QUICK, fit_baseline
+from diagnosis.error_model.model import NOMINAL, ZERO, Readings
+from diagnosis.error_model.search_range import first_box
 from twin.angles import TAU, Array, wrap
 
 NOISE_DEG = 0.02
@@ -118,9 +118,9 @@ class Written(Objective):
 def our_swarm(task: Problem, seed: int) -> Outcome:
     """The paper's 100 particles and 200 iterations, on the quadratic form; the pass that builds it included."""
     start = time.perf_counter()
-    root = error_model.factor(Readings.of(task.reference, task.measured).gram())
+    root = model.factor(Readings.of(task.reference, task.measured).gram())
     result = swarm.run(
-        lambda points: error_model.cost(error_model.coefficients(points), root),
+        lambda points: model.cost(model.coefficients(points), root),
         task.lower[None],
         task.upper[None],
         rng=np.random.default_rng(seed),
@@ -132,9 +132,9 @@ def our_swarm(task: Problem, seed: int) -> Outcome:
 def our_quick_swarm(task: Problem, seed: int) -> Outcome:
     """The swarm as the diagnoser runs it: 40 particles, stopped where it has settled."""
     start = time.perf_counter()
-    root = error_model.factor(Readings.of(task.reference, task.measured).gram())
+    root = model.factor(Readings.of(task.reference, task.measured).gram())
     result = swarm.run(
-        lambda points: error_model.cost(error_model.coefficients(points), root),
+        lambda points: model.cost(model.coefficients(points), root),
         task.lower[None],
         task.upper[None],
         rng=np.random.default_rng(seed),
@@ -231,7 +231,7 @@ def our_grid(task: Problem, points: int) -> Outcome:
     """The ordinary method on a grid of so many points a parameter."""
     start = time.perf_counter()
     gram = Readings.of(task.reference, task.measured).gram()
-    found = ordinary.grid_search(gram, task.lower, task.upper, points=points)
+    found = grid_search.grid_search(gram, task.lower, task.upper, points=points)
     return Outcome(time.perf_counter() - start, task.rms_deg(found.best), found.evaluations)
 
 
@@ -273,7 +273,9 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     seed, patience = options.seed, options.patience
-    print(f"Table 2's full grid: {ordinary.full_grid_count():.3g} points; the swarm evaluates {PARTICLES * ITERATIONS}")
+    print(
+        f"Table 2's full grid: {grid_search.full_grid_count():.3g} points; the swarm evaluates {PARTICLES * ITERATIONS}"
+    )
     our_fit(problem(360, seed), seed)
     evolved = 10_000
     for readings in options.readings:

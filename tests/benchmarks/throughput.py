@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from scenarios.protocol import Protocol
+from scenarios.commands.protocol import Protocol
 from twin.angles import Array, wrap
 from twin.chain import Chain
 from twin.cordic.bit_true import Cordic, angle_rad, codes_of, vectoring

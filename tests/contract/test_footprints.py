@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from scenarios.protocol import Protocol
+from scenarios.commands.protocol import Protocol
 from twin.angles import TAU, wrap
 from twin.catalogue import find
 from twin.chain import Chain

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from diagnosis.error_model import Readings
+from diagnosis.error_model.model import Readings
 from twin.angles import Array
 
 NOISE_RAD = float(np.radians(0.02))

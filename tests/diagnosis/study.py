@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis import error_model, polish, swarm
-from diagnosis.band import delta_e_rad, outside
-from diagnosis.compensation import correction_of
-from diagnosis.error_model import NAMES, ZERO, Readings
-from diagnosis.fit import fit_baseline, fit_equal
-from diagnosis.held_out import BeforeAfter, against
-from diagnosis.search_range import first_box
+from diagnosis.correction.compensation import correction_of
+from diagnosis.correction.cross_validation import BeforeAfter, against
+from diagnosis.error_model import least_squares, model, swarm
+from diagnosis.error_model.error_band import delta_e_rad, outside
+from diagnosis.error_model.fit import fit_baseline, fit_equal
+from diagnosis.error_model.model import NAMES, ZERO, Readings
+from diagnosis.error_model.search_range import first_box
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain
 from twin.motion import Motion
@@ -73,12 +73,12 @@ def iterations_needed(
     settings = settings or swarm.SwarmSettings()
     readings = Readings.of(cases.reference, cases.measured)
     gram = readings.gram()
-    lowest = polish.descend(polish.on_gram(gram), cases.points, count=readings.count).cost
+    lowest = least_squares.descend(least_squares.on_gram(gram), cases.points, count=readings.count).cost
     mean = np.angle(np.mean(np.exp(1j * (cases.measured - cases.reference)), axis=1))
     box = first_box(mean)
-    root = error_model.factor(gram)
+    root = model.factor(gram)
     result = swarm.run(
-        lambda points: error_model.cost(error_model.coefficients(points), root),
+        lambda points: model.cost(model.coefficients(points), root),
         box.lower,
         box.upper,
         rng=rng,

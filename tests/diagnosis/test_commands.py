@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios import compensate, diagnose, monitor
-from scenarios.inputs import sweep_paths
+from scenarios.commands import compensate, diagnose, monitor
+from scenarios.commands.inputs import sweep_paths
 from twin.angles import TAU
 from twin.chain import Chain
 from twin.errors import UserError

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from diagnosis.calibration import calibrate
-from diagnosis.compensation import Correction, correction_of, from_dict, to_dict
-from diagnosis.compensation_c import header, sine_polynomial
-from diagnosis.error_model import twin_values
-from diagnosis.held_out import against, cross_validated, folds
+from diagnosis.correction.calibration import calibrate
+from diagnosis.correction.compensation import Correction, correction_of, from_dict, to_dict
+from diagnosis.correction.compensation_c import header, sine_polynomial
+from diagnosis.correction.cross_validation import against, cross_validated, folds
+from diagnosis.error_model.model import twin_values
 from tests.benchmarks.compensation import FILES, POINTS, REAL, look_up_table, mean_of_draws
 from tests.diagnosis.cases import NOISE_RAD, measured, points, senses, turn
 from twin.angles import TAU, Array, wrap

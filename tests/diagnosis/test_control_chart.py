@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnosis.control_chart import WEIGHT, average_run_length, chart, deviates, limit_for
+from diagnosis.factors.control_chart import WEIGHT, average_run_length, chart, deviates, limit_for
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diagnosis import error_model
-from diagnosis.error_model import Readings
+from diagnosis.error_model import model
+from diagnosis.error_model.model import Readings
 from tests.diagnosis.cases import NOISE_RAD, measured, points, senses, turn
 from twin.angles import Array, wrap
 from twin.chain import Chain
@@ -18,10 +18,10 @@ from twin.motion import Motion
 @settings(max_examples=30, deadline=None)
 def test_is_the_twin(point: Array, pair: tuple[int, int]) -> None:
     reference = turn(40)
-    chain = Chain(values=error_model.twin_values(point), sensor_sense=pair[0], output_sense=pair[1])
+    chain = Chain(values=model.twin_values(point), sensor_sense=pair[0], output_sense=pair[1])
     readings = chain.readings(Motion.from_angle(reference))
     np.testing.assert_allclose(wrap(readings - measured(point, reference, *pair)), 0.0, atol=1e-12)
-    back = error_model.from_twin_values(chain.values)
+    back = model.from_twin_values(chain.values)
     np.testing.assert_allclose(back, point, atol=1e-12)
 
 
@@ -33,10 +33,10 @@ def test_quadratic_form_is_the_sum_of_squared_sines(truth: Array, tried: Array, 
         reference, measured(truth, reference, *pair), sensor_sense=float(pair[0]), output_sense=float(pair[1])
     )
     gram = readings.gram(around=tried)
-    form = error_model.cost(error_model.coefficients(tried)[None], error_model.factor(gram))[0]
+    form = model.cost(model.coefficients(tried)[None], model.factor(gram))[0]
     np.testing.assert_allclose(form, np.sum(np.sin(readings.residual(tried)) ** 2), rtol=1e-9, atol=1e-12)
     swapped = readings.oriented(np.array(True)[None])
-    np.testing.assert_allclose(error_model.swapped_gram(readings.gram()), swapped.gram(), atol=1e-9)
+    np.testing.assert_allclose(model.swapped_gram(readings.gram()), swapped.gram(), atol=1e-9)
 
 
 @given(points())
@@ -44,11 +44,11 @@ def test_quadratic_form_is_the_sum_of_squared_sines(truth: Array, tried: Array, 
 def test_slopes_are_the_differences(point: Array) -> None:
     readings = Readings.of(turn(30), turn(30))
     _, slopes = readings.linearised(point)
-    coefs = error_model.coefficient_slopes(point)
+    coefs = model.coefficient_slopes(point)
     for k, step in enumerate(1e-6 * np.eye(6)):
         moved = -wrap(readings.residual(point + step) - readings.residual(point - step)) / 2e-6
         np.testing.assert_allclose(slopes[k], moved, atol=2e-8)
-        by_hand = (error_model.coefficients(point + step) - error_model.coefficients(point - step)) / 2e-6
+        by_hand = (model.coefficients(point + step) - model.coefficients(point - step)) / 2e-6
         np.testing.assert_allclose(coefs[:, k], by_hand, atol=2e-8)
 
 
@@ -72,4 +72,4 @@ def test_swapped_senses_mirror_the_point_where_q_is_zero() -> None:
     reference = turn(60)
     readings = Readings.of(reference, measured(point, reference))
     swapped = readings.oriented(np.array([True]))
-    np.testing.assert_allclose(swapped.residual(error_model.mirrored(point)), 0.0, atol=1e-12)
+    np.testing.assert_allclose(swapped.residual(model.mirrored(point)), 0.0, atol=1e-12)

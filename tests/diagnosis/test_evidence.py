@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.evidence import MOST_ROWS, collect
-from diagnosis.stretches import LONGEST, STRETCHES, searched_part
-from scenarios.answer import to_json
-from scenarios.explain import explain
+from diagnosis.discovery.fitting.observations import MOST_ROWS, collect
+from diagnosis.discovery.fitting.subsample import LONGEST, STRETCHES, searched_part
+from scenarios.commands.explain import explain
+from scenarios.report.answer import to_json
 from twin.angles import Array
 from twin.sweep import Sweep
 

@@ -10,8 +10,8 @@ import functools
 import numpy as np
 import pytest
 
-from diagnosis.family_wise import SWEEPS, TAIL, Tail, family_wise
-from diagnosis.noise_colour import colour_of
+from diagnosis.discovery.fitting.noise_colour import colour_of
+from diagnosis.discovery.proof.family_wise import SWEEPS, TAIL, Tail, family_wise
 from tests.benchmarks.family_wise import baseline_of, smallest
 from twin.catalogue import CATALOGUE
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from diagnosis import diagnose, diagnose_many
-from diagnosis.air_gaps import GapSweep, laws
-from diagnosis.channels import fit_curve, output_sense
-from diagnosis.error_model import NOMINAL, Readings
-from diagnosis.findings import curve_deg
-from diagnosis.fit import fit_baseline
-from diagnosis.identifiability import HIDDEN, identifiability, invisible_count, paper_jacobian
-from diagnosis.mechanical import mechanical
+from diagnosis.error_model.fit import fit_baseline
+from diagnosis.error_model.model import NOMINAL, Readings
+from diagnosis.factors.air_gaps import GapSweep, laws
+from diagnosis.factors.channels import fit_curve, output_sense
+from diagnosis.factors.findings import curve_deg
+from diagnosis.factors.identifiability import HIDDEN, identifiability, invisible_count, paper_jacobian
+from diagnosis.factors.mechanical import mechanical
 from tests.diagnosis.cases import NOISE_RAD, measured, turn
 from twin.angles import TAU, Array
 from twin.chain import Chain

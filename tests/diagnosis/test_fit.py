@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diagnosis import fit_baseline
-from diagnosis.error_model import NAMES, ZERO
-from diagnosis.fit import fit_equal, fit_many
+from diagnosis.error_model.fit import fit_equal, fit_many
+from diagnosis.error_model.model import NAMES, ZERO
 from tests.diagnosis.cases import NOISE_RAD, measured, points, senses, turn
 from tests.diagnosis.study import DEVICES, compensated, draw, ratio_and_coverage
 from twin.angles import Array, wrap
@@ -151,7 +151,7 @@ def test_batches_agree_with_single_fits() -> None:
 def test_never_worse_than_least_squares() -> None:
     from scipy.optimize import least_squares
 
-    from diagnosis.error_model import Readings
+    from diagnosis.error_model.model import Readings
 
     cases = draw(20, np.random.default_rng(11), readings=72)
     fits = fit_equal(cases.reference, cases.measured, rng=np.random.default_rng(0), senses=(1, 1))

@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.discovery import Discovery
-from diagnosis.joint_fit import Fit, evaluate, solve
-from diagnosis.menu import MENU, Recording
-from diagnosis.separation import ENOUGH_SIGMA, best, expected, separation_sigma
-from scenarios.explain import explain
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
+from diagnosis.discovery.further.measurements import MENU, Recording
+from diagnosis.discovery.further.power import ENOUGH_SIGMA, best, expected, separation_sigma
+from diagnosis.discovery.pipeline import Discovery
+from scenarios.commands.explain import explain
 from tests.hidden.generator import draw
 from tests.hidden.motion import Motion
 from twin import motion as twin_motion

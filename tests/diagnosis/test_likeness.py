@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.discovery import Discovery
-from diagnosis.joint_fit import evaluate
-from diagnosis.likeness import SWEEPS, likeness
-from diagnosis.noise_colour import Colour, colour_of
-from diagnosis.trial import drop, settle
-from scenarios.explain import explain
+from diagnosis.discovery.fitting.joint_fit import evaluate
+from diagnosis.discovery.fitting.noise_colour import Colour, colour_of
+from diagnosis.discovery.pipeline import Discovery
+from diagnosis.discovery.proof.predictive_check import SWEEPS, likeness
+from diagnosis.discovery.search.likelihood_ratio import drop, settle
+from scenarios.commands.explain import explain
 from tests.hidden.generator import draw
 from twin.sweep import Sweep
 

@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from diagnosis.noise_model import noise_family, to_cosine, to_rows
+from diagnosis.discovery.fitting.noise_model import noise_family, to_cosine, to_rows
 
 ROWS = 600
 DRAWS = 20

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from scenarios.explain import explain
+from scenarios.commands.explain import explain
 from tests.hidden.generator import draw
 from twin.sweep import Sweep
 

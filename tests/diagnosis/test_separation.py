@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.discovery import Discovery
-from diagnosis.joint_fit import Fit, evaluate, solve
-from diagnosis.menu import FINEST_DEG, MENU, Recording
-from diagnosis.separation import Option, advice, best, expected, separation_sigma
-from scenarios.explain import explain
-from scenarios.protocol import Protocol
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
+from diagnosis.discovery.further.measurements import FINEST_DEG, MENU, Recording
+from diagnosis.discovery.further.power import Option, advice, best, expected, separation_sigma
+from diagnosis.discovery.pipeline import Discovery
+from scenarios.commands.explain import explain
+from scenarios.commands.protocol import Protocol
 from twin.chain import Chain
 from twin.motion import Motion
 

@@ -7,10 +7,10 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from diagnosis import swarm
-from diagnosis.band import SENTINELS, delta_e_rad, outside
-from diagnosis.error_model import NOMINAL, Readings
-from diagnosis.ordinary import full_grid_count, grid_search
+from diagnosis.error_model import swarm
+from diagnosis.error_model.error_band import SENTINELS, delta_e_rad, outside
+from diagnosis.error_model.grid_search import full_grid_count, grid_search
+from diagnosis.error_model.model import NOMINAL, Readings
 from tests.diagnosis.cases import turn
 from tests.diagnosis.study import STEPS, device, draw, iterations_needed
 from twin.angles import Array

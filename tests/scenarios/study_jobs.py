@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.engine import Machines, run_study
-from scenarios.study_folder import StudyFolder
+from scenarios.studies.engine import Machines, run_study
+from scenarios.studies.study_folder import StudyFolder
 
 CHUNKS = 12
 

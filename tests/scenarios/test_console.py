@@ -8,9 +8,18 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from scenarios.causes import as_markdown, groups
-from scenarios.console import show
-from scenarios.wording import chance, figure, instances, label, not_visible, plain, rejected_words, structure_words
+from scenarios.commands.causes import as_markdown, groups
+from scenarios.report.console import show
+from scenarios.report.wording import (
+    chance,
+    figure,
+    instances,
+    label,
+    not_visible,
+    plain,
+    rejected_words,
+    structure_words,
+)
 from twin.catalogue import CATALOGUE
 
 

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenarios.design import explore, run, study_of
-from scenarios.design_check import check_design, magpylib_mT
-from scenarios.design_options import demand_of, space_of
-from scenarios.design_space import AXES
-from scenarios.design_study import DesignStudy, ranking
-from scenarios.engine import Machines
+from scenarios.studies.design.check import check_design, magpylib_mT
+from scenarios.studies.design.options import demand_of, space_of
+from scenarios.studies.design.run import explore, run, study_of
+from scenarios.studies.design.space import AXES
+from scenarios.studies.design.study import DesignStudy, ranking
+from scenarios.studies.engine import Machines
 from tests.scenarios.study_jobs import content
 from twin.errors import UserError
 from twin.magnet.magnet import Magnet

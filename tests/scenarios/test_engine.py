@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios import study_folder
-from scenarios.engine import Machines, run_study
-from scenarios.study_folder import StudyFolder
+from scenarios.studies import study_folder
+from scenarios.studies.engine import Machines, run_study
+from scenarios.studies.study_folder import StudyFolder
 from tests.scenarios.study_jobs import CHUNKS, FillsDisk, KillsItsWorker, content, study
 from twin.errors import UserError
 

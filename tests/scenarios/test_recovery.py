@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.error_model import Readings, from_twin_values
-from scenarios.engine import Machines
-from scenarios.recovery import check, recover, run
-from scenarios.recovery_cells import BASELINE, SLOTS, Cell, Grid, bounds, simulate
+from diagnosis.error_model.model import Readings, from_twin_values
+from scenarios.studies.engine import Machines
+from scenarios.studies.recovery.cells import BASELINE, SLOTS, Cell, Grid, bounds, simulate
+from scenarios.studies.recovery.run import check, recover, run
 from tests.scenarios.study_jobs import content
 from twin.errors import UserError
 

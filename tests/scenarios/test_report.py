@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnosis.discovery import Discovery
-from scenarios.answer import to_json
-from scenarios.explain import explain
-from scenarios.protocol import Protocol
-from scenarios.report import page, write_report
-from scenarios.report_data import noise_level, spectrum
-from scenarios.svg import MOST_POINTS, Axis, Layer, Plot, thinned
+from diagnosis.discovery.pipeline import Discovery
+from scenarios.commands.explain import explain
+from scenarios.commands.protocol import Protocol
+from scenarios.report.answer import to_json
+from scenarios.report.data import noise_level, spectrum
+from scenarios.report.page import page, write_report
+from scenarios.report.svg import MOST_POINTS, Axis, Layer, Plot, thinned
 from twin.chain import Chain
 from twin.motion import Motion
 

@@ -15,7 +15,19 @@ import pytest
 from tests.scenarios.study_jobs import content
 
 ROOT = Path(__file__).parents[2]
-COMMAND = (sys.executable, "-m", "scenarios.cli", "generate", "-n", "60000", "--chunk", "200", "--workers", "2", "-o")
+COMMAND = (
+    sys.executable,
+    "-m",
+    "scenarios.cli.main",
+    "generate",
+    "-n",
+    "60000",
+    "--chunk",
+    "200",
+    "--workers",
+    "2",
+    "-o",
+)
 
 
 @pytest.mark.study
@@ -43,7 +55,7 @@ def test_a_full_disk_stops_generate_and_room_lets_it_go_on(tmp_path: Path) -> No
     script = f"""
 set -e
 mkdir {tmp_path}/disk && mount -t tmpfs -o size=6m none {tmp_path}/disk
-run() {{ {sys.executable} -m scenarios.cli generate -n 8000 --chunk 500 --workers 2 -o "$1"; }}
+run() {{ {sys.executable} -m scenarios.cli.main generate -n 8000 --chunk 500 --workers 2 -o "$1"; }}
 ! run {tmp_path}/disk/s
 mount -o remount,size=60m {tmp_path}/disk
 run {tmp_path}/disk/s && run {tmp_path}/disk/calm

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios.engine import Machines
-from scenarios.protocol import Protocol
-from scenarios.training import Training, generate, parameter_names, recipe_of
-from scenarios.training_draw import YARDSTICK_DEG, Ranges
+from scenarios.commands.protocol import Protocol
+from scenarios.studies.engine import Machines
+from scenarios.studies.training.draw import YARDSTICK_DEG, Ranges
+from scenarios.studies.training.run import Training, generate, parameter_names, recipe_of
 from tests.scenarios.study_jobs import content
 from twin.errors import UserError
 

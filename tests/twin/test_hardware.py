@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from scenarios.protocol import Protocol
+from scenarios.commands.protocol import Protocol
 from twin.adc.converter import Converter
 from twin.angles import wrap
 from twin.chain import Chain

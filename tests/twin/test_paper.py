@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios.paper import FIGURES, run
-from scenarios.paper_table import cordic_error, table
+from scenarios.commands.paper import FIGURES, run
+from scenarios.commands.paper_table import cordic_error, table
 
 
 def test_table_1() -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios.protocol import Protocol
-from scenarios.simulate import run
-from scenarios.trace import trace
+from scenarios.commands.protocol import Protocol
+from scenarios.commands.simulate import run
+from scenarios.commands.trace import trace
 from twin.angles import TAU
 from twin.chain import Chain
 from twin.errors import UserError

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios.protocol import Protocol, numbers
-from scenarios.simulate import run
-from scenarios.trace import trace
+from scenarios.commands.protocol import Protocol, numbers
+from scenarios.commands.simulate import run
+from scenarios.commands.trace import trace
 from tests.benchmarks.throughput import largest_difference_deg
 from twin.angles import wrap
 from twin.chain import Chain

@@ -28,7 +28,7 @@ def test_a_killed_run_goes_on(tmp_path: Path, undisturbed: tuple[Path, Path]) ->
     command = [
         sys.executable,
         "-m",
-        "scenarios.cli",
+        "scenarios.cli.main",
         "bench",
         *options,
         "--fault",

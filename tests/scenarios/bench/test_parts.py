@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from diagnosis.compensation import Correction
+from diagnosis.correction.compensation import Correction
 from scenarios.bench.buses import parse_options
 from scenarios.bench.command import Options, hidden_encoder, run
 from scenarios.bench.hall_node import check_playable, corrected_word, spi_frame
@@ -18,7 +18,7 @@ from scenarios.bench.messages import checksum, messages, with_counter
 from scenarios.bench.plan import Plan
 from scenarios.bench.progress import curve
 from scenarios.bench.stepper import Stepper
-from scenarios.cli import app
+from scenarios.cli.main import app
 from twin.angles import TAU
 from twin.errors import UserError
 from twin.link.frames import crc8, spi_words

@@ -42,7 +42,7 @@ def test_a_sweep_between_two_processes(tmp_path: Path, undisturbed: tuple[Path, 
     twin, sweep = tmp_path / "quiet.toml", tmp_path / "sweep.csv"
     write_twin(twin, quiet_encoder())
     options = ["--interface", "udp_multicast", "--bus-option", BUS[0], "--twin", str(twin), "--serve", "40"]
-    command = [sys.executable, "-m", "scenarios.cli", "bench", *options]
+    command = [sys.executable, "-m", "scenarios.cli.main", "bench", *options]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as nodes:
         try:
             assert nodes.stdout is not None

@@ -1,0 +1,1 @@
+"""Generalised least squares of the whole chain: observations, linearised chain, noise, joint fit."""

@@ -1,0 +1,90 @@
+"""Where a discovery starts: who counts which way, and the fit of the baseline or of a given twin."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, Setting, evaluate, free_of, solve, tidy
+from diagnosis.discovery.fitting.noise_model import noise_family
+from diagnosis.discovery.fitting.observations import Evidence
+from twin.angles import Array, wrap
+from twin.catalogue import find
+from twin.chain import Chain
+from twin.motion import Motion
+from twin.sweep import Sweep
+
+_NUDGE = 1e-9
+"""A baseline parameter exactly at null is skipped by the chain and could not be fitted: it starts this far off."""
+
+
+def senses_of_channels(sweep: Sweep) -> tuple[int, int] | None:
+    """Who counts which way, (s, h), where the recorded channels say it: the reading follows h atan2(vy, vx)."""
+    if sweep.vx is None or sweep.vy is None:
+        return None
+    measured, reference = np.radians(sweep.measured_deg), np.radians(sweep.reference_deg)
+    channel = np.arctan2(sweep.vy, sweep.vx)
+
+    def together(a: Array, b: Array) -> int:
+        return 1 if abs(np.mean(np.exp(1j * (a - b)))) >= abs(np.mean(np.exp(1j * (a + b)))) else -1
+
+    output = together(measured, channel)
+    return together(measured, reference) * output, output
+
+
+def mirrored(chain: Chain) -> Chain:
+    """The chain that counts the other way on both sides: the same readings but for the quadratic term."""
+    values: dict[str, dict[str, Any]] = {key: dict(params) for key, params in chain.values.items()}
+    for params in values.values():
+        for name in params:
+            if name.startswith("y_") or name in ("beta_deg", "deg_per_K", "zero_deg"):
+                params[name] = -params[name]
+    return replace(chain, values=values, sensor_sense=-chain.sensor_sense, output_sense=-chain.output_sense)
+
+
+def first_fit(evidence: Evidence, start: Chain, given: Chain | None) -> Fit:
+    """The fit that the search sets out from: the baseline, or a given twin with its zeros set free."""
+    setting = Setting(noise_family(len(evidence)), radius_weight=1.0 if evidence.observables == 2 else 0.0)
+    turns = int(evidence.motion.turn.max(initial=0)) + 1
+    if given is None:
+        return solve(evaluate(awake(start), BASELINE, evidence, setting))
+    free: list[Free] = [BASELINE[0]]
+    chain = start
+    rezeroed = "reference_rezero" in chain.values and turns > 1
+    chain = chain.without("reference_rezero")
+    if rezeroed:
+        free += free_of(find("reference_rezero"), "reference_rezero", turns=turns, channels=False)
+    chain = chain.with_values({"zero": {"zero_deg": 0.0, **chain.values.get("zero", {})}})
+    chain = aligned(chain, evidence.motion, evidence.measured)
+    if rezeroed:
+        # Each turn's zero from its own readings: zeros that all begin alike would be held there by their own scatter.
+        motion = chain.shaft(evidence.motion)
+        off = wrap(evidence.measured - chain.readings(motion))
+        sense = chain.sensor_sense * chain.output_sense
+        zeros = [-sense * np.degrees(np.median(off[motion.turn == turn])) for turn in range(turns)]
+        chain = chain.with_values({"reference_rezero": {"zeros_deg": np.array(zeros), "spread_deg": 0.0}})
+    fit = solve(evaluate(chain, tuple(free), evidence, setting))
+    return solve(evaluate(fit.chain, fit.free, evidence, setting))
+
+
+def awake(chain: Chain) -> Chain:
+    """The chain with the whole baseline present, so that every one of its parameters can be fitted."""
+    values: dict[str, dict[str, Any]] = {}
+    for free in BASELINE:
+        effect = find(free.key)
+        null = effect.params[free.name].null
+        present = chain.values.get(free.key, {}).get(free.name, null)
+        values.setdefault(free.key, {})[free.name] = present + (_NUDGE if present == null else 0.0)
+    return chain.with_values(values)
+
+
+def aligned(chain: Chain, recorded: Motion, measured: Array) -> Chain:
+    """The chain with its zero turned so that its readings agree with the measured ones (n,) on average."""
+    zero = float(chain.values["zero"]["zero_deg"])
+    for _ in range(2):
+        off = np.angle(np.mean(np.exp(1j * (measured - chain.readings(chain.shaft(recorded))))))
+        zero += float(np.degrees(off)) * chain.output_sense
+        chain = chain.with_values({"zero": {"zero_deg": zero}})
+    return tidy(chain)

@@ -1,0 +1,291 @@
+"""The joint fit: every free parameter of the chain at once, exact model, whitened by the noise as it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.discovery.fitting.linearised_chain import Linear
+from diagnosis.discovery.fitting.noise_model import NoiseFamily, observables_to_cosine, to_rows
+from diagnosis.discovery.fitting.observations import Evidence
+from twin.angles import Array, wrap
+from twin.catalogue import find
+from twin.chain import Chain
+from twin.effect import Effect
+
+
+@dataclass(frozen=True)
+class Free:
+    """One free parameter: the instance it belongs to, its name, and the turn where it has one a turn."""
+
+    key: str
+    name: str
+    turn: int | None = None
+
+
+BASELINE = (
+    Free("zero", "zero_deg"),
+    Free("offset", "x_percent"),
+    Free("offset", "y_percent"),
+    Free("gain_mismatch", "ratio"),
+    Free("phase", "beta_deg"),
+    Free("quadratic_nonlinearity", "q_percent"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """How residuals are weighed: the family member in force, the blur of stairs, the radius against the angle.
+
+    ``radius_weight`` multiplies the radius' whitened squares; ``radius_member`` is its own family member. ``members``
+    are the family members that the noise may be; none given: all of them. ``radius_trusted``: what the radius does at
+    some angles is taken for a cause's work, never for noise. ``coarse``: stairs
+    make most of the spread. ``slopes``: those of blurred edges count, see
+    :class:`~diagnosis.discovery.fitting.linearised_chain.Linear`.
+    """
+
+    family: NoiseFamily
+    member: int = 0
+    blur: float = 0.0
+    radius_member: int = 0
+    radius_weight: float = 0.0
+    members: tuple[int, ...] = ()
+    radius_trusted: bool = False
+    coarse: bool = False
+    slopes: bool = False
+
+    @property
+    def plausible(self) -> tuple[int, ...]:
+        """The members that likelihoods are maximised over."""
+        return self.members or tuple(range(len(self.family.labels)))
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A chain fitted to the evidence.
+
+    ``residual`` (O, n) over the rows, ``jacobian`` (P, O, n) there too; ``cosine_residual`` and ``cosine_jacobian``
+    their coefficients with the priors of per-turn zeros appended, flattened to (N,) and (P, N) by :func:`flat`.
+    """
+
+    chain: Chain
+    free: tuple[Free, ...]
+    evidence: Evidence
+    setting: Setting
+    linear: Linear
+    residual: Array
+    jacobian: Array
+    cosine_residual: Array
+    cosine_jacobian: Array
+    prior_residual: Array
+    prior_jacobian: Array
+
+    @property
+    def rows(self) -> int:
+        """Rows in use."""
+        return int(np.count_nonzero(self.evidence.usable))
+
+    def whitened(self, member: int | None = None) -> tuple[Array, Array]:
+        """Residual (N,) and Jacobian (P, N) whitened by a family member (the one in force if not given)."""
+        root = root_weights(self.setting, self.evidence.observables, member)
+        r = (self.cosine_residual * root).ravel()
+        j = (self.cosine_jacobian * root).reshape(len(self.free), -1)
+        return np.concatenate([r, self.prior_residual]), np.concatenate([j, self.prior_jacobian], axis=1)
+
+    def covariance(self) -> Array:
+        """Covariance (P, P) of the free parameters in their own units; a direction without information is infinite."""
+        r, j = self.whitened()
+        scale = np.linalg.norm(j, axis=1)
+        scale[scale == 0.0] = 1.0
+        u, s, _ = np.linalg.svd(j / scale[:, None], full_matrices=False)
+        good = s > 1e-9 * s[0]
+        inverse = (u[:, good] / s[good] ** 2) @ u[:, good].T
+        dof = max(self.rows * self.evidence.observables - int(good.sum()), 1)
+        if self.setting.slopes:
+            # At the edges of stairs a reading is either above or below: just where it tells most it scatters most.
+            rows = inverse @ (self._in_rows(j) * self._in_rows(r) / scale[:, None])
+            spread = rows @ rows.T * (self.rows * self.evidence.observables / dof)
+        else:
+            spread = inverse * (float(r @ r) / dof)
+        if not good.all():
+            spread = spread + np.diag(np.where(np.abs(u[:, ~good]).max(axis=1) > 0.1, np.inf, 0.0))
+        return np.asarray(spread / np.outer(scale, scale))
+
+    def _in_rows(self, whitened: Array) -> Array:
+        """Whitened coefficients (..., N) of the observables back over the rows; the priors' stay as they are."""
+        size = self.evidence.observables * len(self.evidence)
+        shape = (*whitened.shape[:-1], self.evidence.observables, len(self.evidence))
+        rows = to_rows(whitened[..., :size].reshape(shape)).reshape(*whitened.shape[:-1], size)
+        return np.concatenate([rows, whitened[..., size:]], axis=-1)
+
+
+def root_weights(setting: Setting, observables: int, member: int | None = None) -> Array:
+    """Square roots of the weights (O, n) on cosine coefficients."""
+    weights = setting.family.weights
+    rows = [weights[setting.member if member is None else member]]
+    if observables == 2:
+        rows.append(setting.radius_weight * weights[setting.radius_member])
+    return np.asarray(np.sqrt(np.stack(rows)))
+
+
+def evaluate(chain: Chain, free: tuple[Free, ...], evidence: Evidence, setting: Setting) -> Fit:
+    """Residual and Jacobian of a chain at its present parameters."""
+    observables = evidence.observables
+    linear = Linear(chain, evidence.motion, blur=setting.blur, observables=observables, slopes=setting.slopes)
+    residual = np.empty((evidence.observables, len(evidence)))
+    residual[0] = wrap(evidence.measured - linear.angle)
+    nuisance: list[Array] = []
+    if evidence.log_radius is not None:
+        residual[1] = evidence.log_radius - linear.log_radius
+        nuisance = radius_nuisance(evidence)
+    columns = [linear.derivative(f.key, find(f.key, chain.effects), f.name, f.turn) for f in free]
+    jacobian = np.stack(columns) if columns else np.zeros((0, evidence.observables, len(evidence)))
+    if nuisance:
+        # The channels' common scale and its drift with temperature tell nothing about an angle: projected out.
+        basis = np.linalg.qr(np.stack(nuisance).T)[0].T
+        residual[1] -= (residual[1] @ basis.T) @ basis
+        jacobian[:, 1] -= (jacobian[:, 1] @ basis.T) @ basis
+    prior_residual, prior_jacobian = _priors(chain, free, evidence, residual[0])
+    return Fit(
+        chain=chain,
+        free=free,
+        evidence=evidence,
+        setting=setting,
+        linear=linear,
+        residual=residual,
+        jacobian=jacobian,
+        cosine_residual=observables_to_cosine(evidence, residual),
+        cosine_jacobian=observables_to_cosine(evidence, jacobian),
+        prior_residual=prior_residual,
+        prior_jacobian=prior_jacobian,
+    )
+
+
+def radius_nuisance(evidence: Evidence) -> list[Array]:
+    """What the radius may do for reasons of its own: a scale, and a quadratic in temperature. Masked rows are zero."""
+    usable = evidence.usable.astype(np.float64)
+    columns = [usable]
+    if "two temperatures" in evidence.motion.provides:
+        warm = (evidence.motion.temperature_c - 25.0) / 50.0
+        columns += [usable * warm, usable * warm**2]
+    return columns
+
+
+def _priors(chain: Chain, free: tuple[Free, ...], evidence: Evidence, residual: Array) -> tuple[Array, Array]:
+    """Per-turn zeros scatter: each is held by the scatter of all, in units of the residual's RMS.
+
+    This makes the turns' zeros a random effect, so that an effect common to many turns (a direction) is not given
+    away to them, and it fixes their common part, which belongs to ``zero``.
+    """
+    places = [k for k, f in enumerate(free) if f.turn is not None]
+    if not places:
+        return np.zeros(0), np.zeros((0 if not free else len(free), 0))
+    zeros = np.array([float(np.asarray(chain.values[free[k].key][free[k].name])[free[k].turn or 0]) for k in places])
+    spread = max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
+    unit = float(np.degrees(np.sqrt(np.mean(residual[evidence.usable] ** 2))))
+    # Whitened residuals are in radians: a prior of one sigma counts as one residual RMS.
+    strength = np.radians(unit) / spread
+    jacobian = np.zeros((len(free), len(places)))
+    jacobian[places, np.arange(len(places))] = strength
+    return -strength * zeros, jacobian
+
+
+def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
+    """Levenberg-Marquardt from the fit's chain: the same free parameters at their optimum.
+
+    Ends when no parameter moves by more than ``tolerance`` of its standard deviation.
+    """
+    if not fit.free:
+        return fit
+    damping = 0.0
+    cost = _cost(fit)
+    for _ in range(iterations):
+        r, j = fit.whitened()
+        scale = np.linalg.norm(j, axis=1)
+        alive = scale > 1e-12 * max(scale.max(), 1e-300)
+        unit = np.where(alive, scale, 1.0)
+        a = j / unit[:, None]
+        normal = a @ a.T
+        gradient = a @ r
+        sigma = np.sqrt(cost / max(fit.rows - len(fit.free), 1))
+        improved = False
+        for _ in range(6):
+            system = normal + (1e-12 + damping) * np.eye(len(unit))
+            step = np.where(alive, np.linalg.solve(system, gradient), 0.0)
+            trial = evaluate(_moved(fit, step / unit), fit.free, fit.evidence, fit.setting)
+            new_cost = _cost(trial)
+            if new_cost <= cost * (1.0 + 1e-12):
+                improved = True
+                break
+            damping = max(4.0 * damping, 1e-3)
+        if not improved:
+            break
+        moved = float(np.max(np.abs(step)))
+        gained = cost - new_cost
+        fit, cost = trial, new_cost
+        damping *= 0.25
+        if moved < tolerance * sigma or gained < 1e-7 * cost:
+            break
+    return fit
+
+
+def _cost(fit: Fit) -> float:
+    r, _ = fit.whitened()
+    return float(r @ r)
+
+
+def _moved(fit: Fit, step: Array) -> Chain:
+    """The chain with its free parameters moved by ``step`` (P,), in the parameters' own units."""
+    values = {key: dict(params) for key, params in fit.chain.values.items()}
+    for place, free in enumerate(fit.free):
+        param = find(free.key, fit.chain.effects).params[free.name]
+        if free.turn is not None:
+            zeros = np.array(values[free.key][free.name], dtype=np.float64)
+            zeros[free.turn] += step[place]
+            values[free.key][free.name] = zeros
+            continue
+        moved = float(values[free.key][free.name]) + step[place]
+        # An amplitude may pass through zero on its way: its phase then turns by half a turn, afterwards.
+        lower = -param.upper if param.role == "strength" and param.lower == 0.0 else param.lower
+        if param.role == "phase":
+            values[free.key][free.name] = moved
+        else:
+            values[free.key][free.name] = float(np.clip(moved, lower, param.upper))
+    return replace(fit.chain, values=values)
+
+
+def free_of(effect: Effect, key: str, *, turns: int, channels: bool) -> tuple[Free, ...]:
+    """The parameters of an effect that a fit may move: strengths, phases, and shapes that are no whole numbers."""
+    found: list[Free] = []
+    for name, param in effect.params.items():
+        if param.role in ("strength", "phase") or (
+            param.role in ("level", "shape") and not param.counts and name in searched(effect, channels)
+        ):
+            found.append(Free(key, name))
+        elif param.role == "per turn":
+            found.extend(Free(key, name, turn) for turn in range(turns))
+    return tuple(found)
+
+
+def searched(effect: Effect, channels: bool) -> frozenset[str]:
+    """Names of the shape and level parameters that a fit may move, with or without recorded channels."""
+    names = {effect.line.param} if effect.line else set()
+    return frozenset(names | set(effect.fitted_shapes) | (set(effect.channel_shapes) if channels else set()))
+
+
+def tidy(chain: Chain) -> Chain:
+    """Amplitudes made positive, phases and zeros brought to (-180, 180]."""
+    values = {key: dict(params) for key, params in chain.values.items()}
+    for key, params in values.items():
+        effect = find(key, chain.effects)
+        phases = effect.roles("phase")
+        for name in effect.roles("strength"):
+            if phases and float(params.get(name, 0.0)) < 0.0 and name == effect.roles("strength")[0]:
+                # The first strength is positive by convention; half a turn of the phase turns all of them.
+                for turned in effect.roles("strength"):
+                    params[turned] = -float(params[turned])
+                params[phases[0]] = float(params[phases[0]]) + 180.0
+        for name in (*phases, *(("zero_deg",) if key == "zero" else ())):
+            params[name] = float(-((-float(params[name]) + 180.0) % 360.0 - 180.0))
+    return replace(chain, values=values)

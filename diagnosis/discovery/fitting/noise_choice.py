@@ -1,0 +1,103 @@
+"""Which noises are plausible: judged with all that could be locked to the angle set aside.
+
+Structure that repeats with the angle, left by several causes at once, looks like coloured noise to any one cause. Over
+several turns it can be told from noise without naming it: it is projected out, and what is left chooses the noise.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnosis.discovery.fitting.noise_model import radius_to_cosine, to_cosine
+from twin.angles import Array
+from twin.motion import Motion
+
+if TYPE_CHECKING:
+    from diagnosis.discovery.fitting.joint_fit import Fit
+    from diagnosis.discovery.fitting.noise_model import NoiseFamily
+
+FEWEST_TURNS = 3.5
+REACH = 4.0
+"""Members whose log likelihood lies within this of the best are plausible."""
+
+
+def plausible_members(fit: Fit) -> tuple[int, ...]:
+    """The family members that the noise may be, given the fit's residual; all where there are too few turns to tell."""
+    everyone = tuple(range(len(fit.setting.family.labels)))
+    motion = fit.evidence.motion
+    if motion.turns < FEWEST_TURNS:
+        return everyone
+    aside = locked_shapes(motion)
+    if fit.rows < 4 * (len(aside) + len(fit.free)):
+        return everyone
+    columns = np.concatenate([fit.cosine_jacobian[:, 0], to_cosine(fit.evidence, aside)])
+    score, _ = _scores(fit.cosine_residual[0], columns, fit.setting.family, fit.rows)
+    return tuple(int(k) for k in np.flatnonzero(score > score.max() - REACH))
+
+
+def either(*members: tuple[int, ...]) -> tuple[int, ...]:
+    """The family members that are plausible by any of several fits."""
+    return tuple(sorted(set().union(*members)))
+
+
+def radius_noise(fit: Fit) -> tuple[int, float] | None:
+    """Family member and variance of the radius' noise, all that could be locked to the angle set aside.
+
+    None where there are too few rows to set it aside.
+    """
+    motion = fit.evidence.motion
+    low = [turned(k * motion.shaft_rad) for k in (1, 2) for turned in (np.cos, np.sin)]
+    aside = np.concatenate([np.stack([np.ones(len(motion)), *low]), locked_shapes(motion)])
+    if fit.rows < 2 * len(aside):
+        return None
+    score, variance = _scores(
+        fit.cosine_residual[1], radius_to_cosine(fit.evidence, aside), fit.setting.family, fit.rows
+    )
+    best = int(np.argmax(score))
+    return best, float(variance[best])
+
+
+def _scores(residual: Array, columns: Array, family: NoiseFamily, rows: int) -> tuple[Array, Array]:
+    """Restricted log likelihood and variance of each family member, the columns (q, n) projected out."""
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=1, keepdims=True), 1e-300)
+    dof = rows - len(columns)
+    score, variance = np.empty(len(family.labels)), np.empty(len(family.labels))
+    cost = family.cost(rows)
+    for member, weight in enumerate(family.weights):
+        white = columns * weight
+        gram = white @ columns.T
+        gram += 1e-9 * np.trace(gram) / len(columns) * np.eye(len(columns))
+        along = white @ residual
+        left = float(residual @ (weight * residual) - along @ np.linalg.solve(gram, along))
+        _, log_det = np.linalg.slogdet(gram)
+        score[member] = -0.5 * (dof * np.log(max(left, 1e-300)) + cost[member] + log_det)
+        variance[member] = left / dof
+    return score, variance
+
+
+def locked_shapes(motion: Motion) -> Array:
+    """Shapes (q, n) to set aside: orders 3 to 12, low orders times direction, temperature, speed; a slow drift."""
+    highest = int(min(12, motion.points_per_turn / 2.5))
+    ones = np.ones(len(motion))
+    shapes: list[Array] = []
+
+    def series(orders: range, weight: Array) -> None:
+        for k in orders:
+            shapes.append(weight * np.cos(k * motion.shaft_rad))
+            if k:
+                shapes.append(weight * np.sin(k * motion.shaft_rad))
+
+    series(range(3, highest + 1), ones)
+    low = range(0, min(8, highest) + 1)
+    # A slow drift of the zero is no noise either: the noise's colour is told by what is faster.
+    share = np.linspace(0.0, 1.0, len(motion))
+    shapes.extend(np.cos(np.pi * mode * share) for mode in (1, 2, 3))
+    if "both directions" in motion.provides:
+        series(low, motion.direction)
+    if "two temperatures" in motion.provides:
+        series(low, (motion.temperature_c - 25.0) / 50.0)
+    if "two speeds" in motion.provides:
+        series(range(0, min(4, highest) + 1), motion.speed_rad_s / float(np.max(np.abs(motion.speed_rad_s))))
+    return np.stack(shapes)

@@ -1,0 +1,241 @@
+"""What to measure next: how far a further measurement would part a cause from what explains the data as well.
+
+Each entry of the menu is simulated with the cause, without noise, and the rival is fitted to it exactly with all else
+that is free; and the other way round, for either may be true. What the wrong one leaves, whitened by the noise as it
+was fitted, is the expected separation: its square is the mean of what the right one will gain over it (twice the log
+likelihood).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve
+from diagnosis.discovery.fitting.linearised_chain import Linear
+from diagnosis.discovery.fitting.noise_model import noise_family, to_cosine
+from diagnosis.discovery.fitting.subsample import stretches
+from diagnosis.discovery.further.measurements import MENU, Measurement, Recording
+from twin.angles import Array
+from twin.catalogue import base_name, find
+from twin.chain import Chain
+
+ENOUGH_SIGMA = 5.0
+LEAST_SIGMA = 3.0
+MOST_PLANNED = 4_000
+_ITERATIONS = 4
+_FIELD_POWERS = {
+    ("saturation", "k_percent"): 2.0,
+    ("quadratic_nonlinearity", "q_percent"): 1.0,
+    ("offset", "x_percent"): -1.0,
+    ("offset", "y_percent"): -1.0,
+    ("offset_drift", "x_percent_per_K"): -1.0,
+    ("offset_drift", "y_percent_per_K"): -1.0,
+    ("mains_pickup", "x_percent"): -1.0,
+    ("mains_pickup", "y_percent"): -1.0,
+    ("adc_stuck_bit", "step_percent"): -1.0,
+    ("clipping", "level_percent"): -1.0,
+    ("stray_field", "bx_mT"): -1.0,
+    ("stray_field", "by_mT"): -1.0,
+}
+"""Power of the magnet's field by which a parameter changes, all being counted in amplitudes of the channels."""
+
+_family = lru_cache(maxsize=2)(noise_family)
+"""A plan is asked of several rivals one after the other."""
+
+
+@dataclass(frozen=True)
+class Option:
+    """A further measurement: its name and plain words, its rank by cost, and by how many sigma it parts the rivals.
+
+    ``sigma`` is that of the rival which is parted least; below three, it is no more than this.
+    """
+
+    name: str
+    measurement: str
+    sigma: float
+    cost: int
+
+
+def options(fit: Fit, rivals: Mapping[str, Fit], menu: Sequence[Measurement] = MENU) -> tuple[Option, ...]:
+    """What each measurement of the menu would part a fit's cause by from its rivals' fits; cheapest first."""
+    if not rivals:
+        return ()
+    motion, found = fit.evidence.motion, []
+    # A long record is planned on a part of itself: the square of the separation grows with the readings.
+    part = motion.part(stretches(motion, MOST_PLANNED)) if len(motion) > MOST_PLANNED else motion
+    longer = float(np.sqrt(len(motion) / len(part)))
+    for entry in sorted(menu, key=lambda entry: entry.cost):
+        planned = entry.plan(part)
+        if planned is not None and _worth_it(fit, rivals, planned):
+            sigma = longer * _least_sigma(fit, rivals, planned)
+            found.append(Option(entry.name, entry.words, sigma, entry.cost))
+    return tuple(found)
+
+
+def _worth_it(fit: Fit, rivals: Mapping[str, Fit], planned: tuple[Recording, ...]) -> bool:
+    """A further air gap tells something only of what changes with the field; else it is just a second sweep."""
+    if len(planned) == 1:
+        return True
+    changing = [
+        {free for free in one.free if _at_field(free.key, free.name, one.chain, planned[1]) != 1.0}
+        for one in (fit, *rivals.values())
+    ]
+    return all(own != changing[0] for own in changing[1:])
+
+
+def _least_sigma(fit: Fit, rivals: Mapping[str, Fit], planned: tuple[Recording, ...]) -> float:
+    """The separation from the nearest rival, whichever of the two is true; what parts no one is not asked on."""
+    least = np.inf
+    for rival in rivals.values():
+        for true, wrong in ((fit, rival), (rival, fit)):
+            least = min(least, separation_sigma(true, wrong, planned))
+            if least < LEAST_SIGMA:
+                return least
+    return least
+
+
+def best(offered: Sequence[Option]) -> Option | None:
+    """The cheapest measurement that is enough, else the one that parts best; None where there is none."""
+    enough = [option for option in offered if option.sigma >= ENOUGH_SIGMA]
+    if enough:
+        return min(enough, key=lambda option: option.cost)
+    return max(offered, key=lambda option: option.sigma, default=None)
+
+
+def advice(offered: Sequence[Option]) -> str:
+    """The best measurement in words, with the separation expected of it."""
+    option = best(offered)
+    if option is None or option.sigma < LEAST_SIGMA:
+        reached = f" ({option.sigma:.1f} sigma at most)" if option is not None else ""
+        return f"no further measurement of the menu parts them{reached}"
+    if option.sigma < ENOUGH_SIGMA:
+        return f"{option.measurement} ({option.sigma:.1f} sigma, which may not be enough)"
+    return f"{option.measurement} ({option.sigma:.0f} sigma)"
+
+
+def separation_sigma(fit: Fit, rival: Fit, planned: tuple[Recording, ...]) -> float:
+    """How many sigma of the noise the rival, at its best, would miss the planned recordings by were ``fit`` true."""
+    parts = [expected(fit, rival, recording) for recording in planned]
+    sigma = _missed(parts, planned) / _noise_rms(fit)
+    if len(parts) == 1 and sigma > LEAST_SIGMA:
+        # What the rival cannot do to first order it may do exactly.
+        sigma = min(sigma, _missed([solve(parts[0], iterations=_ITERATIONS)], planned) / _noise_rms(fit))
+    return sigma
+
+
+def _missed(parts: Sequence[Fit], planned: tuple[Recording, ...]) -> float:
+    """Norm of the whitened residuals of all recordings, less all that the free parameters can do to first order."""
+    residuals, jacobians = [], []
+    for part, recording in zip(parts, planned, strict=True):
+        r, j = part.whitened()
+        scale = np.array([_at_field(free.key, free.name, part.chain, recording) for free in part.free])
+        residuals.append(r)
+        jacobians.append(j * scale[:, None])
+    # Parameters are common to all recordings; only what belongs to the mounting is a second air gap's own.
+    columns = [np.concatenate(jacobians, axis=1)]
+    start = residuals[0].size
+    for part in parts[1:]:
+        mounting = _mounting(part)
+        own = np.zeros((len(mounting), columns[0].shape[1]))
+        own[:, start : start + mounting.shape[1]] = mounting
+        columns.append(own)
+        start += mounting.shape[1]
+    left = _projected(np.concatenate(residuals), np.concatenate(columns))
+    return float(np.linalg.norm(left))
+
+
+def _noise_rms(fit: Fit) -> float:
+    """RMS [rad] of the fit's whitened residual."""
+    r, _ = fit.whitened()
+    dof = max(fit.rows * fit.evidence.observables - len(fit.free), 1)
+    return max(float(np.sqrt(r @ r / dof)), 1e-12)
+
+
+def expected(fit: Fit, rival: Fit, recording: Recording) -> Fit:
+    """The rival, not yet fitted, on what a planned recording would read if the fit's chain were true."""
+    motion, n = recording.motion, len(recording.motion)
+    turns = int(motion.turn.max(initial=0)) + 1
+    truth, other = (_planned_chain(chain, recording, turns) for chain in (fit.chain, rival.chain))
+    observables = 2 if recording.channels else 1
+    read = Linear(truth, motion, blur=fit.setting.blur, observables=observables)
+    evidence = replace(
+        fit.evidence,
+        motion=motion,
+        measured=read.angle,
+        log_radius=read.log_radius if recording.channels else None,
+        usable=np.ones(n, dtype=bool),
+        sure=np.ones(n, dtype=bool),
+        scale=np.ones(n),
+        group=np.arange(n),
+        ahead=np.zeros(n),
+    )
+    weight = fit.setting.radius_weight if fit.evidence.observables == 2 else 1.0
+    setting = replace(
+        fit.setting,
+        family=_family(n),
+        radius_member=fit.setting.radius_member if fit.evidence.observables == 2 else fit.setting.member,
+        radius_weight=weight if recording.channels else 0.0,
+    )
+    free: list[Free] = [one for one in rival.free if one in BASELINE]
+    for key in dict.fromkeys(one.key for one in rival.free if one not in BASELINE):
+        free += free_of(find(key, other.effects), key, turns=turns, channels=recording.channels)
+    return evaluate(other, tuple(free), evidence, setting)
+
+
+def _planned_chain(chain: Chain, recording: Recording, turns: int) -> Chain:
+    """The chain at the recording's air gap, with a zero for each of its turns."""
+    values: dict[str, dict[str, Any]] = {}
+    for key, params in chain.values.items():
+        effect = find(key, chain.effects)
+        values[key] = dict(params)
+        for name, value in params.items():
+            if effect.params[name].role == "per turn":
+                # Zeros of turns to come are draws like those seen: the same ones, the last first.
+                values[key][name] = np.resize(np.concatenate([value, np.asarray(value)[::-1]]), turns)
+            elif np.ndim(value) == 0:
+                values[key][name] = value * _at_field(key, name, chain, recording)
+    return replace(chain, values=values)
+
+
+def _at_field(key: str, name: str, chain: Chain, recording: Recording) -> float:
+    """Factor by which a parameter changes from the present air gap to the recording's.
+
+    Assumed, because a recording at one air gap cannot show it: saturation goes with the square of the field (it is the
+    next odd term of the magnetisation curve), a quadratic term with the field, voltages and stray fields against it.
+    A harmonic of order n + 1 in the magnetisation turns the field by order n; its field falls with the distance from
+    the magnet's centre n powers faster than the dipole's, and so does the angle it turns by. The rest stays.
+    """
+    if recording.field == 1.0:
+        return 1.0
+    power = _FIELD_POWERS.get((base_name(key), name))
+    if power is not None:
+        return float(recording.field**power)
+    if (base_name(key), name) == ("magnet_harmonic", "amplitude_deg"):
+        return float(recording.distance ** -float(chain.values[key]["order"]))
+    return 1.0
+
+
+def _mounting(part: Fit) -> Array:
+    """Whitened columns (q, N) of what comes anew with a second mounting: zero, offsets, gain and phase."""
+    angle, n = part.linear.sensor_angle, len(part.evidence)
+    shapes = np.stack([np.ones(n), *(turned(k * angle) for k in (1, 2) for turned in (np.cos, np.sin))])
+    columns = np.zeros((len(shapes), part.evidence.observables, n))
+    weight = np.sqrt(part.setting.family.weights[part.setting.member])
+    columns[:, 0] = to_cosine(part.evidence, shapes) * weight
+    size = part.prior_residual.size
+    return np.concatenate([columns.reshape(len(shapes), -1), np.zeros((len(shapes), size))], axis=1)
+
+
+def _projected(residual: Array, columns: Array) -> Array:
+    """The residual (N,) less all that the columns (P, N) can do."""
+    norm = np.linalg.norm(columns, axis=1)
+    columns = columns[norm > 0.0] / norm[norm > 0.0, None]
+    size, vectors = np.linalg.eigh(columns @ columns.T)
+    kept = size > 1e-12 * size.max(initial=0.0)
+    along = (vectors[:, kept] / size[kept]) @ (vectors[:, kept].T @ (columns @ residual))
+    return np.asarray(residual - along @ columns)

@@ -1,0 +1,97 @@
+"""What an answer says of one cause: its probability, its rivals, and the held-out figures around it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.observations import Evidence
+from diagnosis.discovery.further.power import Option
+from diagnosis.discovery.marks.stairs import without_stairs
+from diagnosis.discovery.proof.cross_validation import rms_deg
+from twin.angles import Array
+from twin.catalogue import base_name, find, unnamed
+from twin.effect import BoolArray
+
+
+@dataclass(frozen=True, eq=False)
+class Named:
+    """One entry of the answer: a cause, its probability, rivals, and the held-out RMS around it [deg].
+
+    ``log_p`` is the log probability by chance of this effect alone, ``family_log_p`` that of any effect, where known.
+    ``rivals`` are the fits with another effect in its place, ``options`` the measurements that would part them.
+    ``rows`` are the raw rows (from 0) that a cause of single readings has touched; ``intervals`` are of parameters
+    that no fit of the mean has.
+    """
+
+    keys: tuple[str, ...]
+    log_p: float
+    gain: float
+    rivals: Mapping[str, Fit] = field(default_factory=dict)
+    options: tuple[Option, ...] = ()
+    before_deg: float = float("nan")
+    after_deg: float = float("nan")
+    rows: tuple[int, ...] = ()
+    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    family_log_p: float | None = None
+
+    def false_alarm_probability(self, looked_at: int) -> float:
+        """Probability that noise looks as much like any of so many effects."""
+        log_p = self.log_p + float(np.log(max(looked_at, 1))) if self.family_log_p is None else self.family_log_p
+        return float(np.exp(max(min(log_p, 0.0), -300.0)))
+
+    @property
+    def name(self) -> str:
+        """The catalogue's name, or ``unnamed``."""
+        name = base_name(self.keys[0])
+        return "unnamed" if unnamed(name) else name
+
+
+def merge(entries: list[Named]) -> list[Named]:
+    """Instances of one effect, and all structure without a name, as one entry each; strongest first."""
+    merged: dict[str, Named] = {}
+    for entry in entries:
+        if entry.name in merged:
+            first = merged[entry.name]
+            merged[entry.name] = replace(
+                first,
+                keys=(*first.keys, *entry.keys),
+                log_p=min(first.log_p, entry.log_p),
+                family_log_p=min((p for p in (first.family_log_p, entry.family_log_p) if p is not None), default=None),
+                gain=first.gain + entry.gain,
+                rivals={name: fit for name, fit in first.rivals.items() if name in entry.rivals},
+                after_deg=entry.after_deg,
+            )
+        else:
+            merged[entry.name] = entry
+    return sorted(merged.values(), key=lambda e: -e.gain)
+
+
+def of_readings(row_rms_deg: float, evidence: Evidence) -> float:
+    """RMS [deg] over single readings, from that over rows which average several of them."""
+    return float(np.hypot(row_rms_deg, np.degrees(np.sqrt(evidence.within))))
+
+
+def of_single_readings(entry: Named, evidence: Evidence) -> Named:
+    return replace(
+        entry,
+        before_deg=of_readings(entry.before_deg, evidence),
+        after_deg=of_readings(entry.after_deg, evidence),
+    )
+
+
+def with_figures(entry: Named, fit: Fit, held: list[Array], use: BoolArray) -> Named:
+    """RMS before and after for causes that no fit of the mean carries."""
+    if np.isfinite(entry.before_deg):
+        return entry
+    after = rms_deg(held[-1], use)
+    if entry.rows:
+        return replace(entry, before_deg=rms_deg(held[-1], np.ones_like(use)), after_deg=after)
+    effect = find(entry.keys[0], fit.chain.effects)
+    if effect.footprint == "values":
+        before = rms_deg(without_stairs(fit, entry.keys[0]), use)
+        return replace(entry, before_deg=before, after_deg=rms_deg(fit.residual[0], use))
+    return replace(entry, before_deg=after, after_deg=after)

@@ -1,0 +1,64 @@
+"""Held-out proof: what each step of the extension gains on blocks of readings that its fit has not seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, solve
+from twin.angles import TAU, Array, IntArray, wrap
+from twin.catalogue import base_name
+from twin.effect import BoolArray
+
+FOLDS = 4
+BLOCKS_A_TURN = 3
+
+
+def folds(fit: Fit) -> IntArray:
+    """Fold (n,) of each row: thirds of a turn of travel, dealt out so that every third is held out in some turn.
+
+    A third is shorter than a turn, so that each turn's own zero can be fitted from the rest of it.
+    """
+    motion = fit.evidence.motion
+    block = np.floor(motion.travel_rad / TAU * BLOCKS_A_TURN + 1e-9).astype(np.int64)
+    if block.max(initial=0) < 2 * FOLDS:
+        block = np.floor(np.arange(len(motion)) * (3 * FOLDS) / max(len(motion), 1)).astype(np.int64)
+    return np.asarray(block % FOLDS, dtype=np.int64)
+
+
+def scattered(fit: Fit) -> IntArray:
+    """Fold (n,) of each row where neighbours share none: for what is narrower than a block, in white noise."""
+    return np.arange(len(fit.evidence), dtype=np.int64) % FOLDS
+
+
+def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray) -> list[Array]:
+    """Residuals (n,) [rad] on held-out rows: of the baseline, then of the baseline with one cause after the other.
+
+    ``fold`` (n,) is that of each row.
+    """
+    use = fit.evidence.usable
+    base_free = [f for f in fit.free if base_name(f.key) not in {base_name(k) for k in keys}] or list(BASELINE)
+    stages: list[tuple[list[str], list[Free]]] = []
+    for count in range(len(keys) + 1):
+        present = set(keys[:count])
+        stages.append(([k for k in keys if k not in present], [*base_free, *(f for f in fit.free if f.key in present)]))
+    residuals = [np.full(len(fit.evidence), np.nan) for _ in stages]
+    for number in range(FOLDS):
+        held = fold == number
+        if not np.any(held & use) or np.count_nonzero(use & ~held) < 8:
+            continue
+        evidence = fit.evidence.masked(use & ~held)
+        for place, (absent, free) in enumerate(stages):
+            chain = fit.chain.without(*absent)
+            trained = solve(evaluate(chain, tuple(free), evidence, fit.setting), iterations=6)
+            seen = replace(trained, evidence=fit.evidence)
+            residuals[place][held] = wrap(seen.evidence.measured - trained.linear.angle)[held]
+    return residuals
+
+
+def rms_deg(residual: Array, use: BoolArray) -> float:
+    """RMS [deg] over the rows in use that have been held out."""
+    chosen = residual[use & np.isfinite(residual)]
+    return float(np.degrees(np.sqrt(np.mean(chosen**2)))) if chosen.size else float("nan")

@@ -1,0 +1,1 @@
+"""The stepwise search over causes: screening by first order, exact fits, removal and replacement."""

@@ -1,0 +1,148 @@
+"""Additions: which cause, or which causes together, the joint fit gains most by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
+from diagnosis.discovery.fitting.noise_choice import either
+from diagnosis.discovery.fitting.noise_model import NoiseFamily
+from diagnosis.discovery.search.likelihood_ratio import (
+    SWAP_MARGIN,
+    Trial,
+    degrees,
+    handicap,
+    judged_p,
+    likelihood,
+    settle,
+    take_out,
+)
+from diagnosis.discovery.search.screening import Base, Candidate, screen, screen_one
+from twin.catalogue import base_name, find, unnamed
+from twin.effect import Effect
+
+FAIR_SHARE = 0.15
+"""Share of a cause's first gain that another effect must reach to be tried in its place later."""
+REPEATABLE = frozenset({"drive_ripple", "magnet_harmonic"})
+MOST_TOGETHER = 3
+"""So many causes at once are looked for where none stands out alone."""
+
+
+def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
+    """Every effect that may still be added, at its best shape, best first after the handicap."""
+    present = {base_name(key) for key in keys}
+    open_to = [e for e in effects if e.name not in present or e.name in REPEATABLE or unnamed(e.name)]
+    found = screen(base, open_to)
+    found += multiples(base, effects, keys)
+    return sorted(found, key=lambda c: c.log_p + handicap(c.effect, base.fit))
+
+
+def multiples(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
+    """A drive's ripple comes with its multiples, also where these alias to other orders."""
+    found = []
+    for effect in effects:
+        if effect.name != "drive_ripple":
+            continue
+        for key in keys:
+            if base_name(key) != effect.name:
+                continue
+            order = float(base.fit.chain.values[key]["order"])
+            # Near the number of points a turn an order is a slow function of the row: no ripple is told from it.
+            highest = 0.9 * base.fit.evidence.motion.points_per_turn
+            shapes = [{"order": order * k} for k in (2, 3, 4, 5) if order * k < highest]
+            candidate = screen_one(base, effect, shapes=shapes)
+            if candidate is not None:
+                found.append(candidate)
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A joint fit with causes added: their keys with those effects that explain a fair part of what each does."""
+
+    fit: Fit
+    added: Mapping[str, Sequence[Effect]]
+    terms: int
+    log_looks: float
+
+
+def best_addition(
+    fit: Fit, base: Base, effects: Sequence[Effect], keys: Sequence[str], threshold: float
+) -> Step | None:
+    """The joint fit with the best significant candidate, contenders compared by exact fits; None if there is none."""
+    ranked = [c for c in candidates(base, effects, keys) if c.log_p + handicap(c.effect, base.fit) < threshold]
+    if not ranked:
+        return None
+    top = ranked[0].log_p + handicap(ranked[0].effect, fit)
+    near = [c for c in ranked if c.log_p + handicap(c.effect, base.fit) < top + max(8.0, -0.1 * top)][:5]
+    trials = [Trial.of(fit, c) for c in near]
+    # All are judged by the same noises: those that any of them leaves.
+    members = either(*(t.members for t in trials))
+    judged = [(t.log_p(fit, members, base.dof) + handicap(t.candidate.effect, fit), k) for k, t in enumerate(trials)]
+    score, place = min(judged)
+    if score > threshold:
+        return None
+    trial, chosen = trials[place], trials[place].candidate
+    fair = {c.effect.name: c.effect for c in ranked if c.gain > FAIR_SHARE * chosen.gain}
+    return Step(
+        trial.fit,
+        {trial.key: list(fair.values())},
+        degrees(chosen.effect, chosen.terms),
+        float(np.log(chosen.looks)) + handicap(chosen.effect, fit),
+    )
+
+
+def best_together(
+    fit: Fit, base: Base, effects: Sequence[Effect], keys: Sequence[str], threshold: float
+) -> Step | None:
+    """One to three causes that together explain what none of them does alone; None if there are none.
+
+    One, where the weights of coloured noise lead its fit astray. Several, because what they leave passes for coloured
+    noise to each of them: so they are looked for as if the noise were white, one after the other, and then judged
+    together with the noise free to be what it is. That there are many such sets to choose from is paid for.
+    """
+    if base.member == 0:
+        return None
+    family = fit.setting.family
+    only_white = NoiseFamily(family.spectra[:1], family.labels[:1], family.correlation[:1])
+    setting = replace(fit.setting, family=only_white, member=0, members=(), radius_member=0)
+    trial, white = settle(solve(evaluate(fit.chain, fit.free, fit.evidence, setting)))
+    added: dict[str, Sequence[Effect]] = {}
+    terms, log_looks = 0, 0.0
+    for depth in range(MOST_TOGETHER):
+        step = best_addition(trial, white, effects, [*keys, *added], threshold)
+        if step is None:
+            return None
+        added.update(step.added)
+        terms, log_looks = terms + step.terms, log_looks + step.log_looks
+        trial, white = settle(retuned(step.fit, keys))
+        # White at first: by another weight it might be led astray again.
+        joint, _ = settle(solve(evaluate(trial.chain, trial.free, fit.evidence, replace(fit.setting, member=0))))
+        members = either(fit.setting.plausible, joint.setting.plausible)
+        gain = 2.0 * (likelihood(joint, members) - likelihood(fit, members))
+        choices = depth * float(np.log(max(len(effects), 1)))
+        if judged_p(gain, terms, base.dof, 1.0) + log_looks + choices < threshold:
+            return Step(joint, added, terms, log_looks)
+    return None
+
+
+def retuned(fit: Fit, keys: Sequence[str]) -> Fit:
+    """The fit with each stuck bit among the keys found afresh, where that fits better.
+
+    Its edges are so narrow that a weight found before the rest was known holds on to the wrong ones.
+    """
+    for key in keys:
+        effect = find(key, fit.chain.effects)
+        if effect.line is None or effect.line.clock != "channels":
+            continue
+        removed = take_out(fit, key)
+        again = screen_one(Base.of(removed), effect)
+        if again is None:
+            continue
+        trial = Trial.of(removed, again)
+        if likelihood(trial.fit, fit.setting.plausible) > likelihood(fit) + SWAP_MARGIN:
+            fit = trial.fit
+    return fit

@@ -1,0 +1,171 @@
+"""Trials: one cause put into or taken out of the joint fit, everything else fitted with it, and what that is worth."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, tidy
+from diagnosis.discovery.fitting.noise_choice import plausible_members, radius_noise
+from diagnosis.discovery.search.screening import Base, Candidate, log_probability
+from twin.catalogue import unnamed
+from twin.chain import Chain
+from twin.effect import Effect
+
+HANDICAP = 6.0
+"""What a shape without a name must gain (in nats) beyond one with a name."""
+SWAP_MARGIN = 2.0
+"""What a swap must gain (in nats): less is noise."""
+ALIASED = 20.0
+"""What an effect must gain beyond the others where coarse stairs may pass for it."""
+MOST_SHAPES = 20
+
+
+def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
+    """Restricted log likelihood of a fit at the best noise of ``members`` (its own plausible ones if not given).
+
+    The baseline's coefficients are integrated out, and so are the turns' own zeros, which are draws from a
+    distribution with the scatter that they show: a common cause of many turns' zeros gains by making them scatter less.
+    """
+    family = fit.setting.family
+    base = [k for k, free in enumerate(fit.free) if free in BASELINE]
+    turns = [k for k, free in enumerate(fit.free) if free.turn is not None]
+    integrated = [*base, *turns]
+    dof = fit.rows * fit.evidence.observables - len(base)
+    prior = float(np.sum(np.log(np.abs(fit.prior_jacobian[turns].sum(axis=1))))) if turns else 0.0
+    cost = family.cost(fit.rows)
+    best = -np.inf
+    for member in members or fit.setting.plausible:
+        r, j = fit.whitened(member)
+        _, log_det = np.linalg.slogdet(j[integrated] @ j[integrated].T + 1e-300 * np.eye(len(integrated)))
+        best = max(best, -0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + cost[member] + log_det))
+    return float(best) + prior
+
+
+def judged_p(gain: float, terms: int, dof: int, looks: float) -> float:
+    """Log probability that noise gains as much (twice the log likelihood) at any of so many looks."""
+    return float(log_probability(np.array(gain), terms, dof)) + float(np.log(looks))
+
+
+def degrees(effect: Effect, terms: int) -> int:
+    """Degrees of freedom of an effect in the likelihood: one, the scatter, where coefficients are integrated out."""
+    return 1 if effect.roles("per turn") else terms
+
+
+def refit(chain: Chain, free: Sequence[Free], like: Fit, *, iterations: int = 12) -> Fit:
+    """Fit a chain's free parameters to the evidence of another fit."""
+    return solve_tidy(evaluate(chain, tuple(free), like.evidence, like.setting), iterations=iterations)
+
+
+def solve_tidy(fit: Fit, *, iterations: int = 12) -> Fit:
+    """The fit at its optimum, phases and signs made tidy."""
+    fit = solve(fit, iterations=iterations)
+    return replace_chain(fit, tidy(fit.chain))
+
+
+def replace_chain(fit: Fit, chain: Chain) -> Fit:
+    """The fit with an equivalent chain (phases and signs made tidy)."""
+    return evaluate(chain, fit.free, fit.evidence, fit.setting)
+
+
+def settle(fit: Fit) -> tuple[Fit, Base]:
+    """Let the fit take the noise that fits it best, the radius its own noise, and solve again."""
+    fit = replace(fit, setting=replace(fit.setting, members=plausible_members(fit)))
+    for _ in range(3):
+        base = Base.of(fit)
+        setting = replace(fit.setting, member=base.member, **_radius_setting(fit))
+        same = setting.member == fit.setting.member and np.isclose(
+            setting.radius_weight, fit.setting.radius_weight, rtol=0.05
+        )
+        if same and setting.radius_member == fit.setting.radius_member:
+            return fit, base
+        fit = solve(evaluate(fit.chain, fit.free, fit.evidence, setting))
+    return fit, Base.of(fit)
+
+
+def _radius_setting(fit: Fit) -> dict[str, Any]:
+    """Noise member of the radius and its weight against the angle, each from its own residual."""
+    if fit.evidence.observables == 1:
+        return {}
+    family = fit.setting.family
+    angle = float(np.mean(fit.cosine_residual[0] ** 2 * family.weights[fit.setting.member]))
+    told = radius_noise(fit) if fit.setting.radius_trusted else None
+    member, radius = told if told is not None else radius_as_left(fit)
+    # The channels' noise is as large along the radius as across it: the radius never counts for more than that.
+    return {"radius_member": member, "radius_weight": min(angle / max(radius, 1e-300), 1.0)}
+
+
+def radius_as_left(fit: Fit) -> tuple[int, float]:
+    """Family member and variance that describe all that is left of the radius, as if it were noise."""
+    family = fit.setting.family
+    squares = (fit.cosine_residual[1] ** 2) @ family.weights.T
+    member = int(np.argmax(-0.5 * (fit.rows * np.log(np.maximum(squares, 1e-300)) + family.cost(fit.rows))))
+    return member, float(squares[member] / len(fit.evidence))
+
+
+def add(fit: Fit, candidate: Candidate) -> tuple[Fit, str]:
+    """The joint fit with the candidate added, and the key it got."""
+    name = candidate.effect.name
+    further = (f"{name}#{number}" for number in itertools.count(2))
+    key = next(key for key in itertools.chain([name], further) if key not in fit.chain.values)
+    chain = fit.chain.with_values({key: dict(candidate.effect.begin(candidate.values))})
+    turns = int(fit.evidence.motion.turn.max(initial=0)) + 1
+    free = free_of(candidate.effect, key, turns=turns, channels=fit.evidence.observables == 2)
+    return refit(chain, (*fit.free, *free), fit), key
+
+
+def drop(fit: Fit, key: str) -> Fit:
+    """The joint fit without this instance."""
+    return solve_tidy(take_out(fit, key))
+
+
+def take_out(fit: Fit, key: str) -> Fit:
+    """The fit without this instance, all else left where it is: where a rival in its place is looked for.
+
+    Fitted anew first, the other causes would bend to what the missing one did, some of them beyond return.
+    """
+    free = tuple(f for f in fit.free if f.key != key)
+    return evaluate(fit.chain.without(key), free, fit.evidence, fit.setting)
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A candidate fitted exactly: its joint fit, its key, and the noise that is plausible with it."""
+
+    candidate: Candidate
+    fit: Fit
+    key: str
+    members: tuple[int, ...]
+
+    @classmethod
+    def of(cls, fit: Fit, candidate: Candidate) -> Trial:
+        """Add the candidate to the fit."""
+        trial, key = add(fit, candidate)
+        return cls(candidate, trial, key, plausible_members(trial))
+
+    def log_p(self, before: Fit, members: tuple[int, ...], dof: int) -> float:
+        """Log probability that noise of these members gains as much."""
+        gain = 2.0 * (likelihood(self.fit, members) - likelihood(before, members))
+        terms = degrees(self.candidate.effect, self.candidate.terms)
+        return judged_p(gain, terms, dof, self.candidate.looks)
+
+
+def handicap(effect: Effect, fit: Fit) -> float:
+    """What an effect has to gain beyond the others: without a name, or of the kind that coarse stairs pass for."""
+    extra = 0.0
+    if fit.setting.coarse and _aliased(effect, fit):
+        extra = ALIASED
+    if not unnamed(effect.name):
+        return extra
+    # On a shaft that steps evenly a tone in time is an order too: the order is the plainer description.
+    return extra + HANDICAP + (2.0 if effect.name == "unnamed_tone" else 0.0)
+
+
+def _aliased(effect: Effect, fit: Fit) -> bool:
+    """Whether an effect has so many shapes, lines and places, that stairs' own pattern resembles one of them."""
+    any_order = effect.line is not None or "order" in effect.params or unnamed(effect.name)
+    return any_order or len(effect.shapes(fit.linear.motion)) > MOST_SHAPES

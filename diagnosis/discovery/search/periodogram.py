@@ -1,0 +1,151 @@
+"""Which lines to look at: one spectrum of the weighted residual instead of a grid of columns."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import Fit
+from twin.angles import TAU, Array
+from twin.effect import Effect
+
+OVERSAMPLING = 4
+PEAKS = 8
+_LARGEST_GRID = 1 << 21
+
+
+def line_shapes(
+    matched: Sequence[Array], fit: Fit, effect: Effect, *, peaks: int = PEAKS
+) -> tuple[Sequence[Mapping[str, float]], float]:
+    """The orders or frequencies at which the effect's line matches the residual best, and how many were looked at.
+
+    ``matched`` holds residuals (n,) filtered by the inverse covariance of the noises in question. The effect's column
+    at frequency f is Re[A exp(i 2 pi f clock)] with an amplitude A (n,) that does not depend on f, so one transform
+    serves all f. ``peaks`` of each spectrum are looked at closely.
+    """
+    line = effect.line
+    assert line is not None
+    motion = fit.linear.motion
+    low, high = line.limits(motion)
+    if line.clock == "channels":
+        return _weights_of_a_bit(matched[0], fit, effect, low, high, peaks)
+    clock = (
+        motion.shaft_rad / TAU
+        if line.clock == "shaft"
+        else motion.time_s - 0.5 * (motion.time_s[0] + motion.time_s[-1])
+    )
+    span = float(np.ptp(clock))
+    if span <= 0.0 or high <= low:
+        return [], 0.0
+    whole_orders = np.arange(np.ceil(low), np.floor(high) + 1)
+    if line.clock == "shaft" and span < 1.8:
+        # Over one turn only whole orders are told apart; others are what an aperiodic residual looks like.
+        grid = whole_orders[line.within(whole_orders)]
+        return [{line.param: float(f)} for f in grid], max(float(grid.size), 1.0)
+    if (high - low) * span < 64:
+        # Few enough to try them all, at a quarter of the resolution.
+        grid = np.linspace(low, high, int(np.ceil((high - low) * span * OVERSAMPLING)) + 2)
+        grid = np.unique(np.concatenate([grid, whole_orders]))
+        grid = grid[line.within(grid)]
+        looks = max(float((high - low) * span), 1.0)
+        return [{line.param: float(f)} for f in grid], looks
+    middle = 0.5 * (low + high)
+    quadrature = fit.linear.columns(effect, [{line.param: middle}])[0][:, 0]
+    turning = np.exp(-1j * TAU * middle * clock)
+    amplitudes = [(quadrature[k] - 1j * quadrature[k + 1]) * turning for k in range(0, len(quadrature) - 1, 2)]
+    bins = 1 << int(np.ceil(np.log2(max(OVERSAMPLING * 2.0 * high * span, 64.0))))
+    bins = min(bins, _LARGEST_GRID)
+    period = OVERSAMPLING * span
+    place = (clock - clock.min()) / period * bins
+    left = np.floor(place).astype(np.int64)
+    share = place - left
+    frequency = np.arange(bins // 2) / period
+    inside = (frequency >= low) & (frequency <= high)
+    powers = []
+    for weighted in matched:
+        power = np.zeros(bins // 2)
+        for amplitude in amplitudes:
+            signal = weighted * np.conj(amplitude)
+            grid_sum = np.zeros(bins, dtype=np.complex128)
+            for index, part in ((left, 1.0 - share), (left + 1, share)):
+                grid_sum += np.bincount(index % bins, (signal * part).real, bins)
+                grid_sum += 1j * np.bincount(index % bins, (signal * part).imag, bins)
+            power += np.abs(np.fft.fft(grid_sum)[: bins // 2]) ** 2
+        # Linear interpolation between bins damps high frequencies by sinc^2: undone.
+        power = power / np.sinc(np.arange(bins // 2) / bins) ** 4
+        # A line stands out of the noise about it, whatever the noise's colour; a strong one over gappy clocks has
+        # side lobes that raise the level about it, and stands out of everything.
+        powers += [power, power / _level(power, OVERSAMPLING)]
+    whole_only = not bool(line.within(np.array([low + 0.37 / span]))[0]) and not bool(
+        line.within(np.array([np.floor(middle) + 0.5]))[0]
+    )
+    if whole_only:
+        whole = np.arange(np.ceil(low), np.floor(high) + 1)
+        whole = whole[line.within(whole)]
+        ranked = [np.argsort(np.interp(whole, frequency, power))[::-1][:peaks] for power in powers]
+        order = np.unique(np.concatenate(ranked))
+        return [{line.param: float(f)} for f in whole[order]], float(whole.size)
+    picked = []
+    for power in powers:
+        power = np.where(inside, power, 0.0)
+        peak = np.flatnonzero((power[1:-1] >= power[:-2]) & (power[1:-1] > power[2:])) + 1
+        peak = peak[line.within(frequency[peak])]
+        picked.append(frequency[peak[np.argsort(power[peak])[::-1][:peaks]]])
+    chosen = np.unique(np.concatenate(picked))
+    # A line at a whole order that belongs to the effect is tried as such.
+    whole = np.round(chosen)
+    whole = whole[(np.abs(whole - chosen) < 0.5 / span) & line.within(whole)]
+    grid = np.unique(np.concatenate([chosen, whole]))
+    return [{line.param: float(f)} for f in grid], max(float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
+
+
+def _level(power: Array, oversampling: int) -> Array:
+    """Level of the noise (n,) around each bin: the median over the neighbourhood, wider at higher frequencies."""
+    edges = np.unique(np.concatenate([[0], np.geomspace(8 * oversampling, max(power.size, 16), 24)]).astype(int))
+    edges = np.unique(np.clip(edges, 0, power.size))
+    centres, levels = [], []
+    for first, last in itertools.pairwise(edges):
+        centres.append(0.5 * (first + last))
+        levels.append(max(float(np.median(power[first:last])), 1e-300))
+    return np.asarray(np.exp(np.interp(np.arange(power.size), centres, np.log(levels))))
+
+
+def _weights_of_a_bit(
+    weighted: Array, fit: Fit, effect: Effect, low: float, high: float, peaks: int
+) -> tuple[Sequence[Mapping[str, float]], float]:
+    """Weights [%] at which a square wave in the channels' value, matches the residual best.
+
+    Its fundamental has a period of two steps: one transform over the value serves all weights, its sign the level.
+    """
+    assert effect.line is not None
+    point = fit.linear.at(effect)
+    reach = 1.02 * float(np.max(np.abs(point.signal)))
+    highest = 100.0 / (2.0 * low)
+    bins = min(1 << int(np.ceil(np.log2(OVERSAMPLING * 2.0 * reach * 2.0 * highest))), _LARGEST_GRID)
+    period = OVERSAMPLING * 2.0 * reach
+    grid = np.zeros(bins)
+    for channel in range(2):
+        place = point.signal[channel] / period * bins
+        left = np.floor(place).astype(np.int64)
+        signal = weighted * point.sensitivity[0, channel]
+        grid += np.bincount(left % bins, signal * (1.0 - (place - left)), bins)
+        grid += np.bincount((left + 1) % bins, signal * (place - left), bins)
+    frequency = np.arange(bins // 2) / period
+    inside = (frequency > 100.0 / (2.0 * high)) & (frequency < highest)
+    # Held at 0 the bit leaves +cos(pi x / step) once its mean is in the offset; held at 1, the opposite.
+    match = np.where(inside, np.fft.fft(grid)[: bins // 2].real, 0.0)
+    size = np.abs(match)
+    peak = np.flatnonzero((size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:])) + 1
+    chosen = peak[np.argsort(size[peak])[::-1][: 2 * peaks]]
+    looks = max(2.0 * float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
+    # Noise ahead of the bit of a fifth of its weight to begin with: the fit finds its own.
+    return [
+        {
+            effect.line.param: float(50.0 / frequency[k]),
+            "level": 0.0 if match[k] > 0.0 else 1.0,
+            "blur_percent": 0.2 * float(50.0 / frequency[k]),
+        }
+        for k in chosen
+    ], looks

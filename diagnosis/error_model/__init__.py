@@ -1,0 +1,1 @@
+"""The paper's error model of six factors: the model, its modified particle swarm, least squares, intervals."""

@@ -1,0 +1,59 @@
+"""Delta E of Eq. 7 from a chain's own settings, and Eq. 11 looked up at a few sentinel readings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.error_model.model import Readings
+from twin.adc.adc_quantisation import FULL_SCALE
+from twin.angles import TAU, Array
+from twin.chain import Chain
+
+SENTINELS = 32
+_REACH = 4.0
+"""How many standard deviations of what is random count as the largest deviation."""
+
+
+def delta_e_rad(chain: Chain, *, immeasurable_rad: float = 0.0) -> float:
+    """Eq. 7: quantisation + reference (Eq. 3) + immeasurable + largest CORDIC error [rad].
+
+    The printed sum mixes an RMS with maxima; here every term is a largest deviation, since Eq. 11 holds the band
+    against every single angle: half a step of each grid, four standard deviations of what is random.
+    """
+
+    def of(effect: str, name: str, null: float = 0.0) -> float:
+        return float(chain.values.get(effect, {}).get(name, null))
+
+    adc_bits, link_bits = of("adc_quantisation", "bits"), of("output_quantisation", "bits")
+    # Half a step on both channels at once, at amplitude 1.
+    quantisation = np.sqrt(2.0) * FULL_SCALE / 2.0**adc_bits if adc_bits else 0.0
+    quantisation += 0.5 * TAU / 2.0**link_bits if link_bits else 0.0
+    # x/2^m Delta D is a relative error of a channel: at 45 deg, where both are 0.707, it turns by half of it each.
+    reference = _REACH * 0.01 * of("reference_jitter", "percent_rms") / np.sqrt(2.0)
+    noise = _REACH * np.radians(of("noise", "rms_deg"))
+    iterations = of("cordic_truncation", "iterations")
+    cordic = np.arctan(2.0 ** (1.0 - iterations)) if iterations else 0.0
+    return float(quantisation + reference + noise + cordic + immeasurable_rad)
+
+
+def outside(readings: Readings, band_rad: float) -> Callable[[Array], NDArray[np.bool_]]:
+    """Eq. 11 for a swarm on the readings (batch, n): does a point (batch, particles, 6) leave the band anywhere?
+
+    Looked up at :data:`SENTINELS` readings spread over the rows, whatever their number.
+    """
+    pick = np.unique(np.linspace(0, readings.count - 1, SENTINELS).astype(np.intp))
+    few = readings.sweeps((slice(None), None, pick))
+    tangent = np.tan(min(band_rad, 1.5))
+
+    def leaves(points: Array) -> NDArray[np.bool_]:
+        x, y = few.channels(points)
+        across = np.abs(y * few.cos_read - x * few.sin_read)
+        out = across > tangent * (x * few.cos_read + y * few.sin_read)
+        if few.weights is not None:
+            out &= few.weights > 0.0
+        return np.asarray(out.any(axis=-1))
+
+    return leaves

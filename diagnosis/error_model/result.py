@@ -1,0 +1,111 @@
+"""What a fit of the paper's error model says: values, intervals, senses, search range, and who contributed what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.error_model import model
+from diagnosis.error_model.model import NAMES
+from twin.angles import Array
+from twin.chain import Chain
+
+
+@dataclass(frozen=True)
+class Senses:
+    """Who counts which way: s of a = s theta + zero, h of m = h atan2(y, x).
+
+    Their product is plain to see; which of the two pairs with that product it is shows only through the quadratic
+    term. ``other`` holds the parameters (6,) of the swapped pair, ``sigma`` says how much worse it fits, in standard
+    errors. Where the pair was given, the other one is not tried: None and infinity.
+    """
+
+    sensor: int
+    output: int
+    sigma: float
+    other: Array | None
+
+    @property
+    def matters(self) -> bool:
+        """Whether the data decide between the two pairs (3 standard errors)."""
+        return self.sigma > 3.0
+
+
+@dataclass(frozen=True)
+class SearchRange:
+    """The box that the swarm searched, (6,) each, and which of its sides had to be moved outwards from Table 2's."""
+
+    lower: Array
+    upper: Array
+    widened: tuple[str, ...]
+    rounds: int
+
+
+@dataclass(frozen=True)
+class Contributions:
+    """What each step brought, RMS in rad: nothing but the zero fitted, the swarm's best, after the polish.
+
+    The first two are the swarm's own objective: sines of the angle error, weighted by r^2 (to a few per cent, RMS).
+    """
+
+    zero_only_rms_rad: float
+    swarm_rms_rad: float
+    polished_rms_rad: float
+    particles_evaluated: int
+    particles_discarded: int
+    """By Eq. 11, where the band is given."""
+    passes: int
+    best_history_rad: Array
+    """RMS of the swarm's best after each iteration of the last round."""
+    own_history_rad: Array
+    """RMS of the mean of the particles' own bests after each iteration of the last round."""
+
+
+@dataclass(frozen=True, eq=False)
+class BaselineFit:
+    """The paper's error model fitted to one sweep.
+
+    ``point``, ``low``, ``high`` (6,) are in the order and units of :data:`diagnosis.error_model.model.NAMES`; low
+    and high bound the 95 % interval under independent readings. ``residual_rad`` (n,) is measured minus predicted
+    reading, wrapped, for every row; ``outliers`` (n,) marks rows that the robust option left out.
+    """
+
+    point: Array
+    covariance: Array
+    low: Array
+    high: Array
+    at_bound: NDArray[np.bool_]
+    senses: Senses
+    search: SearchRange
+    contributions: Contributions
+    residual_rad: Array
+    outliers: NDArray[np.bool_]
+    sigma_rad: float
+    """Standard deviation of a reading of weight 1, from the residual and its degrees of freedom."""
+    rms_rad: float
+    """Over the rows that are no outliers."""
+    degrees_of_freedom: int
+    """Of sigma_rad: used rows less the six parameters."""
+    settled: bool
+    """Whether the polish came to rest."""
+
+    @cached_property
+    def values(self) -> dict[str, dict[str, float]]:
+        """Parameters of the twin's effects, by effect."""
+        return model.twin_values(self.point)
+
+    @property
+    def standard_errors(self) -> Array:
+        """(6,)"""
+        return np.sqrt(np.diagonal(self.covariance))
+
+    def chain(self) -> Chain:
+        """The twin with these parameters and nothing else."""
+        return Chain(values=self.values, sensor_sense=self.senses.sensor, output_sense=self.senses.output)
+
+    def named(self) -> dict[str, float]:
+        """The point by name."""
+        return dict(zip(NAMES, map(float, self.point), strict=True))

@@ -1,0 +1,128 @@
+"""Everything the diagnoser says about one sweep, in one object: fit, identifiability, equivalents, raw channels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from diagnosis.error_model import swarm
+from diagnosis.error_model.fit import QUICK, fit_baseline, fit_equal
+from diagnosis.error_model.model import Readings
+from diagnosis.error_model.result import BaselineFit
+from diagnosis.factors import channels
+from diagnosis.factors.channels import Added
+from diagnosis.factors.identifiability import Identifiability, identifiability
+from diagnosis.factors.mechanical import Mechanical, mechanical
+from diagnosis.factors.repeats import between_angles
+from twin.angles import Array, radians
+from twin.sweep import Sweep
+
+DEFAULT_SEED = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Findings:
+    """One diagnosed sweep. ``added`` is None without raw channels."""
+
+    sweep: Sweep
+    fit: BaselineFit
+    identifiability: Identifiability
+    added: Added | None
+    repeated: str | None
+    """What repeated readings did to the intervals, in words."""
+
+    @cached_property
+    def mechanical(self) -> Mechanical:
+        """The mechanical causes that would make the same curve, for the twin's magnet."""
+        return mechanical(self.fit.point)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What can and cannot be known, and what the channels added."""
+        channels_say = () if self.added is None else self.added.sentences
+        return self.identifiability.sentences + channels_say + (() if self.repeated is None else (self.repeated,))
+
+    @property
+    def glitch_rows(self) -> tuple[int, ...]:
+        """Numbers of the rows (first reading = 1) that were left out as isolated gross errors."""
+        return tuple(self.sweep.numbers[self.fit.outliers].tolist())
+
+
+def diagnose(
+    sweep: Sweep,
+    *,
+    rng: np.random.Generator | None = None,
+    robust: bool = True,
+    settings: swarm.SwarmSettings = QUICK,
+    band_rad: float | None = None,
+) -> Findings:
+    """Fit the paper's error model to a sweep and say what the answer is worth.
+
+    ``rng`` drives the swarm (default: a fixed seed). ``robust`` leaves isolated gross errors out, as the paper's
+    pretreatment does. ``band_rad`` is Delta E of Eq. 7; given, the discard rule of Eq. 11 is on.
+    """
+    rng = rng or np.random.default_rng(DEFAULT_SEED)
+    reference, measured = radians(sweep.reference_deg), radians(sweep.measured_deg)
+    senses = senses_from_channels(sweep, reference, measured)
+    fit = fit_baseline(reference, measured, rng=rng, senses=senses, robust=robust, settings=settings, band_rad=band_rad)
+    return _findings(sweep, fit)
+
+
+def diagnose_many(
+    sweeps: Sequence[Sweep], *, rng: np.random.Generator | None = None, robust: bool = True
+) -> list[Findings]:
+    """Diagnose many sweeps; those of equal length and senses in one batched swarm."""
+    rng = rng or np.random.default_rng(DEFAULT_SEED)
+    groups: dict[tuple[int, tuple[int, int] | None], list[int]] = {}
+    angles = [(radians(sweep.reference_deg), radians(sweep.measured_deg)) for sweep in sweeps]
+    for index, sweep in enumerate(sweeps):
+        senses = senses_from_channels(sweep, *angles[index])
+        groups.setdefault((len(sweep), senses), []).append(index)
+    found: dict[int, Findings] = {}
+    for (_, senses), indices in groups.items():
+        fits = fit_equal(
+            np.stack([angles[i][0] for i in indices]),
+            np.stack([angles[i][1] for i in indices]),
+            rng=rng,
+            senses=senses,
+            robust=robust,
+        )
+        found.update({i: _findings(sweeps[i], fit) for i, fit in zip(indices, fits, strict=True)})
+    return [found[i] for i in range(len(sweeps))]
+
+
+def senses_from_channels(sweep: Sweep, reference: Array, measured: Array) -> tuple[int, int] | None:
+    """With raw channels h is plain to see, and s follows from the slope; without them both are left to the fit."""
+    if sweep.vx is None or sweep.vy is None:
+        return None
+    output = channels.output_sense(measured, sweep.vx, sweep.vy)
+    slope = 1 if _follows(reference, measured, 1) >= _follows(reference, measured, -1) else -1
+    return slope * output, output
+
+
+def _follows(reference: Array, measured: Array, sense: int) -> float:
+    return float(np.abs(np.mean(np.exp(1j * (measured - sense * reference)))))
+
+
+def _findings(sweep: Sweep, fit: BaselineFit) -> Findings:
+    has_channels = sweep.vx is not None and sweep.vy is not None
+    added = channels.added(fit, sweep.vx, sweep.vy) if sweep.vx is not None and sweep.vy is not None else None
+    fit, repeated = between_angles(fit, sweep.reference_deg)
+    words = identifiability(fit, radians(sweep.reference_deg), radians(sweep.measured_deg), has_channels=has_channels)
+    return Findings(sweep, fit, words, added, repeated)
+
+
+def curve_deg(fit: BaselineFit, shaft_deg: Array) -> Array:
+    """The fitted angle error (n,) [deg] at shaft angles (n,) [deg], in the sense that sensor and shaft count together.
+
+    The zero is taken out, as in Fig. 14: what is left is the shape of the error.
+    """
+    slope = fit.senses.sensor * fit.senses.output
+    shaft = radians(shaft_deg)
+    readings = Readings.of(shaft, slope * shaft, sensor_sense=fit.senses.sensor, output_sense=fit.senses.output)
+    # residual() is h m - atan2(y, x) with m = s h theta: turned round it is the error of the reading in the sense h.
+    error = -fit.senses.output * readings.residual(fit.point) - fit.senses.output * fit.point[-1]
+    return np.asarray(np.degrees(np.angle(np.exp(1j * error))))

@@ -1,0 +1,37 @@
+"""The command line of effects of one's own: options only, as in :mod:`scenarios.cli.main`, which takes them in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EffectFiles = Annotated[
+    list[Path] | None, typer.Option("--effects", help="Python file with effects of your own; may be repeated.")
+]
+
+
+def new_effect(
+    name: Annotated[str, typer.Argument(help="Name of the effect, e.g. gear_mesh.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Python file to write; without it NAME.py.")
+    ] = None,
+    answer: Annotated[
+        Path | None,
+        typer.Option("--from", help="Answer of explain (--json) whose unnamed structure it is shaped after."),
+    ] = None,
+) -> None:
+    """Write the skeleton of an effect of your own: a file that passes the contract, to write your physics into."""
+    from scenarios.commands.new_effect import run
+
+    run(name, output=output, answer=answer)
+
+
+def check_effect(
+    file: Annotated[Path, typer.Argument(help="Python file that declares effects.")],
+) -> None:
+    """Check what an effect of your own promises: null, shapes, batches, seeds, documentation."""
+    from scenarios.commands.new_effect import check_run
+
+    check_run(file)

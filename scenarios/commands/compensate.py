@@ -1,0 +1,162 @@
+"""halltwin compensate: a continuous correction as C header, table or TOML, with its error on readings it never saw."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from diagnosis.correction.calibration import calibrate
+from diagnosis.correction.compensation import Correction, correction_of, to_dict
+from diagnosis.correction.compensation_c import header
+from diagnosis.correction.cross_validation import BeforeAfter, against, cross_validated
+from scenarios.commands.inputs import sweep_paths
+from twin.angles import TAU, Array, radians
+from twin.errors import UserError
+from twin.extensions import effects_with
+from twin.files import read_twin
+from twin.sweep import Sweep
+from twin.sweep_file import write_beside
+
+_FEWEST_POINTS = 4
+_MOST_POINTS = 65536
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """What to write; None where not asked for. ``points`` is the length of the table."""
+
+    header: Path | None = None
+    table: Path | None = None
+    points: int = 64
+    toml: Path | None = None
+    plot: Path | None = None
+    prefix: str = "halltwin"
+
+
+def run(
+    source: Path,
+    *,
+    outputs: Outputs,
+    check: Sequence[str] = (),
+    temperature_c: float = 25.0,
+    tolerance_deg: float = 1e-3,
+    effect_files: Sequence[Path] = (),
+    seed: int = 0,
+) -> None:
+    """Correction of a sweep or of a twin; errors on the sweeps of ``check``, or on held-out blocks of the sweep."""
+    if not _FEWEST_POINTS <= outputs.points <= _MOST_POINTS:
+        raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
+    sweep = None if source.suffix == ".toml" else Sweep.read(source)
+    if sweep is None:
+        twin = read_twin(source, effects=effects_with(effect_files))
+        correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)
+    else:
+        correction = _of_readings(tolerance_deg, seed)(*_angles(sweep))
+    print(
+        f"{source.name}: shaft = {correction.slope:+d} x reading {-np.degrees(correction.zero_rad):+.4f} deg + "
+        f"{correction.series.shape[1]} orders, the largest {_largest_deg(correction):.4f} deg"
+    )
+    for name in correction.left_out:
+        print(f"- {name}: not in the correction; a single angle reading cannot tell it")
+    judged = _judge(correction, sweep, check, tolerance_deg, seed)
+    for name, found, tested in judged:
+        for line in _lines(name, found, tested, other=bool(check)):
+            print(line)
+    _write(correction, outputs, source=source.name)
+    if outputs.plot is not None:
+        from scenarios.commands.compensate_plot import plot_before_after
+
+        if not judged:
+            raise UserError(f"{outputs.plot.name}: nothing to draw; give sweeps to --check the twin's correction on")
+        if check:
+            judged = [
+                (f"{name}, own zero taken out", found.per_turn(_turns(tested)), tested)
+                for name, found, tested in judged
+            ]
+        plot_before_after(outputs.plot, judged)
+        print(f"wrote {outputs.plot}")
+
+
+def _angles(sweep: Sweep) -> tuple[Array, Array]:
+    return radians(sweep.reference_deg), radians(sweep.measured_deg)
+
+
+def _of_readings(tolerance_deg: float, seed: int) -> Callable[[Array, Array], Correction]:
+    """Readings -> correction, the same way for the whole sweep and for each fold."""
+
+    def build(reference: Array, measured: Array) -> Correction:
+        found = calibrate(reference, measured, rng=np.random.default_rng(seed))
+        return correction_of(found.chain, tolerance_deg=tolerance_deg)
+
+    return build
+
+
+def _judge(
+    correction: Correction, sweep: Sweep | None, check: Sequence[str], tolerance_deg: float, seed: int
+) -> list[tuple[str, BeforeAfter, Sweep]]:
+    if check:
+        sweeps = [Sweep.read(path) for path in sweep_paths(check)]
+        return [(f"on {other.name}", against(*_angles(other), correction.shaft), other) for other in sweeps]
+    if sweep is None:
+        return []
+    build = _of_readings(tolerance_deg, seed)
+    found = cross_validated(*_angles(sweep), lambda reference, measured: build(reference, measured).shaft)
+    return [("on held-out blocks", found, sweep)]
+
+
+def _lines(name: str, found: BeforeAfter, tested: Sweep, *, other: bool) -> list[str]:
+    """As it is and, where the reference may have found its zero anew, with each turn's own zero taken out."""
+    lines = [_line(name, found)]
+    turn = _turns(tested)
+    if other or np.unique(turn).size > 1:
+        lines.append(_line("  each turn's own zero taken out", found.per_turn(turn)))
+    return lines
+
+
+def _turns(sweep: Sweep) -> Array:
+    return np.zeros(len(sweep)) if sweep.turn is None else sweep.turn
+
+
+def _line(name: str, found: BeforeAfter) -> str:
+    (rms, rms_after), (peak, peak_after) = found.rms_deg, found.peak_deg
+    return f"{name:34} RMS {rms:.4f} -> {rms_after:.4f} deg   largest {peak:.4f} -> {peak_after:.4f} deg"
+
+
+def _write(correction: Correction, outputs: Outputs, *, source: str) -> None:
+    if outputs.header is not None:
+        text = header(correction, source=f"from {source}", prefix=outputs.prefix)
+        write_beside(outputs.header, text.encode())
+        print(f"wrote {outputs.header}")
+    if outputs.table is not None:
+        write_beside(outputs.table, _table(correction, outputs.points).encode())
+        print(f"wrote {outputs.table} ({outputs.points} points)")
+    if outputs.toml is not None:
+        import tomli_w
+
+        write_beside(outputs.toml, tomli_w.dumps(to_dict(correction)).encode())
+        print(f"wrote {outputs.toml}")
+
+
+def _table(correction: Correction, points: int) -> str:
+    """CSV: reading, correction to add to slope x reading - zero, and the shaft angle."""
+    reading = TAU * np.arange(points) / points
+    out = io.StringIO()
+    out.write("reading_deg,correction_deg,shaft_deg\n")
+    rows = zip(
+        np.degrees(reading),
+        np.degrees(correction.correction(reading)),
+        np.degrees(correction.shaft(reading)) % 360.0,
+        strict=True,
+    )
+    for row in rows:
+        out.write(",".join(f"{value:.6f}" for value in row) + "\n")
+    return out.getvalue()
+
+
+def _largest_deg(correction: Correction) -> float:
+    sizes = np.hypot(correction.series[0], correction.series[1])
+    return float(np.degrees(sizes.max())) if sizes.size else 0.0

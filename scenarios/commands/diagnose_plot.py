@@ -1,0 +1,76 @@
+"""Pictures of a diagnosis: points and fitted curve like the paper's Fig. 14, convergence like its Fig. 13."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis import Findings
+from diagnosis.error_model.model import ZERO
+from diagnosis.factors.findings import curve_deg
+from scenarios.report.plotting import save, style
+from twin.angles import Array, wrap_deg
+from twin.errors import UserError
+
+MOST_PANELS = 16
+_MOST_POINTS = 20000
+_POINT, _CURVE = "#4477aa", "#cc3311"
+
+
+def plot_fits(path: Path, found: Sequence[Findings]) -> None:
+    """One panel a sweep: measured angle error over the turn, and the curve of the fitted parameters."""
+    if len(found) > MOST_PANELS:
+        raise UserError(f"{path.name}: {len(found)} sweeps do not fit in one picture; plot at most {MOST_PANELS}")
+    plt = style(path)
+    columns = int(np.ceil(np.sqrt(len(found))))
+    rows = -(-len(found) // columns)
+    figure, axes = plt.subplots(
+        rows, columns, figsize=(max(4.2 * columns, 6.5), max(2.9 * rows, 3.8)), squeeze=False, layout="constrained"
+    )
+    for axis, item in zip(axes.flat, found, strict=False):
+        _panel(axis, item)
+    for axis in axes.flat[len(found) :]:
+        axis.set_visible(False)
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    save(figure, path)
+
+
+def _panel(axis: Any, item: Findings) -> None:
+    fit, sweep = item.fit, item.sweep
+    slope = fit.senses.sensor * fit.senses.output
+    shaft = np.remainder(sweep.reference_deg, 360.0)
+    zero = fit.senses.output * float(np.degrees(fit.point[ZERO]))
+    error = wrap_deg(sweep.measured_deg - slope * sweep.reference_deg - zero)
+    pick = np.flatnonzero(~fit.outliers)[:: max(1, len(sweep) // _MOST_POINTS)]
+    turn: Array = np.linspace(0.0, 360.0, 721)
+    axis.plot(shaft[pick], error[pick], ".", ms=3.0, color=_POINT, label="measured", rasterized=pick.size > 5000)
+    axis.plot(turn, curve_deg(fit, turn), "-", lw=1.2, color=_CURVE, label="fitted parameters")
+    axis.set(xlim=(0, 360), xticks=range(0, 361, 90), xlabel="shaft angle [deg]", ylabel="angle error [deg]")
+    left = f"{np.degrees(fit.rms_rad):.3f} deg RMS left"
+    hidden = f", {len(item.glitch_rows)} gross errors not shown" if item.glitch_rows else ""
+    axis.set_title(f"{sweep.name}: {left}{hidden}", fontsize=9)
+    axis.grid(alpha=0.25)
+
+
+def plot_convergence(path: Path, found: Sequence[Findings]) -> None:
+    """RMS of the swarm's best and of the particles' own bests over the iterations; the polished RMS as a line."""
+    plt = style(path)
+    figure, axis = plt.subplots(figsize=(6.5, 4.0), layout="constrained")
+    for item in found:
+        steps = item.fit.contributions
+        thin = {"lw": 1.4, "alpha": max(0.9 / np.sqrt(len(found)), 0.15)}
+        first = item is found[0]
+        axis.semilogy(
+            np.degrees(steps.own_history_rad), color=_POINT, label="own bests, mean" if first else None, **thin
+        )
+        axis.semilogy(np.degrees(steps.best_history_rad), color=_CURVE, label="best of all" if first else None, **thin)
+        if len(found) == 1:
+            floor = float(np.degrees(steps.polished_rms_rad))
+            axis.axhline(floor, color="0.3", lw=0.9, ls="--", label="after the polish")
+    axis.set(xlabel="iteration", ylabel="RMS angle error [deg]")
+    axis.grid(alpha=0.25, which="both")
+    axis.legend(frameon=True)
+    save(figure, path)

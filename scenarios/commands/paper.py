@@ -1,0 +1,178 @@
+"""halltwin paper: Table 1 and Figures 3 to 9 of the paper, computed from the twin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scenarios.commands.paper_table import (
+    Q_PERCENT_PER_MT,
+    cordic_error,
+    non_linear,
+    offset_of,
+    table,
+    table_csv,
+    whole_turn,
+)
+from scenarios.report.plotting import save, style
+from twin.adc.converter import Converter, convert
+from twin.angles import Array
+from twin.chain import Chain
+from twin.sweep_file import write_beside, write_columns
+
+Columns = dict[str, Array]
+TURN = whole_turn(360)
+ANGLE_DEG = np.degrees(TURN.shaft_rad)
+
+
+def run(folder: Path) -> None:
+    """Write table1.csv and, for each figure, its data (.csv) and its picture (.svg, .png)."""
+    folder.mkdir(parents=True, exist_ok=True)
+    plt = style(folder / "fig3.png")
+    rows = table()
+    write_beside(folder / "table1.csv", table_csv(rows).encode())
+    for row in rows:
+        print(f"{row.factor:20s} printed {row.printed:<8g} computed {row.computed:.5f} {row.unit}  {row.remark}")
+    for number, draw in FIGURES.items():
+        figure, columns = draw(plt)
+        write_columns(folder / f"fig{number}.csv", columns)
+        save(figure, folder / f"fig{number}.svg", folder / f"fig{number}.png")
+    print(f"wrote table1.csv and figures {', '.join(map(str, FIGURES))} to {folder}")
+
+
+def _error_deg(chain: Chain) -> Array:
+    return np.degrees(chain.error(TURN))
+
+
+def offsets(plt: Any) -> tuple[Any, Columns]:
+    """Fig. 3: the error for offsets of one axis, of orders of magnitude, and of both."""
+    panels: dict[str, list[tuple[str, float, float]]] = {
+        "orders of magnitude, both axes": [(f"{mv:g} mV", mv, mv) for mv in (0.01, 0.1, 1.0, 10.0)],
+        "x axis": [(f"{mv:g} mV", mv, 0.0) for mv in (1.0, 2.0, 3.0)],
+        "y axis": [(f"{mv:g} mV", 0.0, mv) for mv in (1.0, 2.0, 3.0)],
+        "both axes": [(f"x {x:g} mV, y {y:g} mV", x, y) for x, y in ((1.0, 1.0), (1.0, 2.0), (2.0, 1.0), (2.0, 2.0))],
+    }
+    figure, axes = plt.subplots(2, 2, figsize=(9.0, 6.5), layout="constrained")
+    columns = {"angle_deg": ANGLE_DEG}
+    for axis, (title, curves) in zip(axes.flat, panels.items(), strict=True):
+        for label, x, y in curves:
+            error = _error_deg(offset_of(x, y))
+            axis.plot(ANGLE_DEG, error, label=label)
+            columns[f"error_x_{x:g}mV_y_{y:g}mV_deg"] = error
+        _label(axis, title, "angle / deg", "error / deg")
+    axes[0, 0].set_yscale("symlog", linthresh=1e-3)
+    return figure, columns
+
+
+def gain(plt: Any) -> tuple[Any, Columns]:
+    """Fig. 4: the error over angle and gain mismatch."""
+    percents = np.linspace(0.0, 1.0, 21)
+    chains = [Chain().with_effect("gain_mismatch", ratio=1.0 + 0.01 * percent) for percent in percents]
+    return _surface(plt, percents, chains, "gain mismatch / %", "mismatch_percent")
+
+
+def phase(plt: Any) -> tuple[Any, Columns]:
+    """Fig. 5: the error over angle and phase deviation."""
+    degrees = np.linspace(0.0, 0.5, 21)
+    chains = [Chain().with_effect("phase", beta_deg=beta) for beta in degrees]
+    return _surface(plt, degrees, chains, "phase deviation / deg", "beta_deg")
+
+
+def field_and_voltage(plt: Any) -> tuple[Any, Columns]:
+    """Fig. 6: output voltage against field; the quadratic model, with saturation as the curve that it is fitted to."""
+    field = np.linspace(-100.0, 100.0, 401)
+    share: Array = np.asarray(field / 100.0, dtype=np.float64)
+    q = 0.01 * Q_PERCENT_PER_MT * 100.0
+    # The real curve: the quadratic term, and the concentrator's flattening of 0.5 % at 100 mT (typical assumption).
+    real = share + q * share**2 - 0.005 * share**3
+    terms = np.polynomial.polynomial.polyfit(share, real, 2)
+    fitted = np.polynomial.polynomial.polyval(share, terms)
+    figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
+    axes[0].plot(field, 1e3 * (real - share), label="curve")
+    axes[0].plot(field, 1e3 * (fitted - share), "--", label="quadratic fit")
+    _label(axes[0], "deviation from a straight line", "field / mT", "deviation / mV")
+    axes[1].plot(field, real, label="output")
+    _label(axes[1], "output at 1 V for 100 mT", "field / mT", "voltage / V")
+    return figure, {"field_mT": field, "voltage_V": real, "fitted_V": np.asarray(fitted, dtype=np.float64)}
+
+
+def non_linearity(plt: Any) -> tuple[Any, Columns]:
+    """Fig. 7: the error over angle and field."""
+    fields = np.linspace(0.0, 100.0, 21)
+    return _surface(plt, fields, [non_linear(field) for field in fields], "field / mT", "field_mT")
+
+
+def fluctuation(plt: Any) -> tuple[Any, Columns]:
+    """Fig. 8: the sampling error over the code for several fluctuations of the reference (Eq. 3).
+
+    The converter's own codes beside x / 2^m D: a reference that is too high by D makes the code too low.
+    """
+    # The positive half of a signed word of 15 bits is a word of 14.
+    converter = Converter(bits=15, full_scale=1.0)
+    code = np.arange(0, 2**14, 64)
+    volts = code / 2.0**14
+    columns: Columns = {"code": code.astype(np.float64)}
+    figure, axis = plt.subplots(figsize=(6.5, 4.5), layout="constrained")
+    for millivolt in (0.5, 1.0, 2.0, 3.0):
+        formula = code / 2.0**14 * millivolt
+        seen = convert(np.stack([volts, volts]) / (1.0 + 1e-3 * millivolt), np.zeros((2, code.size)), converter)[0]
+        (line,) = axis.plot(code, formula, label=f"{millivolt:g} mV")
+        axis.plot(code, 1e3 * (volts - seen * converter.step), ".", markersize=2, color=line.get_color())
+        columns[f"error_{millivolt:g}mV_mV"] = formula
+        columns[f"converted_{millivolt:g}mV_mV"] = 1e3 * (volts - seen * converter.step)
+    _label(axis, "lines: Eq. 3; points: the converter, full scale 1 V", "code of 14 bits", "sampling error / mV")
+    return figure, columns
+
+
+def calculation(plt: Any) -> tuple[Any, Columns]:
+    """Fig. 9: the error of the CORDIC over the first quadrant, and the envelope over the iterations."""
+    figure, axes = plt.subplots(1, 2, figsize=(10.0, 4.2), layout="constrained")
+    columns: Columns = {}
+    counts = range(4, 17)
+    largest = []
+    for count in counts:
+        angle, error = cordic_error(count, 14_400)
+        first = angle < 0.5 * np.pi
+        columns["angle_deg"] = np.asarray(np.degrees(angle[first]), dtype=np.float64)
+        columns[f"error_{count}_iterations_deg"] = np.asarray(np.degrees(error[first]), dtype=np.float64)
+        largest.append(float(np.degrees(np.max(np.abs(error)))))
+    for count in (6, 8, 10):
+        axes[0].plot(columns["angle_deg"], columns[f"error_{count}_iterations_deg"], linewidth=0.6, label=f"{count}")
+    _label(axes[0], "error through 6, 8, 10 iterations", "angle / deg", "error / deg")
+    bound = [float(np.degrees(np.arctan(2.0 ** -(count - 1)))) for count in counts]
+    axes[1].semilogy(list(counts), largest, "o", label="largest error")
+    axes[1].semilogy(list(counts), bound, "--", label="atan(2^-(n-1))")
+    _label(axes[1], "envelope", "iterations", "error / deg")
+    return figure, columns
+
+
+FIGURES: dict[int, Callable[[Any], tuple[Any, Columns]]] = {
+    3: offsets,
+    4: gain,
+    5: phase,
+    6: field_and_voltage,
+    7: non_linearity,
+    8: fluctuation,
+    9: calculation,
+}
+
+
+def _surface(plt: Any, across: Array, chains: Sequence[Chain], label: str, name: str) -> tuple[Any, Columns]:
+    """A surface over the angle and one parameter, and its points as three columns."""
+    error = np.stack([_error_deg(chain) for chain in chains])
+    angle, parameter = np.meshgrid(ANGLE_DEG, across)
+    figure = plt.figure(figsize=(6.5, 5.0), layout="constrained")
+    axis = figure.add_subplot(projection="3d")
+    axis.plot_surface(angle, parameter, error, cmap="viridis", rcount=21, ccount=90, linewidth=0.1)
+    axis.set(xlabel="angle / deg", ylabel=label, zlabel="error / deg")
+    axis.set_box_aspect(None, zoom=0.85)
+    return figure, {"angle_deg": angle.ravel(), name: parameter.ravel(), "error_deg": error.ravel()}
+
+
+def _label(axis: Any, title: str, across: str, up: str) -> None:
+    axis.set(title=title, xlabel=across, ylabel=up)
+    axis.grid(alpha=0.3)
+    axis.legend(fontsize=7)

@@ -1,0 +1,79 @@
+"""halltwin spinning: the spinning current phase by phase, the offset before and after, and the noise spectrum."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.report.plotting import save, style
+from twin.hall.spinning_current import PHASES, Plate, Spinning, corner_of, density, residual_offset_mT, spin
+from twin.sweep_file import write_columns
+
+SHOWN = 5
+NOISE_CYCLES = 1 << 15
+
+
+def run(folder: Path, *, seed: int, field_mT: float = 5.0) -> None:
+    """Write spinning.csv, the trace of a few cycles, spinning.png and .svg, and print the figures."""
+    folder.mkdir(parents=True, exist_ok=True)
+    plate = Plate()
+    rng = np.random.default_rng(seed)
+    # Field off, on, off: what the output must follow.
+    steps = np.repeat([0.0, field_mT, 0.0], SHOWN)
+    traced = spin(steps, plate, rng)
+    before, after = residual_offset_mT(plate)
+    noisy = spin(np.zeros(NOISE_CYCLES), plate, rng)
+    samples = {
+        "time_us": 1e6 * traced.time_s,
+        "plate_uV": traced.plate_uV,
+        "amplified_uV": traced.amplified_uV,
+        "demodulated_uV": traced.demodulated_uV,
+        "output_mT": np.broadcast_to(traced.output_mT[:, None, None], traced.time_s.shape),
+    }
+    write_columns(folder / "spinning.csv", {name: values.ravel() for name, values in samples.items()})
+    spectra = {
+        name: density(values, plate.cycle_Hz)
+        for name, values in (("without spinning", noisy.unspun_mT), ("with spinning", noisy.output_mT))
+    }
+    corners = {name: corner_of(*spectrum) for name, spectrum in spectra.items()}
+    _draw(folder, plate, traced, spectra, offsets=(before, after), corners=corners)
+    print(f"offset before {before:.4g} mT, after {after:.4g} mT: {abs(before / after):.0f} times smaller")
+    for name, corner in corners.items():
+        print(f"1/f corner {name}: {_stated(corner, spectra[name][0])}")
+
+
+def _stated(corner_Hz: float, frequency_Hz: np.ndarray) -> str:
+    """A corner below the lowest frequency of the spectrum is known to be below it, no more."""
+    lowest = frequency_Hz[0]
+    return f"below {lowest:.2g} Hz" if corner_Hz < lowest else f"{corner_Hz:.3g} Hz"
+
+
+def _draw(
+    folder: Path,
+    plate: Plate,
+    traced: Spinning,
+    spectra: dict[str, tuple[np.ndarray, np.ndarray]],
+    *,
+    offsets: tuple[float, float],
+    corners: dict[str, float],
+) -> None:
+    plt = style(folder / "spinning.png")
+    figure, axes = plt.subplots(3, 1, figsize=(8.0, 9.0), layout="constrained")
+    time = 1e6 * traced.time_s.ravel()
+    axes[0].plot(time, traced.amplified_uV.ravel(), linewidth=0.8, label="at the amplifier's output, input-referred")
+    axes[0].plot(time, traced.demodulated_uV.ravel(), linewidth=0.8, label="after the demodulator")
+    axes[0].set(xlabel="time / us", ylabel="voltage / uV", title="Signal phase by phase; the field is on in the middle")
+    cycle = 1e6 * traced.time_s.mean(axis=(1, 2))
+    axes[1].plot(cycle, traced.unspun_mT, "o-", label=f"bias left in phase 0: offset {offsets[0]:.3g} mT")
+    axes[1].plot(cycle, traced.output_mT, "o-", label=f"mean over a cycle: offset {offsets[1]:.3g} mT")
+    axes[1].set(xlabel="time / us", ylabel="output / mT", title="Offset before and after spinning")
+    for name, (frequency, power) in spectra.items():
+        label = f"{name}: corner {_stated(corners[name], frequency)}"
+        axes[2].loglog(frequency, 1e6 * np.sqrt(power), linewidth=0.8, label=label)
+    axes[2].set(xlabel="frequency / Hz", ylabel="noise / (nT / sqrt(Hz))", title="Noise of the output")
+    for axis in axes:
+        axis.grid(alpha=0.3)
+        axis.legend(fontsize=8, loc="best")
+    figure.suptitle(f"Spinning current, {PHASES} phases of {1e6 * plate.phase_s:g} us")
+    save(figure, folder / "spinning.png", folder / "spinning.svg")

@@ -1,0 +1,169 @@
+"""The trace of a run: every intermediate signal with its unit, as a table and as a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.report.plotting import save, style
+from twin.angles import TAU, Array, wrap
+from twin.catalogue import STAGES
+from twin.chain import Chain, Step
+from twin.concentrator.disk import vertical_mT
+from twin.hall.spinning_current import residual_offset_mT
+from twin.motion import Motion
+from twin.sweep_file import write_columns
+
+CONVERSIONS = {
+    "after shaft": "field angle",
+    "after field": "driven channels",
+    "after channels": "computed angle",
+    "after angle": "reading",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Signal:
+    """One operation's output: ``values`` (1 or 2, n) in ``unit``, and ``moved_deg`` (n,), what it did to the angle."""
+
+    name: str
+    unit: str
+    values: Array
+    moved_deg: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """All signals of one run in the order of the chain, and the reference's reading [deg] (n,)."""
+
+    motion: Motion
+    signals: tuple[Signal, ...]
+    reference_deg: Array
+    error_deg: Array
+    notes: tuple[str, ...]
+
+
+def trace(chain: Chain, motion: Motion, *, seed: int) -> Trace:
+    """Run the chain as :meth:`Chain.simulate` does with this seed, and keep every signal."""
+    rng = np.random.default_rng(seed)
+    stages = {effect.name: effect.acts_on for effect in chain.effects}
+    signals = [Signal("shaft", "deg", np.degrees(motion.shaft_rad)[None], np.zeros(len(motion)))]
+    last: Array = signals[0].values
+    inside = _Inside(chain)
+    for step in chain.steps(motion, rng):
+        kind = stages[step.effect.name] if step.effect else step.key.removeprefix("after ")
+        # Before a later stage acts on the channels, the earlier ones' signal is what the hardware has there.
+        if kind == "channels":
+            signals.extend(inside.before(step))
+        is_channels = kind == "channels" if step.effect else kind == "field"
+        values = step.after if is_channels else np.degrees(step.after)
+        name = step.key if step.effect else CONVERSIONS[step.key]
+        signals.append(Signal(name, "1" if is_channels else "deg", values, _moved_deg(step, kind)))
+        last = step.after
+    reference = chain.recorded_reference(motion, rng)
+    slope = chain.sensor_sense * chain.output_sense
+    error = np.degrees(wrap(last[0] - slope * reference))
+    return Trace(motion, tuple(signals), np.degrees(reference), error, _notes(chain))
+
+
+class _Inside:
+    """The channels in the units of the hardware, each once: in the plane after the magnet's effects, under the disk
+
+    after the concentrator's, at the plates after theirs. Scale: the chain's nominal field, its disk and its plate.
+    """
+
+    def __init__(self, chain: Chain) -> None:
+        self.parts, self.nominal = chain.parts, chain.nominal_mT
+        self.left = ["magnet", "concentrator", "hall"]
+
+    def before(self, step: Step) -> Iterator[Signal]:
+        """What is complete before this step acts."""
+        reached = STAGES.index(step.effect.stage) if step.effect else len(STAGES)
+        while self.left and STAGES.index(self.left[0]) < reached:
+            yield self._signal(self.left.pop(0), step.before)
+
+    def _signal(self, stage: str, channels: Array) -> Signal:
+        in_plane, still = self.nominal * channels, np.zeros(channels.shape[-1])
+        if stage == "magnet":
+            return Signal("field in the plane", "mT", in_plane, still)
+        vertical = vertical_mT(in_plane, self.parts.disk)
+        if stage == "concentrator":
+            return Signal("vertical field", "mT", vertical, still)
+        return Signal("Hall voltage", "uV", self.parts.plate.sensitivity_uV_per_mT * vertical, still)
+
+
+def _notes(chain: Chain) -> tuple[str, ...]:
+    """What the columns in mT and uV are counted with."""
+    disk, plate = chain.parts.disk, chain.parts.plate
+    before, after = residual_offset_mT(plate)
+    field = "[hardware]" if chain.magnet is None else "[magnet]"
+    return (
+        f"nominal field {chain.nominal_mT:.4g} mT by {field} of the twin; concentrator's gain {disk.gain:g} and "
+        f"sensitivity {plate.sensitivity_uV_per_mT:g} uV/mT by [hardware]; what is not given there is typical",
+        f"offset of such a Hall plate: {before:.4g} mT before spinning current, {after:.4g} mT after it",
+    )
+
+
+def _moved_deg(step: Step, kind: str) -> Array:
+    """What the operation did to the angle that the signal stands for [deg] (n,).
+
+    The conversion to channels moves it where a magnet's field is not the ideal one; the other conversions do not.
+    """
+    if step.effect is None and kind != "field":
+        return np.zeros(step.after.shape[-1])
+    before = _angle(step.before, kind)
+    after = _angle(step.after, kind if step.effect else "channels")
+    return np.asarray(np.degrees(wrap(after - before)))
+
+
+def _angle(signal: Array, kind: str) -> Array:
+    if kind == "channels":
+        return np.asarray(np.arctan2(signal[1], signal[0]))
+    if len(signal) == 2:
+        return np.asarray(np.arctan2(np.sin(signal[1]), np.cos(signal[0])))
+    return np.asarray(signal[0])
+
+
+def write_trace(path: Path, traced: Trace) -> None:
+    """The trace as CSV, one row a reading; the unit ends each name, ``_1`` being the nominal amplitude."""
+    columns = {"time_s": traced.motion.time_s}
+    for place, signal in enumerate(traced.signals):
+        stem = f"{place:02d}_{signal.name.replace(' ', '_')}"
+        for axis, values in zip(("_x", "_y") if len(signal.values) == 2 else ("",), signal.values, strict=True):
+            columns[f"{stem}{axis}_{signal.unit}"] = values
+    columns["reference_deg"] = traced.reference_deg
+    columns["error_deg"] = traced.error_deg
+    write_columns(path, columns, comments=traced.notes)
+
+
+def plot_trace(path: Path, traced: Trace, *, title: str) -> None:
+    """Three panels: the channels, what each effect does to the angle, and the error that is left."""
+    plt = style(path)
+    figure, axes = plt.subplots(3, 1, figsize=(8.0, 8.5), sharex=True, layout="constrained")
+    turn = traced.motion.shaft_rad
+    single = traced.motion.turns <= 1.0 and np.all(np.diff(turn) > 0)
+    across = turn * 360.0 / TAU if single else np.arange(len(traced.motion))
+    marker = {"linewidth": 0.9}
+    channels = [signal for signal in traced.signals if signal.unit == "1"][-1]
+    axes[1].set_prop_cycle(color=plt.get_cmap("tab20").colors)
+    for label, values in zip("xy", channels.values, strict=True):
+        axes[0].plot(across, values, label=label, **marker)
+    axes[0].set_ylabel("channel / nominal amplitude")
+    for signal in traced.signals:
+        if np.max(np.abs(signal.moved_deg)) > 1e-9:
+            # The roughest curves go behind the smooth ones.
+            behind = 2.0 - float(np.std(np.diff(signal.moved_deg)))
+            name = "magnet" if signal.name == CONVERSIONS["after field"] else signal.name
+            axes[1].plot(across, signal.moved_deg, label=name, zorder=behind, **marker)
+    axes[1].set_ylabel("change of the angle / deg")
+    axes[2].plot(across, traced.error_deg, color="black", label="reading minus reference", **marker)
+    axes[2].set_ylabel("error / deg")
+    axes[2].set_xlabel("shaft angle / deg" if single else "reading")
+    for axis in axes:
+        axis.grid(alpha=0.3)
+        axis.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    figure.suptitle(title)
+    save(figure, path)

@@ -1,0 +1,239 @@
+"""The answer as plain values: the JSON of ``halltwin explain`` (schema halltwin.explain/1)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.further.power import advice
+from diagnosis.discovery.marks.row_masks import raw_residual
+from diagnosis.discovery.pipeline import Discovery
+from diagnosis.discovery.proof.cause import Named
+from scenarios.report.facts import facts
+from twin.angles import wrap_deg
+from twin.catalogue import base_name, find
+from twin.files import to_dict
+
+SCHEMA = "halltwin.explain/1"
+_T95 = 1.959964
+_KINDS = {
+    "unnamed_order": "order",
+    "unnamed_direction": "direction",
+    "unnamed_direction_order": "direction",
+    "unnamed_temperature": "temperature",
+    "unnamed_temperature_order": "temperature",
+    "unnamed_speed": "speed",
+    "unnamed_tone": "time_frequency",
+    "unnamed_drift": "drift",
+    "unnamed_bump": "local",
+    "unnamed_burst": "noise",
+}
+
+
+def to_json(found: Discovery) -> dict[str, Any]:
+    """The answer, with every figure rounded to seven digits: what is beyond them is no information."""
+    sweep = found.sweep
+    residual = np.degrees(raw_residual(found.baseline, sweep))
+    extended = np.degrees(raw_residual(found.fit, sweep))
+    kept = ~found.masked if found.masked.any() and not found.masked.all() else np.ones_like(found.masked)
+    wild = wild_rows(found)
+    gain = found.baseline_held_deg / max(found.extended_held_deg, 1e-12)
+    unnamed = [key for cause in found.causes if cause.name == "unnamed" for key in cause.keys]
+    answer: dict[str, Any] = _rounded(
+        {
+            "schema": SCHEMA,
+            "sweep": {
+                "name": sweep.name,
+                "rows": sweep.rows,
+                "used": len(sweep),
+                "set_aside": sweep.set_aside,
+                "rejected": len(sweep.rejected),
+                "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:100]},
+                "turns": found.fit.evidence.motion.turns,
+                "columns": list(sweep.columns),
+                **facts(found),
+                "output_bits": found.bits,
+                "wild": len(wild),
+                "wild_rows": wild[:100],
+            },
+            "baseline": {
+                "parameters": baseline_parameters(found.baseline),
+                "rms_deg": _rms(residual[kept]),
+                "rms_all_rows_deg": _rms(residual),
+                "heldout_rms_deg": found.baseline_held_deg,
+            },
+            "noise_floor_deg": found.noise_floor_deg,
+            "noise": found.fit.setting.family.labels[found.fit.setting.member],
+            "verdict": found.verdict,
+            "causes": [_cause(found, cause) for cause in found.causes],
+            "unexplained": {
+                "rms_deg": _rms(extended[kept]),
+                "structure": [_structure(found, key) for key in unnamed],
+            },
+            "extended": {
+                "rms_deg": _rms(extended[kept]),
+                "heldout_rms_deg": found.extended_held_deg,
+                "gain": gain,
+                "likeness_p": None if found.likeness is None else found.likeness.p,
+                "likeness_worst": None if found.likeness is None else found.likeness.worst,
+            },
+            "not_visible": {name: list(missing) for name, missing in sorted(found.invisible.items())},
+            "searched": found.looked_at,
+            "twin": to_dict(found.fit.chain),
+        }
+    )
+    return answer
+
+
+def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:
+    """The six visible parameters of the paper's model with 95 % intervals; a given twin's are taken as known."""
+    deviation = standard_deviations(fit)
+    wanted = (
+        ("Vx_over_Ax", "offset", "x_percent", 0.01, "1"),
+        ("Vy_over_Ay", "offset", "y_percent", 0.01, "1"),
+        ("gain_ratio", "gain_mismatch", "ratio", 1.0, "1"),
+        ("beta_deg", "phase", "beta_deg", 1.0, "deg"),
+        ("quad", "quadratic_nonlinearity", "q_percent", 0.01, "1"),
+        ("zero_deg", "zero", "zero_deg", 1.0, "deg"),
+    )
+    answer = {}
+    for name, key, param, scale, unit in wanted:
+        declared = find(key).params[param]
+        value = float(fit.chain.values.get(key, {}).get(param, declared.null))
+        half = _T95 * deviation.get((key, param), 0.0)
+        at_bound = value <= declared.lower or value >= declared.upper
+        answer[name] = {
+            "value": value * scale,
+            "low": (value - half) * scale,
+            "high": (value + half) * scale,
+            "unit": unit,
+            "at_bound": bool(at_bound),
+        }
+    return answer
+
+
+def standard_deviations(fit: Fit) -> dict[tuple[str, str], float]:
+    """Standard deviation of every free scalar parameter of a fit, in its own unit."""
+    variance = np.diag(fit.covariance()) if fit.free else np.zeros(0)
+    return {
+        (free.key, free.name): float(np.sqrt(max(v, 0.0)))
+        for free, v in zip(fit.free, variance, strict=True)
+        if free.turn is None
+    }
+
+
+def _cause(found: Discovery, cause: Named) -> dict[str, Any]:
+    fit = found.fit
+    effect = find(cause.keys[0], fit.chain.effects)
+    answer: dict[str, Any] = {
+        "name": cause.name,
+        "stage": effect.stage,
+        "parameters": parameters(found, cause),
+        "false_alarm_probability": cause.false_alarm_probability(found.looked_at),
+        "heldout_rms_deg_before": cause.before_deg,
+        "heldout_rms_deg_after": cause.after_deg,
+        "indistinguishable_from": list(cause.rivals),
+        "to_tell_apart": advice(cause.options) if cause.rivals else "",
+        "to_tell_apart_options": [
+            {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options
+        ],
+    }
+    if cause.name == "bus_glitch":
+        answer["rows"] = found.sweep.numbers[list(cause.rows)].tolist()
+    return answer
+
+
+def parameters(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
+    """Every parameter of a cause's instances with its interval; further instances carry their number."""
+    fit = found.fit
+    deviation = standard_deviations(fit)
+    answer: dict[str, dict[str, Any]] = {}
+    for number, key in enumerate(cause.keys):
+        effect = find(key, fit.chain.effects)
+        values = {**effect.null(), **fit.chain.values.get(key, {})}
+        suffix = "" if number == 0 else f"_{number + 1}"
+        for name, param in effect.params.items():
+            if param.role == "per turn" or name not in values or np.ndim(values[name]):
+                continue
+            if param.role == "random" and name in effect.derived(values):
+                continue
+            value = float(values[name])
+            half = _T95 * deviation.get((key, name), 0.0)
+            if param.role == "phase":
+                # Of a phase no less can be known than nothing.
+                half = min(half, 180.0)
+            answer[name + suffix] = {"value": value, "low": value - half, "high": value + half, "unit": param.unit}
+            if name == "time_s" and (key, name) not in deviation and name in effect.zoomed:
+                # A step's instant lies between two readings.
+                clock = fit.evidence.motion.time_s
+                place = int(np.searchsorted(clock, value))
+                answer[name + suffix] |= {
+                    "low": float(min(clock[max(place - 2, 0)], value)),
+                    "high": float(max(clock[min(place + 1, clock.size - 1)], value)),
+                }
+        if effect.line is not None and effect.line.clock == "time":
+            # Fitted in the middle of the record, where it is known best; told at its first row.
+            half_s = 0.5 * float(np.ptp(fit.evidence.motion.time_s))
+            told = answer[effect.roles("phase")[0] + suffix]
+            value = float(wrap_deg(told["value"] - 360.0 * float(values[effect.line.param]) * half_s))
+            spread = 360.0 * half_s * _T95 * deviation.get((key, effect.line.param), 0.0)
+            half = float(np.hypot(0.5 * (told["high"] - told["low"]), spread))
+            told |= {"value": value, "low": value - half, "high": value + half}
+        if fit.evidence.observables == 1:
+            for name, (low, high) in effect.angle_only(values).items():
+                told, value = answer[name + suffix], float(values[name])
+                told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
+        for name, (value, low, high, unit) in effect.derived(values).items():
+            answer[name + suffix] = {"value": value, "low": low, "high": high, "unit": unit}
+        for name, (low, high) in cause.intervals.items():
+            answer[name + suffix] |= {"low": low, "high": high}
+    if cause.name == "bus_glitch":
+        count = float(len(cause.rows))
+        answer["count"] = {"value": count, "low": count, "high": count, "unit": "1"}
+    if cause.name == "stale_frames":
+        share = 100.0 * len(cause.rows) / len(found.sweep)
+        half = 100.0 * _T95 * float(np.sqrt(max(share / 100 * (1 - share / 100) / len(found.sweep), 0.0)))
+        answer["fraction_percent"] = {"value": share, "low": max(share - half, 0.0), "high": share + half, "unit": "%"}
+    return answer
+
+
+def _structure(found: Discovery, key: str) -> dict[str, Any]:
+    values = found.fit.chain.values[key]
+    answer: dict[str, Any] = {"kind": _KINDS.get(base_name(key), "order")}
+    answer.update({name: float(value) for name, value in values.items() if np.ndim(value) == 0})
+    series = {
+        int(name[3:-4]): float(np.hypot(values[name], values.get(f"sin{name[3:-4]}_deg", 0.0)))
+        for name in values
+        if name.startswith("cos") and name.endswith("_deg")
+    }
+    if series:
+        # A pattern of several orders is described by its strongest one.
+        answer["order"] = float(max(series, key=lambda order: series[order]))
+        answer["amplitude_deg"] = max(series.values())
+    return answer
+
+
+def wild_rows(found: Discovery) -> list[int]:
+    """Numbers of the readings that stand alone far out of their neighbours and that no cause has claimed."""
+    evidence = found.fit.evidence
+    wild = (evidence.sure & ~evidence.usable)[evidence.group] & ~found.masked
+    return [int(number) for number in found.sweep.numbers[wild]]
+
+
+def _rms(values: Any) -> float:
+    return float(np.sqrt(np.mean(np.square(values)))) if np.size(values) else float("nan")
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(item) for item in value]
+    if isinstance(value, float | np.floating):
+        number = float(value)
+        return float(f"{number:.7g}") if np.isfinite(number) else None
+    if isinstance(value, np.integer):
+        return int(value)
+    return value

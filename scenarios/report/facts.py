@@ -1,0 +1,40 @@
+"""Plain facts of a sweep that an answer and a report state before anything is explained."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.pipeline import Discovery
+from twin.angles import Array, wrap
+from twin.sweep import Sweep
+
+
+def facts(found: Discovery) -> dict[str, Any]:
+    """Directions, points a turn, speeds, temperatures, the error's RMS without its zero, what it is held against."""
+    sweep, motion = found.sweep, found.sweep.motion()
+    # Readings that single events have touched are left out, as they are of the baseline's figure beside this one.
+    kept = ~found.masked if not found.masked.all() else np.ones_like(found.masked)
+    said: dict[str, Any] = {
+        "held_against": "given twin" if found.given is not None else "error model",
+        "directions": int(np.unique(motion.direction).size),
+        "points_per_turn": motion.points_per_turn,
+        "error_rms_deg": float(np.sqrt(np.mean(angle_error_deg(found.baseline, sweep)[kept] ** 2))),
+    }
+    if np.any(motion.speed_rad_s != 0.0):
+        rpm = np.abs(motion.speed_rad_s) * 60.0 / (2.0 * np.pi)
+        said["speed_rpm"] = [float(rpm.min()), float(rpm.max())]
+    if "temperature_c" in motion.columns:
+        said["temperature_c"] = [float(motion.temperature_c.min()), float(motion.temperature_c.max())]
+    return said
+
+
+def angle_error_deg(fit: Fit, sweep: Sweep) -> Array:
+    """Reading minus reference [deg] (n,) in the sense that the two count together, with its mean removed."""
+    slope = fit.chain.sensor_sense * fit.chain.output_sense
+    error = np.radians(sweep.measured_deg - slope * sweep.reference_deg)
+    centre = np.angle(np.mean(np.exp(1j * error)))
+    away = wrap(error - centre)
+    return np.asarray(np.degrees(away - np.mean(away)))

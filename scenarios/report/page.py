@@ -1,0 +1,220 @@
+"""``halltwin explain --report``: the answer as one HTML page, with pictures, that needs nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from diagnosis.discovery.pipeline import Discovery
+from diagnosis.discovery.proof.cause import Named
+from scenarios.report import causes as cause_pictures
+from scenarios.report import pictures as drawn
+from scenarios.report import tables
+from scenarios.report.data import Readings, readings, two_ways
+from scenarios.report.facts import facts
+from scenarios.report.style import CSS
+from scenarios.report.svg import Plot
+from scenarios.report.tables import number
+from scenarios.report.wording import explained_percent, minus, plain, rejected_words, verdict_words
+from twin.catalogue import find
+from twin.sweep_file import write_beside
+
+
+def write_report(path: Path, found: Discovery, answer: Mapping[str, Any]) -> None:
+    """Write the report whole or not at all; its numbers are the answer's, its pictures drawn from what was found."""
+    write_beside(path, page(found, answer).encode())
+
+
+def page(found: Discovery, answer: Mapping[str, Any]) -> str:
+    """The report as HTML."""
+    read = readings(found)
+    said = facts(found)
+    name = escape(answer["sweep"]["name"])
+    body = "".join(
+        [
+            f"<h1>What the simulation gets wrong about {name}</h1>",
+            _headline(answer),
+            _measured(answer, said, read),
+            _baseline(answer, said, read, found),
+            *_causes(answer, found, read),
+            _chain(answer, found),
+            _parameters(answer, found),
+            _invisible(answer),
+        ]
+    )
+    return (
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>{name}: {escape(answer['verdict'])}</title><style>{CSS}</style></head>\n<body>{body}</body></html>\n"
+    )
+
+
+def _headline(answer: Mapping[str, Any]) -> str:
+    names = [cause["name"].replace("_", " ") for cause in answer["causes"] if cause["name"] != "unnamed"]
+    told = f" ({', '.join(names)})" if names else ""
+    cards = [
+        ("baseline, held-out RMS", number(answer["baseline"]["heldout_rms_deg"]), "deg"),
+        ("extended twin, held-out RMS", number(answer["extended"]["heldout_rms_deg"]), "deg"),
+        ("times closer on readings it never saw", number(answer["extended"]["gain"]), ""),
+        ("noise floor", number(answer["noise_floor_deg"]), "deg"),
+    ]
+    verdict = f"Verdict: {answer['verdict']}{told}."
+    return f'<p class="verdict">{escape(verdict)}</p><p>{escape(verdict_words(answer))}</p>{_cards(cards)}'
+
+
+def _cards(cards: list[tuple[str, str, str]]) -> str:
+    items = "".join(
+        f"<div><dt>{escape(name)}</dt><dd>{value} <small>{escape(unit)}</small></dd></div>"
+        for name, value, unit in cards
+    )
+    return f'<dl class="figures">{items}</dl>'
+
+
+def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings) -> str:
+    sweep = answer["sweep"]
+    cards = [
+        ("readings used", number(sweep["used"]), f"of {sweep['rows']}"),
+        ("turns travelled", number(sweep["turns"]), ""),
+        ("directions", str(said["directions"]), ""),
+        ("between readings", plain(360.0 / said["points_per_turn"], 2), "deg"),
+    ]
+    for key, unit in (("speed_rpm", "rpm"), ("temperature_c", "°C")):
+        if key in said:
+            low, high = (plain(value) for value in said[key])
+            cards.append((key.partition("_")[0], low if low == high else f"{low} to {high}", unit))
+    if sweep["output_bits"] is not None:
+        cards.append(("grid of the output", number(sweep["output_bits"]), "bits"))
+    columns = ", ".join(f"<code>{escape(column)}</code>" for column in sweep["columns"])
+    rejected = f" Rows: {escape(rejected_words(sweep))}." if sweep["rejected"] else " No row was rejected."
+    words = f"<p>Columns: {columns}.{rejected} The noise is best described as {escape(answer['noise'])}.</p>"
+    plots = _plots([("The shaft at each reading", "", drawn.protocol(read))])
+    return f'<h2>What was measured</h2><div class="beside"><div>{_cards(cards)}{words}</div>{plots}</div>'
+
+
+def _baseline(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings, found: Discovery) -> str:
+    before, after = said["error_rms_deg"], answer["baseline"]["rms_deg"]
+    model = "The given twin" if found.given is not None else "The paper's error model"
+    words = (
+        f"<p>{model} takes the error from {plain(before)} to {number(after)} deg RMS: "
+        f"{explained_percent(before, after):.0f} % of its power. The noise floor is "
+        f"{number(answer['noise_floor_deg'])} deg; what stands above it, the simulation gets wrong.</p>"
+    )
+    limits = drawn.residual_limits(read)
+    pictures = [
+        ("The error, and the baseline's prediction", "The zero is removed.", drawn.error(read)),
+        ("What the baseline leaves", "", drawn.residual(read, read.before_deg, limits=limits)),
+    ]
+    if answer["causes"]:
+        left = drawn.residual(read, read.after_deg, limits=limits)
+        pictures.append(("What the extended twin leaves", "On the scale of the picture before.", left))
+    pictures.append(("In the order of the readings", "", drawn.over_clock(read)))
+    pictures += [(title, "", plot) for title, plot in drawn.conditions(read)]
+    note = "What stands far above the dashed line is no noise."
+    if two_ways(read.motion):
+        note += " At order 0: half of the step between the directions."
+    pictures.append(("Spectrum of the residual", note, drawn.spectra(read, _orders(found))))
+    return f"<h2>What the baseline gets wrong</h2>{words}{_plots(pictures)}"
+
+
+def _orders(found: Discovery) -> list[float]:
+    """Orders of the lines that were found, so that the spectrum reaches them."""
+    values = found.fit.chain.values
+    keys = [key for cause in found.causes for key in cause.keys]
+    return [float(values[key]["order"]) for key in keys if "order" in values.get(key, {})]
+
+
+def _causes(answer: Mapping[str, Any], found: Discovery, read: Readings) -> Iterator[str]:
+    if not answer["causes"]:
+        yield "<h2>What explains it</h2><p>Nothing is left to explain: no cause and no structure above the noise.</p>"
+        return
+    yield "<h2>What explains it</h2>"
+    yield (
+        "<p>Each cause was fitted together with the baseline and judged on readings that neither fit nor selection "
+        "had seen. The chance of a false alarm counts everything that was searched. In signatures, "
+        "a is the angle in the sensor's own axes, d the direction, w the speed, T the temperature, t the time.</p>"
+    )
+    yield tables.summary(answer["causes"])
+    for place, (cause, named) in enumerate(zip(answer["causes"], found.causes, strict=True), 1):
+        yield _cause(place, cause, named, answer, found, read)
+
+
+def _cause(
+    place: int, cause: Mapping[str, Any], named: Named, answer: Mapping[str, Any], found: Discovery, read: Readings
+) -> str:
+    effect = find(named.keys[0], found.fit.chain.effects)
+    head = f'<h3 id="cause-{place}">{place}. <span class="name">{escape(cause["name"])}</span></h3>'
+    if cause["name"] == "unnamed":
+        words = (
+            "<p>No cause of the catalogue explains this structure. The extended twin carries it as it is, "
+            f"so that the gain is had all the same:</p>{tables.structure(answer['unexplained']['structure'])}"
+        )
+    else:
+        words = f"<p>Stage: {escape(effect.stage)}. Signature in the error: {escape(minus(effect.signature))}.</p>"
+    gain = (
+        f"<p>RMS on held-out readings: {number(cause['heldout_rms_deg_before'])} deg without it, "
+        f"{number(cause['heldout_rms_deg_after'])} deg with it.</p>"
+    )
+    rows = cause.get("rows", [])
+    listed = f"<p>Rows: {', '.join(map(str, rows[:40]))}{' …' if len(rows) > 40 else ''}.</p>" if rows else ""
+    pictures = [
+        (f"Isolated: {effect_name}", caption, plot)
+        for effect_name, (caption, plot) in zip(
+            _picture_names(named), cause_pictures.pictures(found, read, named), strict=False
+        )
+    ]
+    return (
+        f'<section>{head}<div class="beside"><div>{words}{gain}{_rivals(cause)}{listed}'
+        f"{tables.parameters(cause, effect)}</div>{_plots(pictures)}</div></section>"
+    )
+
+
+def _picture_names(named: Named) -> list[str]:
+    if named.name != "unnamed":
+        return [named.name]
+    return [f"structure {k}" for k in range(1, len(named.keys) + 1)]
+
+
+def _rivals(cause: Mapping[str, Any]) -> str:
+    rivals = cause["indistinguishable_from"]
+    if not rivals:
+        return "" if cause["name"] == "unnamed" else "<p>Nothing else that was searched explains the same readings.</p>"
+    names = ", ".join(f'<span class="name">{escape(rival)}</span>' for rival in rivals)
+    todo = f"<br><b>To tell them apart:</b> {escape(cause['to_tell_apart'])}." if cause["to_tell_apart"] else ""
+    return f'<p class="told"><b>These readings cannot tell it from:</b> {names}.{todo}</p>'
+
+
+def _chain(answer: Mapping[str, Any], found: Discovery) -> str:
+    new = {key: place for place, named in enumerate(found.causes, 1) for key in named.keys}
+    keys = dict.fromkeys([*found.fit.chain.values, *new])
+    words = (
+        "<p>The signal's way from the shaft to the angle word, and the reference that reads the same shaft beside it. "
+        + ("Highlighted: what the search added.</p>" if new else "Nothing had to be added.</p>")
+    )
+    return f"<h2>The extended twin</h2>{words}{tables.chain(keys, new, found.fit.chain.effects)}"
+
+
+def _parameters(answer: Mapping[str, Any], found: Discovery) -> str:
+    sense = found.baseline.chain.sensor_sense * found.baseline.chain.output_sense
+    counting = "the same way as" if sense > 0 else "the other way round than"
+    words = (
+        "<p>Offsets in percent of their channel's amplitude; only the ratio of the amplitudes is visible in an angle. "
+        f"The sensor counts {counting} the reference.</p>"
+    )
+    return f"<h2>Parameters of the baseline</h2>{words}{tables.baseline(answer['baseline']['parameters'])}"
+
+
+def _invisible(answer: Mapping[str, Any]) -> str:
+    if not answer["not_visible"]:
+        return ""
+    words = "<p>These causes were not searched for, because this sweep could not have shown them.</p>"
+    return f"<h2>Not visible in this sweep</h2>{words}{tables.invisible(answer['not_visible'])}"
+
+
+def _plots(pictures: list[tuple[str, str, Plot]]) -> str:
+    items = "".join(
+        f"<figure><figcaption><b>{escape(title)}.</b> {escape(note)}</figcaption>{plot.legend()}{plot.svg()}</figure>"
+        for title, note, plot in pictures
+    )
+    return f'<div class="plots">{items}</div>'

@@ -1,0 +1,1 @@
+"""Studies at scale: jobs in chunks on a process pool or a Dask cluster, resumable."""

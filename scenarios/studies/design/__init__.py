@@ -1,0 +1,1 @@
+"""Design space: magnets, distances and tolerances through field and error."""

@@ -1,0 +1,43 @@
+"""The options of ``halltwin design`` as people write them, as a space and a demand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import cast, get_args
+
+from scenarios.commands.intervals import interval, values, with_units
+from scenarios.studies.design.space import TOLERANCES, Sampling, Space
+from scenarios.studies.design.study import Demand
+from twin.errors import UserError
+from twin.magnet.magnet import Shape
+
+
+def space_of(
+    axes: Mapping[str, str], shape: str, grades: tuple[str, ...], bore_mm: float, sampling: str, count: int, seed: int
+) -> Space:
+    """The space. Raises UserError."""
+    if shape not in get_args(Shape):
+        raise UserError(f"shape is {shape!r}; expected one of {', '.join(get_args(Shape))}")
+    return Space(
+        axes={name: values(name, text) for name, text in axes.items()},
+        shape=cast(Shape, shape),
+        grades=grades,
+        bore_mm=bore_mm,
+        sampling=cast(Sampling, sampling),
+        count=count,
+        seed=seed,
+    )
+
+
+def demand_of(
+    max_error_deg: float, window: str, temperature: str, tolerance: str, mountings: int, min_yield: float
+) -> Demand:
+    """The demand. Raises UserError."""
+    return Demand(
+        max_error_deg=max_error_deg,
+        window_mT=interval("window", window),
+        temperature_c=interval("temperature", temperature),
+        tolerance=with_units("tolerance", tolerance, TOLERANCES),
+        mountings=mountings,
+        min_yield=min_yield,
+    )

@@ -1,0 +1,89 @@
+"""The map of a design study: error and field over the magnet's size and its distance, what keeps the demand marked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scenarios.report.plotting import save, style
+from scenarios.studies.design.study import DesignStudy, feasible, ranking
+from twin.angles import Array, IntArray
+from twin.effect import BoolArray
+
+_DIAMETER, _GAP = 0, 3
+
+
+def draw_map(path: Path, found: Mapping[str, Array], study: DesignStudy) -> None:
+    """Two panels over diameter and air gap: error at 95 % of the mountings, and field at the sensor at 25 C."""
+    plt = style(path)
+    figure, panels = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained", sharex=True, sharey=True)
+    keeps = feasible(found, study.demand)
+    shown = (
+        (panels[0], "error_p95_deg", "error kept by 95 % of the mountings (deg)", "viridis_r"),
+        (panels[1], "field_mT", "field at the sensor at 25 °C (mT)", "cividis"),
+    )
+    best = found["design"][ranking(found, study.demand)[0]]
+    for panel, name, label, colours in shown:
+        _panel(figure, panel, found, name, label, colours, keeps, study)
+        panel.plot(best[_DIAMETER], best[_GAP], "*", ms=13, mfc="white", mec="black", label="best")
+        panel.set_xlabel("diameter of the magnet (mm)")
+    panels[0].set_ylabel("air gap (mm)")
+    low, high = study.demand.window_mT
+    figure.suptitle(
+        f"Outlined: error ≤ {study.demand.max_error_deg:g}° and {low:g}–{high:g} mT in "
+        f"{100 * study.demand.min_yield:g} % of the mountings, "
+        f"{study.demand.temperature_c[0]:g} to {study.demand.temperature_c[1]:g} °C. Star: best."
+    )
+    save(figure, path)
+
+
+def _panel(
+    figure: Any,
+    panel: Any,
+    found: Mapping[str, Array],
+    name: str,
+    label: str,
+    colours: str,
+    keeps: BoolArray,
+    study: DesignStudy,
+) -> None:
+    diameter, gap = found["design"][:, _DIAMETER], found["design"][:, _GAP]
+    across, along = np.unique(diameter), np.unique(gap)
+    if study.space.sampling != "grid" or across.size < 2 or along.size < 2:
+        drawn = panel.scatter(diameter, gap, c=found[name], cmap=colours, s=22)
+        panel.scatter(diameter[keeps], gap[keeps], s=46, facecolors="none", edgecolors="crimson", label="keeps")
+        figure.colorbar(drawn, ax=panel, label=label)
+        return
+    # Where height, grade or placement are varied too, a cell shows the best of them.
+    picked = _best_of_cells(found, study, np.searchsorted(along, gap), np.searchsorted(across, diameter))
+    values = found[name][picked]
+    drawn = panel.pcolormesh(across, along, values, cmap=colours, shading="nearest")
+    figure.colorbar(drawn, ax=panel, label=label)
+    lines = panel.contour(across, along, values, colors="black", linewidths=0.6, levels=6)
+    panel.clabel(lines, fontsize=7, fmt="%g")
+    _outline(panel, across, along, keeps[picked])
+
+
+def _best_of_cells(found: Mapping[str, Array], study: DesignStudy, row: IntArray, column: IntArray) -> Any:
+    picked = np.zeros((row.max() + 1, column.max() + 1), dtype=np.int64)
+    for design in ranking(found, study.demand)[::-1]:
+        picked[row[design], column[design]] = design
+    return picked
+
+
+def _outline(panel: Any, across: Array, along: Array, inside: BoolArray) -> None:
+    """The border between cells that keep the demand and those that do not."""
+    x, y = _edges(across), _edges(along)
+    padded = np.pad(inside, 1)
+    for row, column in np.argwhere(padded[1:, 1:-1] != padded[:-1, 1:-1]):
+        panel.plot(x[column : column + 2], [y[row]] * 2, color="crimson", lw=2.2, clip_on=False)
+    for row, column in np.argwhere(padded[1:-1, 1:] != padded[1:-1, :-1]):
+        panel.plot([x[column]] * 2, y[row : row + 2], color="crimson", lw=2.2, clip_on=False)
+
+
+def _edges(centres: Array) -> Array:
+    middle = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate([[1.5 * centres[0] - 0.5 * centres[1]], middle, [1.5 * centres[-1] - 0.5 * centres[-2]]])

@@ -1,0 +1,133 @@
+"""``halltwin design``: which magnet, at which distance, keeps the error, over temperature and mounting tolerances."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scenarios.studies.design.check import Check, check_design, design_twin
+from scenarios.studies.design.space import AXES, Space
+from scenarios.studies.design.study import Demand, DesignStudy, feasible, ranking
+from scenarios.studies.engine import Machines, run_study
+from scenarios.studies.study_folder import StudyFolder
+from twin.angles import Array, IntArray
+from twin.errors import UserError
+from twin.extensions import effects_with
+from twin.files import to_dict, write_twin
+from twin.limits import require_within
+from twin.presets import read_twin_or_preset
+from twin.sweep_file import write_beside
+
+Figures = dict[str, np.ndarray[Any, Any]]
+MOST_DESIGNS = 10_000_000
+_CHUNK = 16
+
+
+def study_of(twin: str, space: Space, demand: Demand, *, seed: int) -> DesignStudy:
+    """The study of these designs under a twin's sensor. Raises UserError."""
+    chain = read_twin_or_preset(twin, effects=effects_with())
+    if chain.magnet is None:
+        raise UserError(f"{twin}: has no [magnet], so its figures are stated at no field; give a twin that has one")
+    require_within("designs", space.designs, 1, MOST_DESIGNS, whole=True)
+    require_within("max-error", demand.max_error_deg, 1e-6, 180.0, "deg")
+    require_within("mountings", demand.mountings, 1, 100_000, whole=True)
+    require_within("min-yield", demand.min_yield, 0.0, 1.0)
+    require_within("temperature", list(demand.temperature_c), -100.0, 300.0, "C")
+    require_within("window", list(demand.window_mT), 0.0, 2000.0, "mT")
+    # Bad numbers are refused here, in one line, and not in a worker.
+    space.assemble(*space.table())
+    return DesignStudy(twin=to_dict(chain), space=space, demand=demand, chunk=_CHUNK, seed=seed)
+
+
+def explore(study: DesignStudy, output: Path, machines: Machines) -> Figures:
+    """All designs' figures, each (designs, ...), computed or read back from a study begun before."""
+    settings = {
+        "twin": study.twin,
+        "space": _plain(asdict(study.space)),
+        "demand": _plain(asdict(study.demand)),
+        "chunk": study.chunk,
+    }
+    folder = StudyFolder.open(output, study="design", seed=study.seed, settings=settings)
+    run_study(study, folder, chunks=study.chunks, items=study.space.designs, unit="designs", machines=machines)
+    return folder.load(study.chunks)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, tuple | list) else value
+
+
+def run(
+    twin: str,
+    output: Path,
+    *,
+    space: Space,
+    demand: Demand,
+    best: int,
+    plot: bool,
+    machines: Machines,
+    seed: int,
+) -> None:
+    """The command: explore, list the best, check the winner, draw the map."""
+    from scenarios.studies.design.table import show
+
+    if plot:
+        from scenarios.report.plotting import style
+
+        style(Path("map.png"))
+    study = study_of(twin, space, demand, seed=seed)
+    found = explore(study, output, machines)
+    order = ranking(found, demand)
+    winner = int(order[0])
+    check = check_design(study, found["design"][winner], found["grade"][winner])
+    show(found, order[:best], study, check)
+    _write_csv(output / "designs.csv", found, space)
+    _write_json(output / "best.json", found, order[:best], study, check)
+    write_twin(output / "best.toml", design_twin(study, found["design"][winner], found["grade"][winner]))
+    if plot:
+        from scenarios.studies.design.plot import draw_map
+
+        draw_map(output / "map.png", found, study)
+
+
+def record(found: Mapping[str, Array], row: int, space: Space) -> dict[str, Any]:
+    """One design's numbers by name, grade first."""
+    values: dict[str, Any] = {"grade": space.grades[int(found["grade"][row])]}
+    values.update({name: float(value) for name, value in zip(AXES, found["design"][row], strict=True)})
+    if values["remanence_T"] == 0.0:
+        del values["remanence_T"]
+    values.update({name: float(column[row]) for name, column in found.items() if name not in ("design", "grade")})
+    return values
+
+
+def _write_csv(path: Path, found: Mapping[str, Array], space: Space) -> None:
+    out = io.StringIO()
+    records = [record(found, row, space) for row in range(len(found["grade"]))]
+    names = list(dict.fromkeys(name for entry in records for name in entry))
+    table = csv.DictWriter(out, names, lineterminator="\n")
+    table.writeheader()
+    table.writerows(
+        {name: f"{value:.6g}" if isinstance(value, float) else value for name, value in entry.items()}
+        for entry in records
+    )
+    write_beside(path, out.getvalue().encode())
+
+
+def _write_json(path: Path, found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: Check) -> None:
+    answer = {
+        "schema": "halltwin.design/1",
+        "demand": _plain(asdict(study.demand)),
+        "designs": study.space.designs,
+        "feasible": int(np.count_nonzero(feasible(found, study.demand))),
+        "best": [record(found, int(row), study.space) for row in rows],
+        "check_of_best": asdict(check),
+    }
+    write_beside(path, (json.dumps(answer, indent=1, allow_nan=False) + "\n").encode())

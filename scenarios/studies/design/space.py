@@ -1,0 +1,134 @@
+"""The space of designs: what is varied, how it is sampled, and the magnets and placements that follow."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+
+from scenarios.studies.design.field import Designs
+from twin.angles import TAU, Array
+from twin.errors import UserError
+from twin.magnet.magnet import Magnet, Shape
+from twin.magnet.materials import grade
+from twin.magnet.placement import Placement
+
+Sampling = Literal["grid", "lhs", "sobol"]
+AXES = {
+    "diameter_mm": "mm",
+    "height_mm": "mm",
+    "remanence_T": "T",
+    "air_gap_mm": "mm",
+    "off_axis_mm": "mm",
+    "tilt_deg": "deg",
+    "magnet_off_axis_mm": "mm",
+    "magnet_tilt_deg": "deg",
+    "stray_mT": "mT",
+}
+"""What a design is made of, in the order of its columns. Off-axis and tilt are the sensor's; for a block the diameter
+is its length and width."""
+TOLERANCES = {
+    "off_axis": "mm",
+    "tilt": "deg",
+    "magnet_off_axis": "mm",
+    "magnet_tilt": "deg",
+    "air_gap": "mm",
+    "stray": "mT",
+}
+"""Radius of the disk that a displacement, tilt or field is drawn from evenly; half the width for the air gap."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Space:
+    """``axes``: for each of AXES the values of a grid, or what a sampling takes the lowest and highest of."""
+
+    axes: Mapping[str, tuple[float, ...]]
+    shape: Shape = "cylinder"
+    grades: tuple[str, ...] = ("N35H",)
+    bore_mm: float = 2.0
+    sampling: Sampling = "grid"
+    count: int = 0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.sampling not in get_args(Sampling):
+            raise UserError(f"sampling is {self.sampling!r}; expected one of {', '.join(get_args(Sampling))}")
+        for name in self.grades:
+            grade(name)
+
+    @property
+    def designs(self) -> int:
+        """How many designs there are."""
+        if self.sampling != "grid":
+            return self.count
+        return len(self.grades) * int(np.prod([len(self.axes[name]) for name in AXES]))
+
+    def table(self) -> tuple[Array, Array]:
+        """All designs: columns of AXES (designs, 9), and which grade (designs,)."""
+        if self.sampling == "grid":
+            rows = list(itertools.product(range(len(self.grades)), *(self.axes[name] for name in AXES)))
+            whole = np.array(rows, dtype=np.float64)
+            return whole[:, 1:], whole[:, 0]
+        from scipy.stats import qmc
+
+        rng, dimensions = np.random.default_rng(self.seed), len(AXES) + 1
+        if self.sampling == "sobol":
+            # Whole powers of two: the sequence is balanced there, and its beginning does not depend on its length.
+            unit = qmc.Sobol(dimensions, rng=rng).random_base2(max(self.count - 1, 1).bit_length())[: self.count]
+        else:
+            unit = qmc.LatinHypercube(dimensions, rng=rng).random(self.count)
+        low = np.array([min(self.axes[name]) for name in AXES])
+        high = np.array([max(self.axes[name]) for name in AXES])
+        which = np.minimum(np.floor(unit[:, -1] * len(self.grades)), len(self.grades) - 1)
+        return low + (high - low) * unit[:, :-1], which
+
+    def assemble(self, table: Array, which: Array) -> Designs:
+        """The designs of these rows. A remanence of 0 stands for the grade's own."""
+        columns = dict(zip(AXES, table.T, strict=True))
+        stated = [grade(name) for name in self.grades]
+        own = np.array([one.remanence_T for one in stated])[which.astype(int)]
+        magnet = Magnet(
+            shape=self.shape,
+            diameter_mm=columns["diameter_mm"],
+            length_mm=columns["diameter_mm"],
+            width_mm=columns["diameter_mm"],
+            height_mm=columns["height_mm"],
+            bore_mm=self.bore_mm,
+            remanence_T=np.where(columns["remanence_T"] > 0.0, columns["remanence_T"], own),
+            percent_per_K=np.array([one.percent_per_K for one in stated])[which.astype(int)],
+        )
+        placement = Placement(
+            air_gap_mm=columns["air_gap_mm"],
+            sensor_x_mm=columns["off_axis_mm"],
+            sensor_tilt_y_deg=columns["tilt_deg"],
+            magnet_x_mm=columns["magnet_off_axis_mm"],
+            magnet_tilt_y_deg=columns["magnet_tilt_deg"],
+            stray_x_mT=columns["stray_mT"],
+        )
+        return Designs(magnet, placement)
+
+
+def mounted(placement: Placement, tolerance: Mapping[str, float], uniforms: Array) -> Placement:
+    """Placements (k,) with mounting errors drawn from uniform numbers (k, 11)."""
+    changes: dict[str, Array] = {}
+    pairs = {
+        "off_axis": ("sensor_x_mm", "sensor_y_mm"),
+        "tilt": ("sensor_tilt_x_deg", "sensor_tilt_y_deg"),
+        "magnet_off_axis": ("magnet_x_mm", "magnet_y_mm"),
+        "magnet_tilt": ("magnet_tilt_x_deg", "magnet_tilt_y_deg"),
+        "stray": ("stray_x_mT", "stray_y_mT"),
+    }
+    for number, (key, names) in enumerate(pairs.items()):
+        size = tolerance.get(key, 0.0)
+        if size == 0.0:
+            continue
+        radius, turn = size * np.sqrt(uniforms[:, 2 * number]), TAU * uniforms[:, 2 * number + 1]
+        for name, part in zip(names, (np.cos(turn), np.sin(turn)), strict=True):
+            changes[name] = getattr(placement, name) + radius * part
+    if tolerance.get("air_gap", 0.0) > 0.0:
+        moved = np.asarray(placement.air_gap_mm) + tolerance["air_gap"] * (2.0 * uniforms[:, 10] - 1.0)
+        changes["air_gap_mm"] = np.maximum(moved, 1e-3)
+    return replace(placement, **changes)

@@ -1,0 +1,99 @@
+"""``halltwin recover``: how well known parameters and hidden causes come back."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scenarios.studies.engine import Machines, run_study
+from scenarios.studies.recovery.cells import BASELINE, CLEAN, PARAMETERS, Cell, Grid
+from scenarios.studies.study_folder import StudyFolder
+from scenarios.studies.training.draw import drawable
+from twin.angles import Array
+from twin.catalogue import find
+from twin.errors import UserError
+from twin.limits import require_within
+from twin.sweep_file import write_beside
+
+Summary = list[dict[str, Any]]
+
+
+def check(grid: Grid) -> None:
+    """Refuse what cannot be recovered or simulated. Raises UserError."""
+    require_within("noise", list(grid.noises_deg), 1e-6, 5.0, "deg")
+    require_within("amplitude", list(grid.amplitudes_deg), 1e-6, 5.0, "deg")
+    require_within("points", list(grid.points), 8, 100_000, whole=True)
+    require_within("turns", list(grid.turns), 1, 1000, whole=True)
+    require_within("fits", grid.fits, 2, 100_000, whole=True)
+    require_within("sweeps", grid.sweeps, 1, 100_000, whole=True)
+    for cell in grid.cells():
+        if cell.cause in (BASELINE, CLEAN):
+            continue
+        visible = [name for name in drawable(cell.motion()) if find(name).roles("strength")]
+        if cell.cause not in visible:
+            raise UserError(
+                f"cause {cell.cause!r} does not show at {cell.points} points and {cell.turns} turns; expected "
+                f"{BASELINE}, {CLEAN} or among {', '.join(visible)}"
+            )
+
+
+def recover(grid: Grid, output: Path, machines: Machines) -> Summary:
+    """Run the study, or finish one that was begun; one entry a cell."""
+    check(grid)
+    cells = grid.cells()
+    settings = {name: list(v) if isinstance(v, tuple) else v for name, v in asdict(grid).items() if name != "seed"}
+    folder = StudyFolder.open(output, study="recovery", seed=grid.seed, settings=settings)
+    run_study(grid, folder, chunks=len(cells), items=len(cells), unit="cells", machines=machines)
+    rows = folder.load(len(cells))
+    return [summary(cell, {name: v[rows["cell"] == k] for name, v in rows.items()}) for k, cell in enumerate(cells)]
+
+
+def summary(cell: Cell, rows: Mapping[str, Array]) -> dict[str, Any]:
+    """Bias and RMS over the bound, coverage of the 95 % intervals, power and false alarms of one cell."""
+    entry: dict[str, Any] = {**asdict(cell), "repeats": len(rows["named"])}
+    if cell.cause != BASELINE:
+        entry |= {"named": _mean(rows["named"]), "false_alarms": _mean(rows["extra"] > 0)}
+    if cell.cause == CLEAN:
+        return entry | {"parameters": {}}
+    names = [f"{n}.{k}" for n, k in PARAMETERS] if cell.cause == BASELINE else [find(cell.cause).roles("strength")[0]]
+    return entry | {"parameters": {name: _parameter(rows, slot) for slot, name in enumerate(names)}}
+
+
+def _parameter(rows: Mapping[str, Array], slot: int) -> dict[str, float | int | None]:
+    known = np.isfinite(rows["found"][:, slot])
+    truth, found, low, high, bound = (rows[name][known, slot] for name in ("truth", "found", "low", "high", "bound"))
+    share = (found - truth) / bound
+    return {
+        "recovered": int(known.sum()),
+        "bound": _mean(bound),
+        "bias_over_bound": _mean(share),
+        "rms_over_bound": float(np.sqrt(np.mean(share**2))) if share.size else None,
+        "coverage": _mean((low <= truth) & (truth <= high)),
+    }
+
+
+def _mean(values: Any) -> float | None:
+    return float(np.mean(values)) if np.size(values) else None
+
+
+def run(grid: Grid, output: Path, *, plot: bool, machines: Machines) -> None:
+    """The command."""
+    from scenarios.studies.recovery.table import show
+
+    if plot:
+        from scenarios.report.plotting import style
+
+        style(Path("map.png"))
+    found = recover(grid, output, machines)
+    show(found)
+    answer = {"schema": "halltwin.recovery/1", "cells": found}
+    write_beside(output / "recovery.json", (json.dumps(answer, indent=1, allow_nan=False) + "\n").encode())
+    if plot:
+        from scenarios.studies.recovery.plot import draw_maps
+
+        draw_maps(output, found)

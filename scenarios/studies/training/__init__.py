@@ -1,0 +1,1 @@
+"""Synthetic training sweeps with known truth."""

@@ -76,8 +76,8 @@ def run_loop(
 
     A run that was broken off in its second half goes on there.
     """
+    from diagnosis.report.answer import to_json
     from scenarios.commands.explain import explain
-    from scenarios.report.answer import to_json
     from twin.files import write_twin
 
     first = _half(job, "before")

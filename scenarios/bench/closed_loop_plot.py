@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnosis.report.plotting import save, style
 from scenarios.bench.closed_loop import AIM_DEG, Loop
 from scenarios.bench.readings import Reading
-from scenarios.report.plotting import save, style
 from twin.angles import Array
 
 _BEFORE, _AFTER = "#cc3311", "#4477aa"

@@ -134,7 +134,7 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
     from twin.extensions import effects_with
 
     if options.plot is not None:
-        from scenarios.report.plotting import style
+        from diagnosis.report.plotting import style
 
         style(options.plot)
         if not options.closed_loop:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from scenarios.report.wording import unit_shown
+from diagnosis.report.wording import unit_shown
 from twin.catalogue import CATALOGUE, unnamed
 from twin.effect import Effect
 from twin.extensions import effects_with

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.correction.cross_validation import BeforeAfter
-from scenarios.report.plotting import save, style
+from diagnosis.report.plotting import save, style
 from twin.sweep import Sweep
 
 _BEFORE, _AFTER = "#cc3311", "#4477aa"

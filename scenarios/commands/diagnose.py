@@ -50,7 +50,7 @@ def run(
         write_beside(json_path, (json.dumps(content, indent=1, allow_nan=False) + "\n").encode())
         print(f"wrote {json_path}")
     if plot is not None or convergence is not None:
-        from scenarios.commands.diagnose_plot import plot_convergence, plot_fits
+        from diagnosis.report.diagnose_plot import plot_convergence, plot_fits
 
         if plot is not None:
             plot_fits(plot, found)

@@ -14,7 +14,7 @@ from diagnosis.discovery.fitting.initial_fit import senses_of_channels
 from diagnosis.discovery.fitting.subsample import searched_part
 from diagnosis.discovery.pipeline import Discovery, discover
 from diagnosis.error_model.fit import fit_baseline
-from scenarios.report.answer import to_json
+from diagnosis.report.answer import to_json
 from twin.catalogue import CATALOGUE
 from twin.effect import Effect
 from twin.errors import UserError
@@ -60,7 +60,7 @@ def run(
     seed: int,
 ) -> None:
     """The command: print the answer, write what was asked for. Raises UserError before anything is written."""
-    from scenarios.report.console import show
+    from diagnosis.report.console import show
 
     outputs = [given for given in (json_path, report, extended, plot) if given is not None]
     _check_outputs(outputs, inputs=[path, twin, *effect_files])
@@ -74,11 +74,11 @@ def run(
     if extended is not None:
         write_twin(extended, found.fit.chain)
     if report is not None:
-        from scenarios.report.page import write_report
+        from diagnosis.report.page import write_report
 
         write_report(report, found, answer)
     if plot is not None:
-        from scenarios.commands.explain_plot import draw
+        from diagnosis.report.explain_plot import draw
 
         draw(found, plot)
 

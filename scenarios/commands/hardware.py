@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnosis.report.plotting import save, style
 from scenarios.commands.protocol import Protocol
-from scenarios.report.plotting import save, style
 from twin.angles import Array, wrap_deg
 from twin.cordic.bit_true import angle_rad
 from twin.extensions import effects_with

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnosis.report.plotting import save, style
 from scenarios.commands.monitor import Monitored
-from scenarios.report.plotting import save, style
 
 _LINE, _SIGNAL = "#4477aa", "#cc3311"
 

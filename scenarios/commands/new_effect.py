@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from diagnosis.report.answer import SCHEMA
+from diagnosis.report.wording import structure_words
 from scenarios.commands.effect_skeleton import skeleton
-from scenarios.report.answer import SCHEMA
-from scenarios.report.wording import structure_words
 from twin.catalogue import find
 from twin.contract import NAME, check
 from twin.effect import Effect

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.report.plotting import save, style
 from scenarios.commands.paper_table import (
     Q_PERCENT_PER_MT,
     cordic_error,
@@ -17,7 +18,6 @@ from scenarios.commands.paper_table import (
     table_csv,
     whole_turn,
 )
-from scenarios.report.plotting import save, style
 from twin.adc.converter import Converter, convert
 from twin.angles import Array
 from twin.chain import Chain

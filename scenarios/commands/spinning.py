@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.report.plotting import save, style
+from diagnosis.report.plotting import save, style
 from twin.hall.spinning_current import PHASES, Plate, Spinning, corner_of, density, residual_offset_mT, spin
 from twin.sweep_file import write_columns
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.report.plotting import save, style
+from diagnosis.report.plotting import save, style
 from twin.angles import TAU, Array, wrap
 from twin.catalogue import STAGES
 from twin.chain import Chain, Step

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from diagnosis.error_model.fit import fit_baseline, fit_equal
+from diagnosis.report.answer import to_json
 from scenarios.commands.explain import explain
 from scenarios.commands.protocol import Protocol
-from scenarios.report.answer import to_json
 from scenarios.studies.engine import Machines
 from scenarios.studies.training.draw import Ranges
 from scenarios.studies.training.run import STORE, Training, generate, recipe_of

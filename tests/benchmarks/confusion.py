@@ -125,7 +125,7 @@ def markdown(matrix: Confusion) -> str:
 
 def plot(matrix: Confusion, path: Path) -> None:
     """The matrix with its counts. UserError where the picture cannot be drawn."""
-    from scenarios.report.plotting import save, style
+    from diagnosis.report.plotting import save, style
 
     plt = style(path)
     rows, columns = matrix.rows, matrix.columns

@@ -19,8 +19,8 @@ from diagnosis.discovery.fitting.noise_colour import Colour
 from diagnosis.discovery.pipeline import Discovery
 from diagnosis.discovery.proof.predictive_check import Likeness, likeness
 from diagnosis.discovery.search.likelihood_ratio import drop
+from diagnosis.report.answer import to_json
 from scenarios.commands.explain import explain
-from scenarios.report.answer import to_json
 from tests.hidden.scoring import verdict
 from tests.hidden.sets import Job, jobs
 from twin.sweep import Sweep

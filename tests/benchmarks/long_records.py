@@ -48,8 +48,8 @@ def peak_mb() -> float:
 
 def explained(path: Path) -> str:
     """CPU time [s], peak memory [MB] and what was found."""
+    from diagnosis.report.answer import to_json
     from scenarios.commands.explain import explain
-    from scenarios.report.answer import to_json
 
     start = time.process_time()
     answer = to_json(explain(Sweep.read(path)))

@@ -192,7 +192,7 @@ def power_table(powers: Sequence[Power]) -> Table:
 
 def plot(powers: Sequence[Power], shots: Sequence[Shot], path: Path) -> None:
     """Share found over the amplitude, one panel a cause. UserError where the picture cannot be drawn."""
-    from scenarios.report.plotting import save, style
+    from diagnosis.report.plotting import save, style
 
     plt = style(path)
     columns = min(4, len(powers))

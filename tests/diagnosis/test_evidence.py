@@ -6,8 +6,8 @@ import numpy as np
 
 from diagnosis.discovery.fitting.observations import MOST_ROWS, collect
 from diagnosis.discovery.fitting.subsample import LONGEST, STRETCHES, searched_part
+from diagnosis.report.answer import to_json
 from scenarios.commands.explain import explain
-from scenarios.report.answer import to_json
 from twin.angles import Array
 from twin.sweep import Sweep
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.report.plotting import save, style
+from diagnosis.report.plotting import save, style
 from scenarios.studies.design.study import DesignStudy, feasible, ranking
 from twin.angles import Array, IntArray
 from twin.effect import BoolArray

@@ -80,7 +80,7 @@ def run(
     from scenarios.studies.design.table import show
 
     if plot:
-        from scenarios.report.plotting import style
+        from diagnosis.report.plotting import style
 
         style(Path("map.png"))
     study = study_of(twin, space, demand, seed=seed)

@@ -126,8 +126,8 @@ class Grid:
         return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
     def _asked(self, cell: Cell, rng: np.random.Generator) -> dict[str, Any]:
+        from diagnosis.report.answer import to_json
         from scenarios.commands.explain import explain
-        from scenarios.report.answer import to_json
 
         motion = cell.motion()
         chain, sweep = simulate(cell, motion, rng)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.report.plotting import save, style
+from diagnosis.report.plotting import save, style
 from scenarios.studies.recovery.cells import BASELINE, CLEAN
 from twin.angles import Array
 

@@ -86,7 +86,7 @@ def run(grid: Grid, output: Path, *, plot: bool, machines: Machines) -> None:
     from scenarios.studies.recovery.table import show
 
     if plot:
-        from scenarios.report.plotting import style
+        from diagnosis.report.plotting import style
 
         style(Path("map.png"))
     found = recover(grid, output, machines)

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from scenarios.report.data import Readings, binned, highest_order, noise_level, spectrum, two_ways
-from scenarios.report.svg import Axis, Layer, Plot
+from diagnosis.report.data import Readings, binned, highest_order, noise_level, spectrum, two_ways
+from diagnosis.report.svg import Axis, Layer, Plot
 from twin.angles import Array
 from twin.effect import BoolArray
 

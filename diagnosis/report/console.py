@@ -10,7 +10,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from scenarios.report.wording import (
+from diagnosis.report.wording import (
     BASELINE_LABELS,
     chance,
     explained_percent,

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 
 from diagnosis.discovery.pipeline import Discovery
+from diagnosis.report.answer import to_json
+from diagnosis.report.data import noise_level, spectrum
+from diagnosis.report.page import page, write_report
+from diagnosis.report.svg import MOST_POINTS, Axis, Layer, Plot, thinned
 from scenarios.commands.explain import explain
 from scenarios.commands.protocol import Protocol
-from scenarios.report.answer import to_json
-from scenarios.report.data import noise_level, spectrum
-from scenarios.report.page import page, write_report
-from scenarios.report.svg import MOST_POINTS, Axis, Layer, Plot, thinned
 from twin.chain import Chain
 from twin.motion import Motion
 

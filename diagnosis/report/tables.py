@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from typing import Any
 
-from scenarios.report.wording import (
+from diagnosis.report.wording import (
     BASELINE_LABELS,
     chance,
     figure,

@@ -9,10 +9,10 @@ import numpy as np
 
 from diagnosis.discovery.pipeline import Discovery
 from diagnosis.discovery.proof.cause import Named
-from scenarios.report.data import Readings, binned, share_deg, unexplained_by
-from scenarios.report.pictures import ANGLE, angle_bins, ways
-from scenarios.report.svg import Axis, Layer, Plot
-from scenarios.report.wording import minus
+from diagnosis.report.data import Readings, binned, share_deg, unexplained_by
+from diagnosis.report.pictures import ANGLE, angle_bins, ways
+from diagnosis.report.svg import Axis, Layer, Plot
+from diagnosis.report.wording import minus
 from twin.angles import TAU, Array
 from twin.catalogue import find, unnamed
 from twin.effect import BoolArray, Effect

@@ -11,7 +11,7 @@ from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.pipeline import Discovery
 from diagnosis.discovery.proof.cause import Named
-from scenarios.report.facts import facts
+from diagnosis.report.facts import facts
 from twin.angles import wrap_deg
 from twin.catalogue import base_name, find
 from twin.files import to_dict

@@ -9,15 +9,15 @@ from typing import Any
 
 from diagnosis.discovery.pipeline import Discovery
 from diagnosis.discovery.proof.cause import Named
-from scenarios.report import causes as cause_pictures
-from scenarios.report import pictures as drawn
-from scenarios.report import tables
-from scenarios.report.data import Readings, readings, two_ways
-from scenarios.report.facts import facts
-from scenarios.report.style import CSS
-from scenarios.report.svg import Plot
-from scenarios.report.tables import number
-from scenarios.report.wording import explained_percent, minus, plain, rejected_words, verdict_words
+from diagnosis.report import causes as cause_pictures
+from diagnosis.report import pictures as drawn
+from diagnosis.report import tables
+from diagnosis.report.data import Readings, readings, two_ways
+from diagnosis.report.facts import facts
+from diagnosis.report.style import CSS
+from diagnosis.report.svg import Plot
+from diagnosis.report.tables import number
+from diagnosis.report.wording import explained_percent, minus, plain, rejected_words, verdict_words
 from twin.catalogue import find
 from twin.sweep_file import write_beside
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.discovery.pipeline import Discovery
-from scenarios.report.facts import angle_error_deg
-from scenarios.report.plotting import save, style
+from diagnosis.report.facts import angle_error_deg
+from diagnosis.report.plotting import save, style
 
 
 def draw(found: Discovery, path: Path) -> None:

@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from scenarios.commands.causes import as_markdown, groups
-from scenarios.report.console import show
-from scenarios.report.wording import (
+from diagnosis.report.console import show
+from diagnosis.report.wording import (
     chance,
     figure,
     instances,
@@ -20,6 +19,7 @@ from scenarios.report.wording import (
     rejected_words,
     structure_words,
 )
+from scenarios.commands.causes import as_markdown, groups
 from twin.catalogue import CATALOGUE
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from diagnosis import Findings
 from diagnosis.error_model.model import ZERO
 from diagnosis.factors.findings import curve_deg
-from scenarios.report.plotting import save, style
+from diagnosis.report.plotting import save, style
 from twin.angles import Array, wrap_deg
 from twin.errors import UserError
 

@@ -53,6 +53,10 @@ class Chain:
     encoder: Encoder | None = None
     parts: Parts = field(default_factory=Parts)
 
+    def __repr__(self) -> str:
+        senses = f"sensor_sense={self.sensor_sense:+d}, output_sense={self.output_sense:+d}"
+        return f"Chain({', '.join(self.values) or 'no effect'}; {senses})"
+
     # ---- changing -------------------------------------------------------------------------------------------------
 
     def with_effect(self, key: str, **params: Any) -> Chain:

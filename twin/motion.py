@@ -31,6 +31,10 @@ class Motion:
     temperature_c: Array
     columns: frozenset[str] = frozenset()
 
+    def __repr__(self) -> str:
+        recorded = ", ".join(sorted(self.columns)) or "the angle alone"
+        return f"Motion({len(self)} readings, {self.turns:.4g} turns, recorded: {recorded})"
+
     def __len__(self) -> int:
         return int(self.shaft_rad.shape[-1])
 

@@ -74,6 +74,10 @@ class Sweep:
     row_numbers: IntArray | None = None
     set_aside: int = 0
 
+    def __repr__(self) -> str:
+        left = "" if self.rows == len(self) else f" of {self.rows}"
+        return f"Sweep({self.name!r}, {len(self)}{left} readings, columns {', '.join(self.columns)})"
+
     def __len__(self) -> int:
         return int(self.reference_deg.size)
 

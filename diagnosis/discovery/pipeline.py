@@ -62,6 +62,11 @@ class Discovery:
     invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
     likeness: Likeness | None = None
 
+    def __repr__(self) -> str:
+        names = ", ".join(cause.name for cause in self.causes) or "no cause"
+        held = f"held-out RMS {self.baseline_held_deg:.4g} -> {self.extended_held_deg:.4g} deg"
+        return f"Discovery({self.sweep.name!r}, {self.verdict}: {names}; {held})"
+
     @property
     def verdict(self) -> str:
         """adequate, explained, partly explained or unnamed."""

@@ -92,6 +92,10 @@ class BaselineFit:
     settled: bool
     """Whether the polish came to rest."""
 
+    def __repr__(self) -> str:
+        point = ", ".join(f"{name}={value:.5g}" for name, value in self.named().items())
+        return f"BaselineFit({point}; {np.degrees(self.rms_rad):.4g} deg RMS)"
+
     @cached_property
     def values(self) -> dict[str, dict[str, float]]:
         """Parameters of the twin's effects, by effect."""

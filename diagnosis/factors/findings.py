@@ -34,6 +34,9 @@ class Findings:
     repeated: str | None
     """What repeated readings did to the intervals, in words."""
 
+    def __repr__(self) -> str:
+        return f"Findings({self.sweep.name!r}, {self.fit!r})"
+
     @cached_property
     def mechanical(self) -> Mechanical:
         """The mechanical causes that would make the same curve, for the twin's magnet."""

@@ -81,6 +81,10 @@ class Fit:
     prior_residual: Array
     prior_jacobian: Array
 
+    def __repr__(self) -> str:
+        left = np.degrees(np.sqrt(np.mean(self.residual[0][self.evidence.usable] ** 2)))
+        return f"Fit({self.chain!r}, {len(self.free)} free parameters, {self.rows} rows, {left:.4g} deg RMS)"
+
     @property
     def rows(self) -> int:
         """Rows in use."""

@@ -38,6 +38,10 @@ class Named:
     intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     family_log_p: float | None = None
 
+    def __repr__(self) -> str:
+        rivals = f", cannot be told from {', '.join(self.rivals)}" if self.rivals else ""
+        return f"Named({', '.join(self.keys)}; held-out RMS {self.before_deg:.4g} -> {self.after_deg:.4g} deg{rivals})"
+
     def false_alarm_probability(self, looked_at: int) -> float:
         """Probability that noise looks as much like any of so many effects."""
         log_p = self.log_p + float(np.log(max(looked_at, 1))) if self.family_log_p is None else self.family_log_p

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from twin import adc, concentrator, cordic, empirical, hall, link, magnet, mechanics, reference
 from twin.effect import Effect
 
@@ -37,6 +39,11 @@ def base_name(key: str) -> str:
 def unnamed(key: str) -> bool:
     """Whether an instance key is of an empirical shape, for which the catalogue has no cause's name."""
     return base_name(key).startswith("unnamed")
+
+
+def output_grid(effects: Iterable[Effect] = CATALOGUE) -> Effect | None:
+    """The effect whose attainable angles are the grid of the output word; None where there is none."""
+    return next((effect for effect in effects if effect.output_grid), None)
 
 
 def find(key: str, effects: tuple[Effect, ...] = CATALOGUE) -> Effect:

@@ -9,7 +9,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.angles import Array
+from twin.angles import TAU, Array
 from twin.motion import Motion
 
 ActsOn = Literal["shaft", "field", "channels", "angle", "reference"]
@@ -39,6 +39,11 @@ Role = Literal["strength", "level", "phase", "shape", "per turn", "random"]
 
 Parameters = Mapping[str, Any]
 BoolArray = NDArray[np.bool_]
+Drawing = Callable[[Array, Array, Motion], Mapping[str, Array]]
+"""strength [deg] (k,), uniform numbers (k, 4), motion -> parameters (k,) of an effect of about that strength."""
+
+YARDSTICK_DEG = 0.1
+"""Angle error that a strength of its typical size makes, about its amplitude."""
 
 
 class Forward(Protocol):
@@ -54,8 +59,16 @@ class Forward(Protocol):
 class Param:
     """One parameter: ``lower <= null <= upper``, in the unit its name ends with.
 
-    ``typical`` is the size at which the effect is about 0.1 deg: the yardstick for numerical derivatives.
-    ``counts`` marks whole numbers (bits, orders, iterations).
+    ``typical``   the size at which the effect is about 0.1 deg: the yardstick for numerical derivatives.
+    ``counts``    marks whole numbers (bits, orders, iterations).
+    ``allowed``   lowest and highest value that physics allows, where a fit is given more room (none: ``lower``,
+    ``upper``); what is drawn for training lies within.
+    ``field_power`` the parameter goes with this power of the magnet's field at the sensor, everything else kept (same
+    device, same gain): 0 for angles, -1 for what is constant in volts or millitesla but counted in amplitudes.
+    ``distance_power`` parameters -> power of the distance from the magnet's centre that it goes with besides.
+    ``mirror``    what it is multiplied by in the chain that counts the other way on both sides and yet reads the same
+    (see :meth:`Effect.mirrored`); 0: no value of it does that. None: as the role and the signal have it.
+    ``scatter``   half width within which devices of one kind differ, about the value of the twin that stands for them.
     """
 
     unit: str
@@ -66,6 +79,11 @@ class Param:
     role: Role = "strength"
     typical: float = 0.1
     counts: bool = False
+    allowed: tuple[float, float] | None = None
+    field_power: float = 0.0
+    distance_power: Callable[[Parameters], float] | None = None
+    mirror: Literal[-1, 0, 1] | None = None
+    scatter: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.lower <= self.null <= self.upper:
@@ -77,13 +95,51 @@ class Line:
     """A periodic shape in the shaft angle (orders), in time (Hz) or in the channels' value (a bit's weight, %).
 
     It is screened by one spectrum instead of a grid. ``limits`` maps a motion to the lowest and highest order or
-    frequency worth looking at; ``within`` says of an array of them which belong to the effect.
+    frequency worth looking at; ``within`` says of an array of them which belong to the effect. ``multiples`` are the
+    whole numbers of times its order or frequency at which the same source shows again.
     """
 
     param: str
     clock: Literal["shaft", "time", "channels"]
     limits: Callable[[Motion], tuple[float, float]]
     within: Callable[[Array], BoolArray]
+    multiples: tuple[int, ...] = ()
+
+
+class FindMarks(Protocol):
+    """Finds the single readings that an effect of the footprint "sequence" has touched.
+
+    measured [rad] (n,), residual [rad] (n,), noise [rad], step of the output grid [rad] or 0, motion ->
+    (mask of the touched rows, log of the probability that chance alone marks as many).
+    """
+
+    def __call__(
+        self, measured: Array, residual: Array, noise: float, step: float, motion: Motion
+    ) -> tuple[BoolArray, float]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Marks:
+    """How an effect of the footprint "sequence" is looked for and what is told of it; called, it does ``find``.
+
+    ``told``      rows touched, readings -> the parameters that say so, each with its standard deviation.
+    ``early``     its marks show before anything else is known, and would pass for structure: looked for first, and once
+    more in what is left at the end. Others are looked for at the end alone, on rows that no other effect has claimed.
+    ``false_alarm`` probability of a false alarm at which it is listed; None: that of every other cause.
+    ``rows_listed`` whether the answer names each touched row.
+    """
+
+    find: FindMarks
+    told: Callable[[int, int], Mapping[str, tuple[float, float]]]
+    early: bool = False
+    false_alarm: float | None = None
+    rows_listed: bool = False
+
+    def __call__(
+        self, measured: Array, residual: Array, noise: float, step: float, motion: Motion
+    ) -> tuple[BoolArray, float]:
+        """The touched rows (n,) and the log probability of as many by chance: see :class:`FindMarks`."""
+        return self.find(measured, residual, noise, step, motion)
 
 
 def _one_shape(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -102,6 +158,14 @@ def _all_told(values: Parameters) -> Mapping[str, tuple[float, float]]:
     return {}
 
 
+def _negative(value: Any) -> Any:
+    return -value if np.ndim(value) == 0 else -np.asarray(value)
+
+
+def _no_figures(values: Parameters) -> Mapping[str, float]:
+    return {}
+
+
 @dataclass(frozen=True, kw_only=True)
 class Effect:
     """One physical effect: what it does, what it needs to be seen, and where its definition comes from.
@@ -117,8 +181,19 @@ class Effect:
     ``angle_only`` parameters -> low and high of those that an angle alone leaves open, as others make up for them.
     ``spread``    for the footprint "spread": angle (n,), parameters -> added variance of the angle [rad^2].
     ``attainable`` for the footprint "values": parameters -> all angles [rad] a reading can take.
+    ``stair``     for the footprint "values": parameters -> mean step [rad] between attainable angles, else counted.
+    ``output_grid`` its attainable angles are the grid of the output word, which the readings themselves tell.
     ``marks``     for the footprint "sequence": see :class:`Marks`.
     ``baseline``  part of the paper's error model: always fitted, never a discovery.
+    ``repeatable`` a second instance beside the first makes sense: sources of their own, each with its own parameters.
+    ``record_wide`` what it does to a reading depends on readings still to come (the record's length, middle or
+    extremes), so that it cannot be played reading by reading.
+    ``handicap``  log likelihood [nats] that it must gain beyond others, where a plainer description exists.
+    ``drawing``   for training sweeps: parameters in place of those that :meth:`draw` takes from the declaration alone.
+    ``kind``      for structure without a name: what kind it is, in one word of the answer's vocabulary.
+    ``words``     the same in words: a format string over the answer's figures, ``{order:4}`` for four digits;
+    ``largest_deg`` stands for the largest of the figures in degrees.
+    ``figures``   parameters -> further figures of structure without a name.
     """
 
     name: str
@@ -141,7 +216,16 @@ class Effect:
     angle_only: Callable[[Parameters], Mapping[str, tuple[float, float]]] = field(default=_all_told)
     spread: Callable[[Array, Parameters], Array] | None = None
     attainable: Callable[[Parameters], Array] | None = None
+    stair: Callable[[Parameters], float] | None = None
+    output_grid: bool = False
     marks: Marks | None = None
+    repeatable: bool = False
+    record_wide: bool = False
+    handicap: float = 0.0
+    drawing: Drawing | None = None
+    kind: str = ""
+    words: str = ""
+    figures: Callable[[Parameters], Mapping[str, float]] = field(default=_no_figures)
 
     def roles(self, role: Role) -> tuple[str, ...]:
         """Names of the parameters with this role, in the order of the declaration."""
@@ -167,14 +251,81 @@ class Effect:
         """What a sweep lacks for this effect to be visible, sorted."""
         return tuple(sorted(need for need in self.needs if not any(part in provides for part in need.split("|"))))
 
+    def stair_rad(self, values: Parameters) -> float:
+        """Mean step [rad] between the angles that a reading can take; 0 where the effect leaves all of them."""
+        if self.attainable is None or self.is_null(values):
+            return 0.0
+        return TAU / self.attainable(values).size if self.stair is None else self.stair(values)
 
-class Marks(Protocol):
-    """Finds the single readings that an effect of the footprint "sequence" has touched.
+    def spread_of_turns(self, values: Parameters) -> dict[str, float]:
+        """Random parameters that the turns' own values tell: from these another record draws its turns."""
+        told = self.derived(values) if self.roles("per turn") else {}
+        return {name: told[name][0] for name in self.roles("random") if name in told}
 
-    measured [rad] (n,), residual [rad] (n,), noise [rad], step of the output grid [rad] or 0, motion ->
-    (mask of the touched rows, log of the probability that chance alone marks as many).
-    """
+    # ---- what becomes of it elsewhere ---------------------------------------------------------------------------
 
-    def __call__(
-        self, measured: Array, residual: Array, noise: float, step: float, motion: Motion
-    ) -> tuple[BoolArray, float]: ...
+    def field_factor(self, name: str, values: Parameters, *, field_ratio: Any, distance_ratio: float = 1.0) -> Any:
+        """What a parameter is multiplied by at so many times the present field and distance of the magnet.
+
+        ``field_ratio`` may be an array; so is then the factor.
+        """
+        param = self.params[name]
+        factor = field_ratio**param.field_power
+        return factor if param.distance_power is None else factor * distance_ratio ** param.distance_power(values)
+
+    @property
+    def follows_field(self) -> bool:
+        """Whether any of its parameters changes with the magnet's field."""
+        return any(p.field_power != 0.0 or p.distance_power is not None for p in self.params.values())
+
+    def mirror(self, name: str) -> int:
+        """What a parameter is multiplied by (-1, 1) in the mirrored chain; 0: no value of it reads the same there.
+
+        The mirrored chain counts its field and its computed angle the other way. What is added to either of them
+        changes sign; shaft and reference are as they were, and so are sizes of noise, frequencies and phases.
+        """
+        param = self.params[name]
+        if param.mirror is not None:
+            return param.mirror
+        added = self.acts_on in ("field", "angle") and param.role in ("strength", "per turn")
+        return -1 if added else 1
+
+    def mirrored(self, values: Parameters) -> dict[str, Any]:
+        """The parameters with which the chain that counts the other way on both sides reads the same.
+
+        Those without such a value are kept. An amplitude keeps its sign; its phase turns by half a turn instead.
+        """
+        found = {name: _negative(value) if self.mirror(name) < 0 else value for name, value in values.items()}
+        phases, strengths = self.roles("phase"), [name for name in self.roles("strength") if name in values]
+        if phases and strengths and all(self.mirror(n) == -1 and self.params[n].lower == 0.0 for n in strengths):
+            found |= {name: values[name] for name in strengths}
+            phase_deg = found.get(phases[0], self.params[phases[0]].null)
+            found[phases[0]] = phase_deg - np.copysign(180.0, phase_deg)
+        return found
+
+    @property
+    def mirrors(self) -> bool:
+        """Whether every parameter has a value with which the mirrored chain reads the same."""
+        return all(self.mirror(name) != 0 for name in self.params)
+
+    def draw(self, strength_deg: Array, uniform: Array, motion: Motion) -> dict[str, Array]:
+        """Parameters (k,) of the effect at strengths [deg] (k,) from uniform numbers (k, 4), for training sweeps.
+
+        Strengths by their yardstick, of either sign where physics allows both; several share it as a vector does.
+        """
+        names = self.roles("strength")
+        turn = TAU * uniform[:, 0]
+        shares: tuple[Array, ...] = (np.where(uniform[:, 0] < 0.5, -1.0, 1.0),)
+        if len(names) == 2:
+            shares = (np.cos(turn), np.sin(turn))
+        elif len(names) != 1:
+            # Of unit length on average, and any two of them uncorrelated.
+            shares = tuple(np.sqrt(2.0 / len(names)) * np.cos(turn * (1 + place)) for place in range(len(names)))
+        drawn: dict[str, Array] = {}
+        for name, share in zip(names, shares, strict=True):
+            param = self.params[name]
+            lowest = param.lower if param.allowed is None else param.allowed[0]
+            signed = share if lowest < param.null else np.abs(share)
+            drawn[name] = param.null + strength_deg / YARDSTICK_DEG * param.typical * signed
+        drawn |= dict.fromkeys(self.roles("phase"), 360.0 * uniform[:, 1])
+        return drawn if self.drawing is None else {**drawn, **self.drawing(strength_deg, uniform, motion)}

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from twin.adc.adc_quantisation import FULL_SCALE
 from twin.angles import Array
-from twin.effect import BoolArray, Effect, Line, Param, Parameters
+from twin.effect import YARDSTICK_DEG, BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
 HARMONICS = 6
@@ -56,15 +57,36 @@ def within(step_percent: Array) -> BoolArray:
     return np.asarray((step_percent > 0.0) & (step_percent < 30.0))
 
 
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """A bit of weight w errs by up to w / 2 in each channel: 0.1 deg is 0.35 % of the amplitude."""
+    full_scale_percent = 200.0 * FULL_SCALE
+    weight = 0.35 * strength_deg / YARDSTICK_DEG
+    return {
+        "step_percent": full_scale_percent * 2.0 ** np.round(np.log2(weight / full_scale_percent)),
+        "level": np.where(uniform[:, 0] < 0.5, 0.0, 1.0),
+    }
+
+
 ADC_STUCK_BIT = Effect(
     name="adc_stuck_bit",
     stage="adc",
     acts_on="channels",
     params={
-        "step_percent": Param(unit="%", null=0.0, lower=0.0, upper=30.0, doc="weight of the bit", role="level"),
-        "level": Param(unit="1", null=0.0, lower=0.0, upper=1.0, doc="stuck at", role="shape", counts=True),
+        # The converter's range is fixed in volts, and so is a bit's weight.
+        "step_percent": Param(
+            unit="%", null=0.0, lower=0.0, upper=30.0, doc="weight of the bit", role="level", field_power=-1.0
+        ),
+        # With y turned over a bit held at one is a bit held at zero, but in y alone: no level does that.
+        "level": Param(unit="1", null=0.0, lower=0.0, upper=1.0, doc="stuck at", role="shape", counts=True, mirror=0),
         "blur_percent": Param(
-            unit="%", null=0.0, lower=0.0, upper=1.0, doc="noise ahead of the bit", role="shape", typical=0.03
+            unit="%",
+            null=0.0,
+            lower=0.0,
+            upper=1.0,
+            doc="noise ahead of the bit",
+            role="shape",
+            typical=0.03,
+            field_power=-1.0,
         ),
     },
     forward=forward,
@@ -73,6 +95,7 @@ ADC_STUCK_BIT = Effect(
     zoomed=("step_percent",),
     fitted_shapes=("step_percent", "blur_percent"),
     line=Line(param="step_percent", clock="channels", limits=lambda motion: (0.04, 4.0), within=within),
+    drawing=drawing,
     source="offset binary code with one bit held; its mean goes into the offset",
     signature="0 or one step per channel: a square pattern in code",
 )

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from twin.angles import Array
-from twin.effect import Effect, Param, Parameters
+from twin.effect import YARDSTICK_DEG, Effect, Param, Parameters
 from twin.motion import Motion
 
 
@@ -19,6 +19,11 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     # Near the amplitude half a percent halves or doubles what is cut off: a coarser grid would step over it.
     return [{"level_percent": float(level)} for level in np.linspace(84.0, 116.0, 65)]
+
+
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """c - L lost near an axis turns the angle by up to about 0.5 (1 - L)^1.5: the yardstick is 2 %."""
+    return {"level_percent": 100.0 - 2.0 * (strength_deg / YARDSTICK_DEG) ** (2.0 / 3.0)}
 
 
 CLIPPING = Effect(
@@ -34,6 +39,7 @@ CLIPPING = Effect(
             doc="the limit, in amplitudes of x",
             role="level",
             typical=2.0,
+            field_power=-1.0,
         )
     },
     forward=forward,
@@ -41,6 +47,7 @@ CLIPPING = Effect(
     shapes=shapes,
     zoomed=("level_percent",),
     fitted_shapes=("level_percent",),
+    drawing=drawing,
     source="definition: full scale of the converter below the signal's amplitude",
     signature="four narrow spots, at the axes",
 )

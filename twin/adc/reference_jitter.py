@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -20,6 +22,11 @@ def spread(angle: Array, values: Parameters) -> Array:
     return np.asarray(0.5 * (0.01 * np.asarray(values["percent_rms"])) ** 2 * np.sin(2.0 * angle) ** 2)
 
 
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """e = sin 2a / 2 times the difference of two draws: RMS 0.5 p."""
+    return {"percent_rms": 200.0 * radians(strength_deg)}
+
+
 REFERENCE_JITTER = Effect(
     name="reference_jitter",
     stage="adc",
@@ -33,6 +40,7 @@ REFERENCE_JITTER = Effect(
     needs=frozenset({"one turn"}),
     footprint="spread",
     spread=spread,
+    drawing=drawing,
     source="paper, Eq. 3: the sampling error is proportional to the code",
     signature="noise whose variance follows sin^2 2a",
 )

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from twin.angles import TAU, Array, channels_of, radians
+from twin.drawing import log_span
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
@@ -59,6 +60,13 @@ def within(frequency_hz: Array) -> BoolArray:
     return np.asarray(frequency_hz > 0.0)
 
 
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """A ripple that the time stamps resolve, and the delay at which its effect on the angle is largest."""
+    interval = float(np.median(np.diff(motion.time_s)))
+    frequency = log_span(uniform[:, 2], 2.0 / (motion.time_s[-1] - motion.time_s[0]), 0.4 / interval)
+    return {"frequency_Hz": frequency, "delay_us": np.minimum(0.5e6 / frequency, 1e6)}
+
+
 REFERENCE_RIPPLE = Effect(
     name="reference_ripple",
     stage="adc",
@@ -83,6 +91,8 @@ REFERENCE_RIPPLE = Effect(
     angle_only=angle_only,
     needs=frozenset({"time_s", "moving shaft"}),
     line=Line(param="frequency_Hz", clock="time", limits=limits, within=within),
+    record_wide=True,
+    drawing=drawing,
     source="ratio of the signal to the converter's reference; paper, Eq. 3, for a periodic fluctuation",
     signature="sin 2a times cos(2 pi f t + psi)",
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from twin.angles import Array
+from twin.drawing import delay
 from twin.effect import Effect, Param, Parameters
 from twin.hall.offset import add
 from twin.motion import Motion
@@ -24,6 +25,7 @@ XY_SKEW = Effect(
     },
     forward=forward,
     needs=frozenset({"two speeds|both directions", "moving shaft"}),
+    drawing=delay,
     source="sequential conversion of x and y by one multiplexed converter",
     signature="order 0 and order 2, proportional to speed times delay",
 )

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from twin.angles import Array, radians
+from twin.drawing import log_span
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -35,12 +36,26 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     return [{"memory_deg": memory} for memory in (0.5, 2.0, 5.0, 12.0, 25.0, 50.0)]
 
 
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """A memory of degrees."""
+    return {"memory_deg": log_span(uniform[:, 2], 2.0, 30.0)}
+
+
 HYSTERESIS = Effect(
     name="hysteresis",
     stage="concentrator",
     acts_on="shaft",
     params={
-        "lag_deg": Param(unit="deg", null=0.0, lower=-5.0, upper=5.0, doc="steady lag; negative: the reference lags"),
+        # The coercive field is the material's, in A/m: the angle by which it holds the field back is its share of it.
+        "lag_deg": Param(
+            unit="deg",
+            null=0.0,
+            lower=-5.0,
+            upper=5.0,
+            doc="steady lag; negative: the reference lags",
+            allowed=(0.0, 5.0),
+            field_power=-1.0,
+        ),
         "memory_deg": Param(
             unit="deg",
             null=10.0,
@@ -56,6 +71,7 @@ HYSTERESIS = Effect(
     shapes=shapes,
     zoomed=("memory_deg",),
     fitted_shapes=("memory_deg",),
+    drawing=drawing,
     source="first-order return-point memory in the angle (Dahl's friction model, 1968, in angular form)",
     signature="-h d, relaxing exponentially after a reversal",
 )

@@ -18,8 +18,16 @@ SATURATION = Effect(
     stage="concentrator",
     acts_on="channels",
     params={
+        # The next odd term of a magnetisation curve that bends down: it grows with the square of the field.
         "k_percent": Param(
-            unit="%", null=0.0, lower=-30.0, upper=30.0, doc="loss at full amplitude, c - k c^3", typical=0.5
+            unit="%",
+            null=0.0,
+            lower=-30.0,
+            upper=30.0,
+            doc="loss at full amplitude, c - k c^3",
+            typical=0.5,
+            allowed=(0.0, 30.0),
+            field_power=2.0,
         )
     },
     forward=forward,

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from twin.angles import Array, wrap
+from twin.angles import Array, radians, wrap
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -51,6 +51,16 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     return [{"iterations": float(count)} for count in range(5, 15)]
 
 
+def stair(values: Parameters) -> float:
+    """Twice the largest error, the last rotation [rad]."""
+    return 2.0 * float(np.arctan(2.0 ** (1.0 - float(values["iterations"]))))
+
+
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """n iterations leave up to atan 2^-(n-1), evenly spread."""
+    return {"iterations": np.clip(np.round(1.0 - np.log2(np.sqrt(3.0) * radians(strength_deg))), 5, 14)}
+
+
 CORDIC_TRUNCATION = Effect(
     name="cordic_truncation",
     stage="cordic",
@@ -69,6 +79,8 @@ CORDIC_TRUNCATION = Effect(
     forward=forward,
     footprint="values",
     attainable=attainable,
+    stair=stair,
+    drawing=drawing,
     shapes=shapes,
     needs=frozenset({"one turn"}),
     source="J. E. Volder, The CORDIC Trigonometric Computing Technique, IRE Trans. EC-8 (1959); paper, section 2.2.6",

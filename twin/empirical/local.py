@@ -41,6 +41,9 @@ UNNAMED_BUMP = Effect(
     zoomed=("centre_deg", "width_deg"),
     fitted_shapes=("centre_deg", "width_deg"),
     needs=frozenset({"one turn"}),
+    repeatable=True,
+    kind="local",
+    words="a bump at {centre_deg:4} deg of the shaft, {height_deg} deg high, sigma {width_deg} deg",
     source="Gaussian bump",
     signature="an error at one place of the turn",
 )

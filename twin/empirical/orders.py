@@ -12,6 +12,13 @@ from twin.motion import Motion
 
 Weight = Callable[[Motion, Parameters], Array]
 
+_LINE_WORDS = "order {order:4} in the shaft angle (cycles per turn), amplitude {amplitude_deg} deg"
+_DIRECTION_WORDS = "order {order:4} whose sign turns with the direction, amplitude {amplitude_deg} deg"
+_TEMPERATURE_WORDS = (
+    "order {order:4} that scales with temperature, amplitude {amplitude_deg} deg at the one farthest from 25 C"
+)
+_SPEED_WORDS = "order {order:4} that scales with speed, amplitude {amplitude_deg} deg at the highest one"
+
 
 def _order_params(highest: float) -> dict[str, Param]:
     return {
@@ -88,6 +95,9 @@ UNNAMED_ORDER = Effect(
     forward=_weighted(_always),
     line=Line(param="order", clock="shaft", limits=_free_limits, within=unnamed_order),
     needs=frozenset({"one turn"}),
+    repeatable=True,
+    kind="order",
+    words=_LINE_WORDS,
     source="Fourier component",
     signature="a line at an order that no cause sets",
 )
@@ -117,6 +127,17 @@ def _pattern(orders: Sequence[int], weight: Weight) -> Forward:
     return forward
 
 
+def _strongest(orders: Sequence[int]) -> Callable[[Parameters], Mapping[str, float]]:
+    """A pattern of several orders is described by its strongest one."""
+
+    def figures(values: Parameters) -> Mapping[str, float]:
+        sizes = {k: float(np.hypot(values[f"cos{k}_deg"], values.get(f"sin{k}_deg", 0.0))) for k in orders}
+        strongest = max(sizes, key=lambda k: sizes[k])
+        return {"order": float(strongest), "amplitude_deg": sizes[strongest]}
+
+    return figures
+
+
 DIRECTION_ORDERS = (1, 2, 3, 4)
 # Orders 1 and 2 times the temperature are the drifts of offset, gain and phase.
 TEMPERATURE_ORDERS = (0, 3, 4, 5, 6)
@@ -129,6 +150,10 @@ UNNAMED_DIRECTION = Effect(
     params=_pattern_params(DIRECTION_ORDERS, "d"),
     forward=_pattern(DIRECTION_ORDERS, _direction),
     needs=frozenset({"both directions"}),
+    repeatable=True,
+    kind="direction",
+    words=_DIRECTION_WORDS,
+    figures=_strongest(DIRECTION_ORDERS),
     source="Fourier series times the direction",
     signature="a pattern over the turn whose sign turns with the direction",
 )
@@ -140,6 +165,11 @@ UNNAMED_TEMPERATURE = Effect(
     params=_pattern_params(TEMPERATURE_ORDERS, "(T - 25 C) over its largest value"),
     forward=_pattern(TEMPERATURE_ORDERS, _temperature),
     needs=frozenset({"temperature_c", "two temperatures"}),
+    repeatable=True,
+    record_wide=True,
+    kind="temperature",
+    words=_TEMPERATURE_WORDS,
+    figures=_strongest(TEMPERATURE_ORDERS),
     source="Fourier series times (T - 25 C)",
     signature="a pattern over the turn that scales with temperature; its size is the one farthest from 25 C",
 )
@@ -157,6 +187,9 @@ UNNAMED_DIRECTION_ORDER = Effect(
     forward=_weighted(_direction),
     shapes=_single_orders(1),
     needs=frozenset({"both directions"}),
+    repeatable=True,
+    kind="direction",
+    words=_DIRECTION_WORDS,
     source="Fourier component times the direction",
     signature="one order whose sign turns with the direction",
 )
@@ -169,6 +202,10 @@ UNNAMED_TEMPERATURE_ORDER = Effect(
     forward=_weighted(_temperature),
     shapes=_single_orders(3),
     needs=frozenset({"temperature_c", "two temperatures"}),
+    repeatable=True,
+    record_wide=True,
+    kind="temperature",
+    words=_TEMPERATURE_WORDS,
     source="Fourier component times (T - 25 C)",
     signature="one order that scales with temperature; its amplitude is the one farthest from 25 C",
 )
@@ -184,6 +221,10 @@ UNNAMED_SPEED = Effect(
     forward=_weighted(_speed),
     shapes=_speed_shapes,
     needs=frozenset({"moving shaft", "two speeds"}),
+    repeatable=True,
+    record_wide=True,
+    kind="speed",
+    words=_SPEED_WORDS,
     source="Fourier component times a power of the speed",
     signature="a low order that scales with speed; its amplitude is the one at the highest speed",
 )

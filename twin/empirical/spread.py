@@ -28,6 +28,8 @@ UNNAMED_BURST = Effect(
     },
     forward=_burst,
     footprint="spread",
+    kind="noise",
+    words="rows {first_row} to {last_row} scatter by {rms_deg} deg RMS beyond the noise",
     source="change of variance",
     signature="a stretch with more noise",
 )

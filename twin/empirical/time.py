@@ -39,6 +39,12 @@ UNNAMED_TONE = Effect(
     line=Line(param="frequency_Hz", clock="time", limits=_tone_limits, within=_any_tone),
     # On a shaft that is stopped for each reading a tone in time is one more order.
     needs=frozenset({"time_s", "moving shaft"}),
+    repeatable=True,
+    record_wide=True,
+    # On a shaft that steps evenly a tone in time is an order too: the order is the plainer description.
+    handicap=2.0,
+    kind="time_frequency",
+    words="{frequency_Hz:4} Hz in time, which the shaft angle does not carry, amplitude {amplitude_deg} deg",
     source="Fourier component in time",
     signature="a tone that the shaft angle does not carry",
 )
@@ -66,6 +72,10 @@ UNNAMED_DRIFT = Effect(
     },
     forward=_drift,
     needs=frozenset({"time_s"}),
+    repeatable=True,
+    record_wide=True,
+    kind="drift",
+    words="a slow movement of the zero, {largest_deg} deg at most in one mode",
     source="cosine series in time",
     signature="a slow movement of the zero that comes back",
 )

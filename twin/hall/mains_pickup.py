@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from twin.angles import TAU, Array, radians
+from twin.drawing import span
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.hall.offset import add
 from twin.motion import Motion
@@ -22,6 +25,12 @@ def within(frequency_hz: Array) -> BoolArray:
     return np.asarray((np.abs(frequency_hz / 50.0 - 1.0) <= 0.01) | (np.abs(frequency_hz / 60.0 - 1.0) <= 0.01))
 
 
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """A supply's frequency is kept within half a per cent."""
+    nominal = np.where(uniform[:, 2] < 0.5, 50.0, 60.0)
+    return {"frequency_Hz": nominal * span(uniform[:, 3], 0.995, 1.005)}
+
+
 MAINS_PICKUP = Effect(
     name="mains_pickup",
     stage="hall",
@@ -36,13 +45,19 @@ MAINS_PICKUP = Effect(
             role="shape",
             typical=0.1,
         ),
-        "x_percent": Param(unit="%", null=0.0, lower=-50.0, upper=50.0, doc="amplitude on x", typical=0.2),
-        "y_percent": Param(unit="%", null=0.0, lower=-50.0, upper=50.0, doc="amplitude on y", typical=0.2),
+        "x_percent": Param(
+            unit="%", null=0.0, lower=-50.0, upper=50.0, doc="amplitude on x", typical=0.2, field_power=-1.0
+        ),
+        "y_percent": Param(
+            unit="%", null=0.0, lower=-50.0, upper=50.0, doc="amplitude on y", typical=0.2, field_power=-1.0, mirror=-1
+        ),
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
     },
     forward=forward,
     needs=frozenset({"time_s", "moving shaft"}),
     line=Line(param="frequency_Hz", clock="time", limits=lambda motion: (49.5, 60.6), within=within),
+    record_wide=True,
+    drawing=drawing,
     source="magnetic or capacitive coupling of the supply into the signal leads",
     signature="order 1 times cos(2 pi f t + psi)",
 )

@@ -40,7 +40,9 @@ NOISE = Effect(
     stage="hall",
     acts_on="channels",
     params={
-        "rms_deg": Param(unit="deg", null=0.0, lower=0.0, upper=20.0, doc="RMS in the angle", role="random"),
+        "rms_deg": Param(
+            unit="deg", null=0.0, lower=0.0, upper=20.0, doc="RMS in the angle", role="random", field_power=-1.0
+        ),
         "correlation": Param(
             unit="1",
             null=0.0,

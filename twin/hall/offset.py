@@ -22,9 +22,22 @@ OFFSET = Effect(
     name="offset",
     stage="hall",
     acts_on="channels",
+    # The plates and the front-end add volts, whatever the field is.
     params={
-        "x_percent": Param(unit="%", null=0.0, lower=-90.0, upper=90.0, doc="Vx/Ax", typical=0.2),
-        "y_percent": Param(unit="%", null=0.0, lower=-90.0, upper=90.0, doc="Vy/Ay", typical=0.2),
+        "x_percent": Param(
+            unit="%", null=0.0, lower=-90.0, upper=90.0, doc="Vx/Ax", typical=0.2, field_power=-1.0, scatter=1.0
+        ),
+        "y_percent": Param(
+            unit="%",
+            null=0.0,
+            lower=-90.0,
+            upper=90.0,
+            doc="Vy/Ay",
+            typical=0.2,
+            field_power=-1.0,
+            mirror=-1,
+            scatter=1.0,
+        ),
     },
     forward=forward,
     source="paper, Eq. 1; each offset counted in amplitudes of its own channel",

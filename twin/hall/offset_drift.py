@@ -20,8 +20,19 @@ OFFSET_DRIFT = Effect(
     stage="hall",
     acts_on="channels",
     params={
-        "x_percent_per_K": Param(unit="%/K", null=0.0, lower=-1.0, upper=1.0, doc="drift of Vx/Ax", typical=0.003),
-        "y_percent_per_K": Param(unit="%/K", null=0.0, lower=-1.0, upper=1.0, doc="drift of Vy/Ay", typical=0.003),
+        "x_percent_per_K": Param(
+            unit="%/K", null=0.0, lower=-1.0, upper=1.0, doc="drift of Vx/Ax", typical=0.003, field_power=-1.0
+        ),
+        "y_percent_per_K": Param(
+            unit="%/K",
+            null=0.0,
+            lower=-1.0,
+            upper=1.0,
+            doc="drift of Vy/Ay",
+            typical=0.003,
+            field_power=-1.0,
+            mirror=-1,
+        ),
     },
     forward=forward,
     needs=frozenset({"temperature_c", "two temperatures"}),

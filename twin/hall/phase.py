@@ -17,7 +17,11 @@ PHASE = Effect(
     name="phase",
     stage="hall",
     acts_on="field",
-    params={"beta_deg": Param(unit="deg", null=0.0, lower=-45.0, upper=45.0, doc="orthogonality error of y against x")},
+    params={
+        "beta_deg": Param(
+            unit="deg", null=0.0, lower=-45.0, upper=45.0, doc="orthogonality error of y against x", scatter=0.2
+        )
+    },
     forward=forward,
     source="paper, Eq. 1",
     signature="order 2, cos 2a, and order 0",

@@ -18,8 +18,17 @@ QUADRATIC_NONLINEARITY = Effect(
     stage="hall",
     acts_on="channels",
     params={
+        # c + q c^2 in both channels is no odd function: no value of q makes it one in the mirrored chain.
         "q_percent": Param(
-            unit="%", null=0.0, lower=-30.0, upper=30.0, doc="q = K1 mag / K2, of amplitude", typical=0.2
+            unit="%",
+            null=0.0,
+            lower=-30.0,
+            upper=30.0,
+            doc="q = K1 mag / K2, of amplitude",
+            typical=0.2,
+            field_power=1.0,
+            mirror=0,
+            scatter=0.3,
         )
     },
     forward=forward,

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from twin.angles import TAU, Array
-from twin.effect import BoolArray, Effect, Param, Parameters
+from twin.drawing import whole
+from twin.effect import BoolArray, Effect, Marks, Param, Parameters
 from twin.motion import Motion
 
 WORD_BITS = 16
@@ -53,6 +56,16 @@ def _together(total: float, count: int) -> float:
     return float(np.logaddexp.reduce(logs)) - total
 
 
+def told(touched: int, readings: int) -> Mapping[str, tuple[float, float]]:
+    """How many words: each is known."""
+    return {"count": (float(touched), 0.0)}
+
+
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """A few words: their error is that of a bit, whatever the strength."""
+    return {"count": whole(uniform[:, 0], 1, 6)}
+
+
 BUS_GLITCH = Effect(
     name="bus_glitch",
     stage="link",
@@ -62,7 +75,10 @@ BUS_GLITCH = Effect(
     },
     forward=forward,
     footprint="sequence",
-    marks=marks,
+    # Only those that stand far out are found: one that is missed would be left among the wild readings.
+    marks=Marks(find=marks, told=told, false_alarm=0.01, rows_listed=True),
+    record_wide=True,
+    drawing=drawing,
     source="definition: one bit of the angle word, so an error of 360/2^k deg",
     signature="rare large errors of 360/2^k deg",
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from twin.angles import Array
+from twin.drawing import delay
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -21,6 +22,7 @@ LATENCY = Effect(
     params={"delay_us": Param(unit="us", null=0.0, lower=-1e6, upper=1e6, doc="age of the reading", typical=20.0)},
     forward=forward,
     needs=frozenset({"two speeds|both directions", "moving shaft"}),
+    drawing=delay,
     source="kinematics: e = -w tau",
     signature="order 0, minus speed times delay",
 )

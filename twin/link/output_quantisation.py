@@ -33,6 +33,16 @@ def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]
     return {"step_deg": (step, step, step, "deg")}
 
 
+def stair(values: Parameters) -> float:
+    """The step of the grid [rad]."""
+    return float(TAU / 2.0 ** float(values["bits"]))
+
+
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """A word's rounding has the RMS step / sqrt 12."""
+    return {"bits": np.round(np.log2(360.0 / (np.sqrt(12.0) * strength_deg)))}
+
+
 OUTPUT_QUANTISATION = Effect(
     name="output_quantisation",
     stage="link",
@@ -43,6 +53,9 @@ OUTPUT_QUANTISATION = Effect(
     forward=forward,
     footprint="values",
     attainable=attainable,
+    stair=stair,
+    output_grid=True,
+    drawing=drawing,
     shapes=shapes,
     derived=derived,
     needs=frozenset({"one turn"}),

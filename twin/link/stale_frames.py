@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from twin.angles import Array, wrap
-from twin.effect import BoolArray, Effect, Param, Parameters
+from twin.drawing import span
+from twin.effect import BoolArray, Effect, Marks, Param, Parameters
 from twin.motion import Motion
 
 
@@ -40,6 +43,17 @@ def marks(measured: Array, residual: Array, noise: float, step: float, motion: M
     return mask, min(0.0, count - expected + count * float(np.log(max(expected, 1e-300) / count)))
 
 
+def told(touched: int, readings: int) -> Mapping[str, tuple[float, float]]:
+    """The share of the readings, with the deviation of a binomial's."""
+    share = touched / readings
+    return {"fraction_percent": (100.0 * share, 100.0 * float(np.sqrt(share * (1.0 - share) / readings)))}
+
+
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """From some frames to one in ten: their error is a step of the shaft, whatever the strength."""
+    return {"fraction_percent": span(uniform[:, 0], 1.0, 10.0)}
+
+
 STALE_FRAMES = Effect(
     name="stale_frames",
     stage="link",
@@ -47,7 +61,8 @@ STALE_FRAMES = Effect(
     params={"fraction_percent": Param(unit="%", null=0.0, lower=0.0, upper=99.0, doc="of the frames", role="random")},
     forward=forward,
     footprint="sequence",
-    marks=marks,
+    marks=Marks(find=marks, told=told, early=True),
+    drawing=drawing,
     source="definition: a link that sends its last word again",
     signature="repeats; an error of one step",
 )

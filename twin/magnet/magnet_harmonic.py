@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from twin.angles import Array, radians
+from twin.drawing import whole
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -18,6 +19,20 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     return [{"order": float(order)} for order in range(3, 9) if 2 * order < motion.points_per_turn]
+
+
+def falls_off(values: Parameters) -> float:
+    """Power of the distance that the amplitude goes with.
+
+    A harmonic of order n + 1 in the magnetisation turns the field by order n; its field falls with the distance from
+    the magnet's centre n powers faster than the dipole's (multipole expansion), and so does the angle it turns by.
+    """
+    return -float(values["order"])
+
+
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """Any order."""
+    return {"order": whole(uniform[:, 2], 3, 8)}
 
 
 MAGNET_HARMONIC = Effect(
@@ -35,12 +50,21 @@ MAGNET_HARMONIC = Effect(
             counts=True,
             typical=1.0,
         ),
-        "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=20.0, doc="amplitude in the field angle"),
+        "amplitude_deg": Param(
+            unit="deg",
+            null=0.0,
+            lower=0.0,
+            upper=20.0,
+            doc="amplitude in the field angle",
+            distance_power=falls_off,
+        ),
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase", role="phase"),
     },
     forward=forward,
     needs=frozenset({"one turn"}),
     shapes=shapes,
+    repeatable=True,
+    drawing=drawing,
     source="azimuthal Fourier series of the field of an imperfectly magnetised cylinder",
     signature="one line at order n, 3 to 8, any phase",
 )

@@ -70,6 +70,7 @@ MAGNET_MISALIGNMENT = Effect(
             upper=360.0,
             doc="displacement's, from the sensor's x",
             role="phase",
+            mirror=-1,
         ),
     },
     forward=forward,

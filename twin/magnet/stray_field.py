@@ -24,7 +24,7 @@ STRAY_FIELD = Effect(
     acts_on="channels",
     params={
         "bx_mT": Param(unit="mT", null=0.0, lower=-50.0, upper=50.0, doc="stray field along the sensor's x"),
-        "by_mT": Param(unit="mT", null=0.0, lower=-50.0, upper=50.0, doc="stray field along the sensor's y"),
+        "by_mT": Param(unit="mT", null=0.0, lower=-50.0, upper=50.0, doc="stray field along the sensor's y", mirror=-1),
         "field_mT": Param(
             unit="mT",
             null=FIELD_MT,
@@ -33,6 +33,7 @@ STRAY_FIELD = Effect(
             doc="the magnet's own field",
             role="shape",
             typical=10.0,
+            field_power=1.0,
         ),
     },
     forward=forward,

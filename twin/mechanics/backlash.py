@@ -54,6 +54,7 @@ BACKLASH = Effect(
             upper=5.0,
             doc="half of the dead zone; negative: ahead of the reference",
             typical=0.1,
+            allowed=(0.0, 5.0),
         )
     },
     forward=forward,

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from twin.angles import Array, radians
+from twin.drawing import span
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
@@ -19,6 +22,11 @@ def within(order: Array) -> BoolArray:
     return np.asarray((order >= 0.3) & (order <= 0.5))
 
 
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """Any cage's order."""
+    return {"order": span(uniform[:, 2], 0.3, 0.5)}
+
+
 BEARING_WOBBLE = Effect(
     name="bearing_wobble",
     stage="mechanics",
@@ -31,6 +39,7 @@ BEARING_WOBBLE = Effect(
     forward=forward,
     needs=frozenset({"several turns"}),
     line=Line(param="order", clock="shaft", limits=lambda motion: (0.3, 0.5), within=within),
+    drawing=drawing,
     source="cage frequency of a rolling bearing, (1 - d cos(contact)/D)/2 cycles per turn: Harris, Rolling Bearing "
     "Analysis, chapter 25",
     signature="a line at a non-integer order between 0.3 and 0.5",

@@ -17,7 +17,11 @@ ZERO = Effect(
     name="zero",
     stage="mechanics",
     acts_on="field",
-    params={"zero_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="reference zero to sensor x axis")},
+    params={
+        "zero_deg": Param(
+            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="reference zero to sensor x axis", scatter=180.0
+        )
+    },
     forward=forward,
     source="definition; paper, Eq. 1: the standard angle is counted from the sensor's x axis",
     signature="order 0",

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from twin.angles import Array, radians
+from twin.drawing import log_span
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -24,6 +25,11 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     duration = float(np.ptp(motion.time_s)) or 1.0
     return [{"time_constant_s": duration * factor} for factor in (0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 30.0)]
+
+
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """From a drift that has long ended to one that is still a straight line."""
+    return {"time_constant_s": float(np.ptp(motion.time_s)) * log_span(uniform[:, 2], 0.1, 2.0)}
 
 
 ZERO_DRIFT = Effect(
@@ -47,6 +53,8 @@ ZERO_DRIFT = Effect(
     shapes=shapes,
     zoomed=("time_constant_s",),
     fitted_shapes=("time_constant_s",),
+    record_wide=True,
+    drawing=drawing,
     source="first-order relaxation (thermal settling or creep of a mount)",
     signature="order 0, monotone in time",
 )

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from twin.angles import Array, radians
+from twin.drawing import whole
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
@@ -26,6 +29,11 @@ def within(order: Array) -> BoolArray:
     return np.asarray((order >= LOWEST_ORDER) & (np.abs(order - np.round(order)) < 1e-9))
 
 
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """Any order that the readings resolve."""
+    return {"order": whole(uniform[:, 2], LOWEST_ORDER, max(LOWEST_ORDER, int(motion.points_per_turn) // 2 - 1))}
+
+
 DRIVE_RIPPLE = Effect(
     name="drive_ripple",
     stage="reference",
@@ -44,7 +52,9 @@ DRIVE_RIPPLE = Effect(
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase", role="phase"),
     },
     forward=forward,
-    line=Line(param="order", clock="shaft", limits=limits, within=within),
+    line=Line(param="order", clock="shaft", limits=limits, within=within, multiples=(2, 3, 4, 5)),
+    repeatable=True,
+    drawing=drawing,
     needs=frozenset({"one turn"}),
     source="a 2-phase stepper of 200 steps has 50 electrical periods a turn; a BLDC motor 6 x pole pairs torque ripple",
     signature="lines at p >= 20 and its multiples",

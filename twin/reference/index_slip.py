@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from twin.angles import Array, radians
+from twin.drawing import span
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -20,6 +21,12 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     rows = np.unique(np.linspace(2, len(motion) - 2, min(len(motion) - 3, 64)).astype(int))
     return [{"time_s": float(motion.time_s[row])} for row in rows]
+
+
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """Well within the record."""
+    start, end = motion.time_s[0], motion.time_s[-1]
+    return {"time_s": start + (end - start) * span(uniform[:, 2], 0.2, 0.8)}
 
 
 INDEX_SLIP = Effect(
@@ -40,6 +47,7 @@ INDEX_SLIP = Effect(
     forward=forward,
     shapes=shapes,
     zoomed=("time_s",),
+    drawing=drawing,
     needs=frozenset({"time_s"}),
     source="definition: an incremental encoder that loses or gains counts once",
     signature="a step in order 0",

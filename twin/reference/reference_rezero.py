@@ -34,6 +34,11 @@ def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]
     return {"spread_deg": (spread, spread / factor, spread * factor, "deg")}
 
 
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """The scatter alone: each sweep's own turns are drawn when it is simulated."""
+    return {"spread_deg": strength_deg}
+
+
 REFERENCE_REZERO = Effect(
     name="reference_rezero",
     stage="reference",
@@ -46,6 +51,8 @@ REFERENCE_REZERO = Effect(
     },
     forward=forward,
     derived=derived,
+    record_wide=True,
+    drawing=drawing,
     needs=frozenset({"turn", "two turns"}),
     source="definition: an incremental encoder counts from where it was switched on",
     signature="order 0, constant within a turn",

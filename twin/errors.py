@@ -5,3 +5,7 @@ from __future__ import annotations
 
 class UserError(ValueError):
     """One line: which file, row or column, what was found, what was expected, what to do. The program exits with 2."""
+
+
+class SweepError(UserError):
+    """The sweep cannot be used; the message says in one line where, what was found and what was expected."""

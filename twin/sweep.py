@@ -10,45 +10,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from twin.angles import Array, IntArray, radians, wrap_deg
-from twin.errors import UserError
+from twin.errors import SweepError
 from twin.motion import Motion
+from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, PLAUSIBLE, REQUIRED
+from twin.sweep_file import read_columns, write_columns
 
 if TYPE_CHECKING:
     from typing import Self
 
-COLUMNS = (
-    "time_s",
-    "reference_deg",
-    "measured_deg",
-    "direction",
-    "speed_rpm",
-    "turn",
-    "temperature_c",
-    "vx",
-    "vy",
-)
-REQUIRED = ("reference_deg", "measured_deg")
-MAY_BE_MISSING = frozenset({"temperature_c"})
 FEWEST_ROWS = 8
-_PLAUSIBLE = {
-    "time_s": (-1e12, 1e12),
-    "reference_deg": (-1e9, 1e9),
-    "measured_deg": (-1e9, 1e9),
-    "speed_rpm": (-1e7, 1e7),
-    "turn": (-1e9, 1e9),
-    "temperature_c": (-273.15, 1e4),
-    "vx": (-1e12, 1e12),
-    "vy": (-1e12, 1e12),
-}
 _ONE_ANGLE_DEG = 0.1
 """Angles closer than this count as one: a jig's stop, read again."""
 _FOLLOWS_DEG = 40.0
 _FOLLOWS_SHARE = 0.6
 """A sensor follows where the typical difference is below this angle, and this share of what the shaft itself did."""
-
-
-class SweepError(UserError):
-    """The sweep cannot be used; the message says in one line where, what was found and what was expected."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,14 +131,10 @@ class Sweep:
     @classmethod
     def read(cls, path: str | Path) -> Self:
         """Read a sweep file (CSV, also .gz; Parquet with pyarrow installed). Raises SweepError."""
-        from twin.sweep_file import read_columns
-
         return cls.from_columns(read_columns(Path(path)), name=Path(path).name)
 
     def write(self, path: str | Path) -> None:
         """Write the used rows as CSV (gzip where the name ends in .gz), beside and then renamed."""
-        from twin.sweep_file import write_columns
-
         write_columns(Path(path), self.columns)
 
     def motion(self) -> Motion:
@@ -186,7 +157,7 @@ def _check_plausible(key: str, values: Array, *, name: str) -> None:
         wrong = known & (np.abs(values) != 1.0)
         expected = "+1 or -1; leave the column out where the direction was not recorded"
     else:
-        low, high = _PLAUSIBLE[key]
+        low, high = PLAUSIBLE[key]
         wrong = known & ((values < low) | (values > high))
         expected = f"{low:g} to {high:g}; leave the cell empty where there is no reading"
         if key == "turn" and not wrong.any():

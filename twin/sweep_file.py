@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from twin.angles import Array
-from twin.errors import UserError
-from twin.sweep import COLUMNS, REQUIRED, SweepError
+from twin.errors import SweepError, UserError
+from twin.sweep_columns import COLUMNS, REQUIRED
 
 _BYTE_ORDER_MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 _MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "-", "inf", "+inf", "-inf", "infinity", "-infinity"})

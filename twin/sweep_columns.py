@@ -1,0 +1,30 @@
+"""The columns of a sweep: their names with units, which are required, and which values a bench can have meant."""
+
+from __future__ import annotations
+
+COLUMNS = (
+    "time_s",
+    "reference_deg",
+    "measured_deg",
+    "direction",
+    "speed_rpm",
+    "turn",
+    "temperature_c",
+    "vx",
+    "vy",
+)
+"""Every column that the project knows, in the order of the file format."""
+REQUIRED = ("reference_deg", "measured_deg")
+MAY_BE_MISSING = frozenset({"temperature_c"})
+"""Columns whose single cells may be empty: the row is used all the same."""
+PLAUSIBLE = {
+    "time_s": (-1e12, 1e12),
+    "reference_deg": (-1e9, 1e9),
+    "measured_deg": (-1e9, 1e9),
+    "speed_rpm": (-1e7, 1e7),
+    "turn": (-1e9, 1e9),
+    "temperature_c": (-273.15, 1e4),
+    "vx": (-1e12, 1e12),
+    "vy": (-1e12, 1e12),
+}
+"""Lowest and highest value of a column, in its unit; beyond them a cell is a mistake."""

@@ -37,7 +37,7 @@ def generate(
     """Write labelled training sweeps of a twin: error curves, causes, strengths and parameters, as a Zarr store."""
     from scenarios.commands.intervals import interval
     from scenarios.commands.protocol import Protocol, numbers
-    from scenarios.studies.engine import Machines
+    from scenarios.studies.machines import Machines
     from scenarios.studies.training.draw import Ranges
     from scenarios.studies.training.run import run
 
@@ -99,7 +99,7 @@ def design(
     """Find magnets and distances that keep an error over temperature and mounting tolerances, and map them."""
     from scenarios.studies.design.options import demand_of, space_of
     from scenarios.studies.design.run import run
-    from scenarios.studies.engine import Machines
+    from scenarios.studies.machines import Machines
 
     axes = {
         "diameter_mm": diameter,
@@ -140,7 +140,7 @@ def recover(
 ) -> None:
     """Map how well known parameters and hidden causes come back: bias, RMS against the bound, coverage, power."""
     from scenarios.commands.intervals import values
-    from scenarios.studies.engine import Machines
+    from scenarios.studies.machines import Machines
     from scenarios.studies.recovery.cells import Grid
     from scenarios.studies.recovery.run import run
 

@@ -1,4 +1,4 @@
-"""The engine's other half: the same chunks on a Dask distributed cluster (extra ``sweeps``).
+"""Chunks on a Dask distributed cluster (extra ``sweeps``).
 
 The workers write their chunks themselves, so a cluster of several machines needs a file system they share.
 """
@@ -8,13 +8,12 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from scenarios.studies.job import Job, do_chunk
+from scenarios.studies.machines import Machines, single_threaded
 from scenarios.studies.study_folder import StudyFolder
 from twin.errors import UserError
-
-if TYPE_CHECKING:
-    from scenarios.studies.engine import Job, Machines
 
 _AHEAD = 3
 """Chunks handed out for each worker: the scheduler is further away than a pool's queue."""
@@ -24,8 +23,6 @@ _CONNECT_S = 10.0
 @contextlib.contextmanager
 def cluster(job: Job, folder: StudyFolder, waiting: Sequence[int], machines: Machines) -> Iterator[Iterator[int]]:
     """Chunks as the cluster finishes them; a chunk whose worker died is given to another one."""
-    from scenarios.studies.engine import single_threaded
-
     with single_threaded(), _client(machines) as client:
         yield _rolling(client, job, folder, waiting)
 
@@ -57,8 +54,6 @@ def _client(machines: Machines) -> Iterator[Any]:
 def _rolling(client: Any, job: Job, folder: StudyFolder, waiting: Sequence[int]) -> Iterator[int]:
     """Keep some chunks handed out for each worker, so that neither memory nor the scheduler grows with their number."""
     from distributed import KilledWorker, as_completed
-
-    from scenarios.studies.engine import do_chunk
 
     queue = iter(waiting)
     ahead = max(_AHEAD * len(client.scheduler_info()["workers"]), _AHEAD)

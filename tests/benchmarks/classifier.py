@@ -21,7 +21,7 @@ from diagnosis.error_model.fit import fit_baseline, fit_equal
 from diagnosis.report.answer import to_json
 from scenarios.commands.explain import explain
 from scenarios.commands.protocol import Protocol
-from scenarios.studies.engine import Machines
+from scenarios.studies.machines import Machines
 from scenarios.studies.training.draw import Ranges
 from scenarios.studies.training.run import STORE, Training, generate, recipe_of
 from tests.benchmarks.classifier_features import Record, features

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.studies.engine import Machines, run_study
+from scenarios.studies.engine import run_study
+from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder
 
 CHUNKS = 12

@@ -14,7 +14,7 @@ from scenarios.studies.design.options import demand_of, space_of
 from scenarios.studies.design.run import explore, run, study_of
 from scenarios.studies.design.space import AXES
 from scenarios.studies.design.study import DesignStudy, ranking
-from scenarios.studies.engine import Machines
+from scenarios.studies.machines import Machines
 from tests.scenarios.study_jobs import content
 from twin.errors import UserError
 from twin.magnet.magnet import Magnet

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 from scenarios.studies import study_folder
-from scenarios.studies.engine import Machines, run_study
+from scenarios.studies.engine import run_study
+from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder
 from tests.scenarios.study_jobs import CHUNKS, FillsDisk, KillsItsWorker, content, study
 from twin.errors import UserError

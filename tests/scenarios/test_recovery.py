@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from diagnosis.error_model.model import Readings, from_twin_values
-from scenarios.studies.engine import Machines
+from scenarios.studies.machines import Machines
 from scenarios.studies.recovery.cells import BASELINE, SLOTS, Cell, Grid, bounds, simulate
 from scenarios.studies.recovery.run import check, recover, run
 from tests.scenarios.study_jobs import content

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from scenarios.commands.protocol import Protocol
-from scenarios.studies.engine import Machines
+from scenarios.studies.machines import Machines
 from scenarios.studies.training.draw import YARDSTICK_DEG, Ranges
 from scenarios.studies.training.run import Training, generate, parameter_names, recipe_of
 from tests.scenarios.study_jobs import content

@@ -15,7 +15,8 @@ import numpy as np
 from scenarios.studies.design.check import Check, check_design, design_twin
 from scenarios.studies.design.space import AXES, Space
 from scenarios.studies.design.study import Demand, DesignStudy, feasible, ranking
-from scenarios.studies.engine import Machines, run_study
+from scenarios.studies.engine import run_study
+from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder
 from twin.angles import Array, IntArray
 from twin.errors import UserError

@@ -73,7 +73,7 @@ class DesignStudy:
         return -(-self.space.designs // self.chunk)
 
     def write(self, folder: StudyFolder, chunk: int) -> None:
-        """See :class:`scenarios.studies.engine.Job`."""
+        """See :class:`scenarios.studies.job.Job`."""
         table, which = self.space.table()
         rows = slice(chunk * self.chunk, min((chunk + 1) * self.chunk, len(table)))
         numbers = np.arange(len(table))[rows]

@@ -80,7 +80,7 @@ class Grid:
         )
 
     def write(self, folder: StudyFolder, chunk: int) -> None:
-        """See :class:`scenarios.studies.engine.Job`."""
+        """See :class:`scenarios.studies.job.Job`."""
         cell = self.cells()[chunk]
         rows = self.baseline_rows(cell, chunk) if cell.cause == BASELINE else self.cause_rows(cell, chunk)
         folder.save(chunk, {"cell": np.full(len(rows["named"]), chunk), **rows})

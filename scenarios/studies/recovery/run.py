@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.studies.engine import Machines, run_study
+from scenarios.studies.engine import run_study
+from scenarios.studies.machines import Machines
 from scenarios.studies.recovery.cells import BASELINE, CLEAN, PARAMETERS, Cell, Grid
 from scenarios.studies.study_folder import StudyFolder
 from scenarios.studies.training.draw import drawable

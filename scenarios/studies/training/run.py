@@ -16,7 +16,8 @@ import numpy as np
 
 from scenarios.commands.protocol import Protocol
 from scenarios.commands.row_chain import row_chain
-from scenarios.studies.engine import Machines, run_study
+from scenarios.studies.engine import run_study
+from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder
 from scenarios.studies.training.draw import Draw, Ranges, draw, drawable, stripped, uniforms_needed
 from twin.angles import Array, wrap, wrap_deg
@@ -135,7 +136,7 @@ class Training:
         return arrays
 
     def write(self, folder: StudyFolder, chunk: int) -> None:
-        """See :class:`scenarios.studies.engine.Job`."""
+        """See :class:`scenarios.studies.job.Job`."""
         from scenarios.studies.training.store import write_region
 
         write_region(folder.path / STORE, self.numbers(chunk), self.arrays(chunk))

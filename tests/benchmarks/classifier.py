@@ -23,7 +23,9 @@ from scenarios.commands.explain import explain
 from scenarios.commands.protocol import Protocol
 from scenarios.studies.machines import Machines
 from scenarios.studies.training.draw import Ranges
-from scenarios.studies.training.run import STORE, Training, generate, recipe_of
+from scenarios.studies.training.job import STORE, Training
+from scenarios.studies.training.recipe import recipe_of
+from scenarios.studies.training.run import generate
 from tests.benchmarks.classifier_features import Record, features
 from tests.hidden.generator import draw
 from tests.hidden.scoring import right

@@ -11,7 +11,9 @@ import pytest
 from scenarios.commands.protocol import Protocol
 from scenarios.studies.machines import Machines
 from scenarios.studies.training.draw import YARDSTICK_DEG, Ranges
-from scenarios.studies.training.run import Training, generate, parameter_names, recipe_of
+from scenarios.studies.training.job import Training
+from scenarios.studies.training.recipe import parameter_names, recipe_of
+from scenarios.studies.training.run import generate
 from tests.scenarios.study_jobs import content
 from twin.errors import UserError
 

@@ -6,17 +6,13 @@ import shutil
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from scenarios.studies.study_folder import version
 from twin.errors import UserError
 
-if TYPE_CHECKING:
-    from scenarios.studies.training.run import Training
-
-SPLITS = ("train", "validation", "test")
+Arrays = Mapping[str, np.ndarray[Any, Any]]
 _DIMS = {
     "error_deg": ("sweep", "reading"),
     "channels": ("sweep", "channel", "reading"),
@@ -39,45 +35,34 @@ _ABOUT = {
 }
 
 
-def create(path: Path, job: Training, settings: Mapping[str, Any]) -> None:
-    """Make the store without its sweeps, whole or not at all; nothing where it is there already. Raises UserError."""
+def create(
+    path: Path,
+    one: Arrays,
+    *,
+    sweeps: int,
+    chunk: int,
+    coordinates: Arrays,
+    attributes: Mapping[str, Any],
+) -> None:
+    """Make the store without its sweeps, whole or not at all; nothing where it is there already. Raises UserError.
+
+    ``one`` holds the variables (1, ...) of a single sweep, whose shapes and types tell those of the store;
+    ``coordinates`` (n,) describe the readings; ``chunk`` sweeps are one file of each variable.
+    """
     xr, dask_array = _tools()
     if path.exists():
         return
-    from scenarios.studies.training.run import parameter_names
-
-    recipe, motion = job.recipe, job.recipe.motion
-    # The first chunk may hold all sweeps; its shapes tell those of the store.
-    one = job._part(range(1))
     variables = {
         name: (
             _DIMS[name],
-            dask_array.zeros((job.sweeps, *part.shape[1:]), chunks=(job.chunk, *part.shape[1:]), dtype=part.dtype),
+            dask_array.zeros((sweeps, *part.shape[1:]), chunks=(chunk, *part.shape[1:]), dtype=part.dtype),
             {"about": _ABOUT[name]},
         )
         for name, part in one.items()
     }
-    coordinates = {
-        "shaft_deg": ("reading", np.degrees(motion.shaft_rad)),
-        "time_s": ("reading", motion.time_s),
-        "direction": ("reading", motion.direction),
-        "speed_rpm": ("reading", motion.speed_rad_s * 30.0 / np.pi),
-        "turn": ("reading", motion.turn),
-        "temperature_c": ("reading", motion.temperature_c),
-    }
-    attributes = {
-        "schema": "halltwin.training/1",
-        "version": version(),
-        "seed": recipe.seed,
-        "twin_toml": _toml(settings["twin"]),
-        "protocol": settings["protocol"],
-        "ranges": settings["ranges"],
-        "causes": list(recipe.causes),
-        "parameters": [f"{name}.{key}" for name, key in parameter_names(recipe)],
-        "splits": list(SPLITS),
-    }
-    dataset = xr.Dataset(variables, coords=coordinates, attrs=attributes)
-    encoding = {name: {"chunks": (job.chunk, *part.shape[1:]), "_FillValue": None} for name, part in one.items()}
+    readings = {name: ("reading", values) for name, values in coordinates.items()}
+    dataset = xr.Dataset(variables, coords=readings, attrs=attributes)
+    encoding = {name: {"chunks": (chunk, *part.shape[1:]), "_FillValue": None} for name, part in one.items()}
     beside = path.with_name(f".{path.name}.part")
     shutil.rmtree(beside, ignore_errors=True)
     try:
@@ -90,19 +75,13 @@ def create(path: Path, job: Training, settings: Mapping[str, Any]) -> None:
         raise UserError(f"{path}: cannot be written ({error.strerror}); make room and run the command again") from None
 
 
-def write_region(path: Path, numbers: range, arrays: Mapping[str, np.ndarray[Any, Any]]) -> None:
+def write_region(path: Path, numbers: range, arrays: Arrays) -> None:
     """Write the sweeps with these numbers, which are one chunk of every variable. Raises OSError."""
     xr, _ = _tools()
     dataset = xr.Dataset({name: (_DIMS[name], values) for name, values in arrays.items()})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         dataset.to_zarr(path, region={"sweep": slice(numbers.start, numbers.stop)})
-
-
-def _toml(content: Mapping[str, Any]) -> str:
-    import tomli_w
-
-    return tomli_w.dumps(content)
 
 
 def _tools() -> tuple[Any, Any]:

@@ -38,6 +38,11 @@ class Chart:
         """Which way the signalled factor moves; 0 without a signal."""
         return 0 if self.signal is None else int(np.sign(self.averages[self.signal]))
 
+    @property
+    def scatter(self) -> float:
+        """Standard deviation of a value, from the differences of successive ones, which a slow drift hardly changes."""
+        return float(np.std(np.diff(self.values)) / np.sqrt(2.0))
+
 
 def chart(name: str, values: Array, *, limit: float, weight: float = WEIGHT) -> Chart:
     """The chart of one factor's values (n,), in the order in which the sweeps were taken."""

@@ -39,6 +39,8 @@ def generate(
     from scenarios.commands.protocol import Protocol, numbers
     from scenarios.studies.machines import Machines
     from scenarios.studies.training.draw import Ranges
+    from scenarios.studies.training.job import Training
+    from scenarios.studies.training.recipe import recipe_of
     from scenarios.studies.training.run import run
 
     protocol = Protocol(
@@ -49,18 +51,9 @@ def generate(
         temperatures_c=numbers("temperatures", temperatures),
     )
     ranges = Ranges(strength_deg=interval("strength", strength), noise_deg=interval("noise", noise), most=most_causes)
-    run(
-        twin,
-        output,
-        sweeps=sweeps,
-        chunk=chunk,
-        channels=channels,
-        protocol=protocol,
-        ranges=ranges,
-        causes=cause or (),
-        machines=Machines(workers=workers, scheduler=scheduler),
-        seed=seed,
-    )
+    recipe = recipe_of(twin, protocol=protocol, ranges=ranges, causes=cause or (), seed=seed)
+    job = Training(recipe=recipe, sweeps=sweeps, chunk=chunk, channels=channels)
+    run(job, output, Machines(workers=workers, scheduler=scheduler))
 
 
 def design(

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnosis.factors.series import MonitoredSeries
 from diagnosis.report.plotting import save, style
-from scenarios.commands.monitor import Monitored
 
 _LINE, _SIGNAL = "#4477aa", "#cc3311"
 
 
-def plot_charts(path: Path, found: Monitored) -> None:
+def plot_charts(path: Path, found: MonitoredSeries) -> None:
     """One row a factor: values on the left, chart on the right; a signal is marked in both."""
     plt = style(path)
     rows = len(found.charts)

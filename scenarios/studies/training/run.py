@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import tomli_w
 
-from scenarios.commands.protocol import Protocol
 from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder, version
-from scenarios.studies.training.draw import Ranges
 from scenarios.studies.training.job import STORE, Training, settings_of
-from scenarios.studies.training.recipe import Recipe, parameter_names, recipe_of
+from scenarios.studies.training.recipe import Recipe, parameter_names
 from scenarios.studies.training.store import create
 from twin.limits import require_within
 from twin.motion import Motion
@@ -67,29 +65,16 @@ def _attributes(recipe: Recipe, settings: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def run(
-    twin: str,
-    output: Path,
-    *,
-    sweeps: int,
-    chunk: int,
-    channels: bool,
-    protocol: Protocol,
-    ranges: Ranges,
-    causes: Sequence[str],
-    machines: Machines,
-    seed: int,
-) -> None:
-    """The command."""
-    require_within("sweeps", sweeps, 1, 1e9, whole=True)
-    require_within("chunk", chunk, 1, 1e6, whole=True)
-    recipe = recipe_of(twin, protocol=protocol, ranges=ranges, causes=causes, seed=seed)
-    job = Training(recipe=recipe, sweeps=sweeps, chunk=chunk, channels=channels)
+def run(job: Training, output: Path, machines: Machines) -> None:
+    """The command: write the store and say what it holds. Raises UserError."""
+    require_within("sweeps", job.sweeps, 1, 1e9, whole=True)
+    require_within("chunk", job.chunk, 1, 1e6, whole=True)
     start = time.perf_counter()
     folder = generate(job, output, machines)
     took = time.perf_counter() - start
     size = sum(item.stat().st_size for item in (folder.path / STORE).rglob("*") if item.is_file())
+    recipe = job.recipe
     print(
-        f"wrote {output / STORE}: {sweeps} sweeps of {len(recipe.motion)} readings, {len(recipe.causes)} causes, "
-        f"{size / sweeps:.0f} bytes a sweep, {took:.1f} s"
+        f"wrote {output / STORE}: {job.sweeps} sweeps of {len(recipe.motion)} readings, {len(recipe.causes)} causes, "
+        f"{size / job.sweeps:.0f} bytes a sweep, {took:.1f} s"
     )

@@ -1,0 +1,98 @@
+"""The error factors over a series of sweeps of one device: fitted sweep by sweep, each factor on a control chart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from diagnosis.error_model.fit import fit_many
+from diagnosis.error_model.result import BaselineFit
+from diagnosis.factors.control_chart import Chart, average_run_length, chart, limit_for
+from diagnosis.factors.findings import senses_from_channels
+from twin.angles import Array, radians
+from twin.sweep import FEWEST_ROWS, Sweep
+
+FEWEST_SWEEPS = 5
+"""Fewer values than this do not make a chart: the first two have nothing to be held against."""
+RUN_LENGTH = 500.0
+"""Sweeps between two false alarms, on average, unless another number is asked for."""
+_SMALLEST_RMS_RAD = 1e-12
+_FACTORS = (
+    ("Vx_over_Ax_percent", 100.0),
+    ("Vy_over_Ay_percent", 100.0),
+    ("gain_ratio", 1.0),
+    ("beta_deg", 180.0 / np.pi),
+    ("quad_percent", 100.0),
+    ("zero_deg", 180.0 / np.pi),
+)
+"""Name of each parameter of the error model on its chart, and the factor that gives it the unit of that name."""
+
+
+@dataclass(frozen=True, eq=False)
+class MonitoredSeries:
+    """Names and fits of the sweeps in order, one chart a factor and one for the RMS of the residual.
+
+    ``run_length`` is the average number of sweeps between two false alarms of all charts together.
+    """
+
+    names: tuple[str, ...]
+    fits: tuple[BaselineFit, ...]
+    charts: tuple[Chart, ...]
+    run_length: float
+
+    @property
+    def first(self) -> Chart | None:
+        """The chart that signals first; of several, the one farthest outside its limit. None where none signals."""
+        signalled = [item for item in self.charts if item.signal is not None]
+        if not signalled:
+            return None
+        return min(signalled, key=lambda item: (item.signal, -abs(item.averages[item.signal or 0])))
+
+    @property
+    def delay(self) -> float:
+        """Average number of sweeps until a lasting shift by one standard deviation is signalled."""
+        return average_run_length(self.charts[0].limit, shift=1.0)
+
+
+def monitor(sweeps: Sequence[Sweep], *, rng: np.random.Generator, run_length: float = RUN_LENGTH) -> MonitoredSeries:
+    """Fit every sweep and chart the factors in the order of the sweeps.
+
+    The false alarms of all charts together are ``run_length`` sweeps apart on average, so each single chart is given
+    a run length as many times longer as there are charts.
+    """
+    angles = [(radians(sweep.reference_deg), radians(sweep.measured_deg)) for sweep in sweeps]
+    # One pair of senses for the whole series: a pair that flips would be a jump of beta and Vy.
+    senses = senses_from_channels(sweeps[0], *angles[0])
+    if senses is None:
+        first = fit_many(angles[:1], rng=rng, robust=True)[0].senses
+        senses = first.sensor, first.output
+    fits = fit_many(angles, rng=rng, robust=True, senses=senses)
+    factors = factor_values(fits)
+    limit = limit_for(run_length * len(factors))
+    charts = tuple(chart(name, values, limit=limit) for name, values in factors.items())
+    return MonitoredSeries(tuple(sweep.name for sweep in sweeps), tuple(fits), charts, run_length)
+
+
+def factor_values(fits: Sequence[BaselineFit]) -> dict[str, Array]:
+    """Each factor of the fits in their order (sweeps,), in the unit of its name, and the log of the residual's RMS."""
+    points = np.array([fit.point for fit in fits])
+    points[:, -1] = np.unwrap(points[:, -1])
+    values: dict[str, Array] = {name: scale * points[:, k] for k, (name, scale) in enumerate(_FACTORS)}
+    values["log_residual_rms"] = np.log([max(fit.rms_rad, _SMALLEST_RMS_RAD) for fit in fits])
+    return values
+
+
+def turns_of(sweep: Sweep) -> list[Sweep]:
+    """Each turn as a sweep of its own, in order of appearance; turns with too few readings for a fit are left out."""
+    assert sweep.turn is not None
+    values, first = np.unique(sweep.turn, return_index=True)
+    parts = []
+    for value in values[np.argsort(first)]:
+        rows = sweep.turn == value
+        if np.count_nonzero(rows) >= FEWEST_ROWS:
+            columns = {item.name: getattr(sweep, item.name) for item in fields(sweep)}
+            picked = {key: data[rows] for key, data in columns.items() if isinstance(data, np.ndarray)}
+            parts.append(replace(sweep, **picked, rejected={}, name=f"turn {value:g}"))
+    return parts

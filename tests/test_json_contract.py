@@ -19,6 +19,7 @@ from twin.files import from_dict, read_twin, to_dict
 
 from .command_line import csv_text, explained, halltwin
 from .hidden.generator import draw
+from .test_nomenclature import undescribed
 
 ROOT = Path(__file__).parents[1]
 SWEEPS: dict[str, tuple[list[str], str | None, int]] = {
@@ -103,6 +104,10 @@ def test_sweep(case: str, folder: Path) -> None:
     assert all(isinstance(sweep[key], int) for key in ("rows", "used", "rejected"))
     assert sweep["turns"] == pytest.approx(hidden.truth["turns"], rel=0.02, abs=0.02)
     assert sorted(sweep["columns"]) == sorted(hidden.columns)
+
+
+def test_keys_stand_in_the_nomenclature(answer: dict[str, Any]) -> None:
+    assert undescribed(answer) == set()
 
 
 def test_baseline(answer: dict[str, Any]) -> None:

@@ -50,7 +50,7 @@ def explain(
 
 @app.command()
 def causes(
-    markdown: Annotated[bool, typer.Option("--markdown", help="As the table of the README.")] = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="As the tables of the guide.")] = False,
     effects: EffectFiles = None,
 ) -> None:
     """List the causes that the twin can simulate and the search can name."""

@@ -1,4 +1,4 @@
-"""``halltwin causes``: the catalogue, as a table in the terminal or as the README's."""
+"""``halltwin causes``: the catalogue, as a table in the terminal or as Markdown for the guide."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sweep of the README's case of an effect that no catalogue has: a gear on the shaft.
+"""The guide's sweep with an effect that no catalogue has: a gear on the shaft.
 
     python -m tests.hidden.gear_sweep -o scenarios/data/gear_sweep.csv
 

@@ -1,0 +1,78 @@
+"""What the guide shows is what the program says, and its links lead somewhere."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.command_line import halltwin
+from tests.pages import GUIDE, PAGES, ROOT, block, figures, lines, part, words
+
+OWN_PAGE = GUIDE / "own_effects.md"
+OWN = ROOT / "scenarios/data/gear_mesh.py"
+LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+
+
+def test_catalogue_is_the_generated_one() -> None:
+    assert lines(part(GUIDE / "catalogue.md", "catalogue")) == lines(halltwin("causes", "--markdown").out)
+
+
+@pytest.mark.parametrize(("name", "options"), [("unnamed", ()), ("named", ("--effects", OWN))])
+def test_own_effect_is_its_real_output(
+    name: str, options: tuple[str | Path, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The table of causes as it stands in the output, and its figures to a few percent."""
+    monkeypatch.setenv("COLUMNS", "100")
+    shown, out = block(OWN_PAGE, name), halltwin("explain", ROOT / "scenarios/data/gear_sweep.csv", *options).out
+    out = out.rstrip()
+    # lines() strips blanks at both ends of a text, so the first line's own are put aside.
+    wanted, said = words(shown), words(out)
+    wanted[0] = next(line for line in said if line.strip() == wanted[0])
+    start = said.index(wanted[0])
+    assert said[start : start + len(wanted)] == wanted
+    real = "\n".join(lines(out)[start : start + len(wanted)])
+    for told, found in zip(figures(shown), figures(real), strict=True):
+        assert told == pytest.approx(found, rel=0.03, abs=3e-4)
+
+
+@pytest.mark.parametrize(("name", "path"), [("own", OWN), ("latency", ROOT / "twin/link/latency.py")])
+def test_shown_declaration_is_the_shipped_file(name: str, path: Path) -> None:
+    assert path.read_text(encoding="utf-8").endswith(f"\n{block(OWN_PAGE, name, 'python')}\n")
+    assert "import" not in block(OWN_PAGE, name, "python")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    """To a file of the repository and, where one is named, to a heading of it; to the web only over https."""
+    for target in LINK.findall(page.read_text(encoding="utf-8")):
+        if ":" in target:
+            assert target.startswith("https://"), target
+            continue
+        name, _, heading = target.partition("#")
+        path = (page.parent / name).resolve() if name else page
+        assert path.is_relative_to(ROOT), target
+        assert path.exists(), target
+        if heading:
+            assert heading in {anchor(line) for line in path.read_text(encoding="utf-8").splitlines()}, target
+
+
+def anchor(line: str) -> str:
+    """The anchor that a Markdown heading gets on the usual hosts; "" for other lines."""
+    if not line.startswith("#"):
+        return ""
+    return re.sub(r"[^\w\- ]", "", line.lstrip("#").strip().lower()).replace(" ", "-")
+
+
+def test_index_lists_every_page() -> None:
+    listed = set(LINK.findall((GUIDE / "index.md").read_text(encoding="utf-8")))
+    assert {page.name for page in GUIDE.glob("*.md")} - {"index.md"} <= listed
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_of_the_figures_exist(page: Path) -> None:
+    """Every ``python -m`` that a page names is a module of this repository."""
+    for module in re.findall(r"python -m ([\w.]+)", page.read_text(encoding="utf-8")):
+        path = ROOT / module.replace(".", "/")
+        assert module == "venv" or path.with_suffix(".py").is_file() or (path / "__main__.py").is_file(), module

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from scenarios.cli.main import app
 from tests.command_line import halltwin
 from tests.pages import GUIDE, PAGES, ROOT, block, figures, lines, part, words
 
@@ -76,3 +77,29 @@ def test_commands_of_the_figures_exist(page: Path) -> None:
     for module in re.findall(r"python -m ([\w.]+)", page.read_text(encoding="utf-8")):
         path = ROOT / module.replace(".", "/")
         assert module == "venv" or path.with_suffix(".py").is_file() or (path / "__main__.py").is_file(), module
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_files_that_pages_name_exist(page: Path) -> None:
+    """Names in capitals stand for one of the reader's own."""
+    for name in re.findall(r"`((?:twin|diagnosis|scenarios|tests)/[^`\s]*)`", page.read_text(encoding="utf-8")):
+        assert re.search(r"\b[A-Z]{4,}\b", name) or (ROOT / name).exists(), name
+
+
+def test_folders_of_the_architecture_exist() -> None:
+    """Each line of the tree belongs to the package above it; what ends in / or .py is somewhere in there."""
+    tree = re.search("```\n(.*?)```", (GUIDE / "architecture.md").read_text(encoding="utf-8"), re.S)
+    assert tree
+    package = ROOT
+    for line in tree[1].splitlines():
+        if not line.startswith(" "):
+            package = ROOT / line.split("/")[0]
+        for name in re.findall(r"(?:^|\s)(\w+(?:/|\.py))(?=\s|$|,)", line):
+            assert package.name == name.rstrip("/") or any(package.rglob(name.rstrip("/"))), f"{package.name}: {name}"
+
+
+def test_commands_that_pages_name_exist() -> None:
+    known = {command.name or command.callback.__name__.replace("_", "-") for command in app.registered_commands}
+    for page in PAGES:
+        named = set(re.findall(r"halltwin ([a-z][a-z-]+)", page.read_text(encoding="utf-8")))
+        assert named <= known, page.name

@@ -80,7 +80,7 @@ def refuse_broken(effect: Effect, where: str) -> None:
 
 
 def unfit(effect: Effect) -> str:
-    """What keeps an effect of the user's own from being loaded, whatever it promises, in words; "" where nothing."""
+    """Why an effect of the user's own may not be loaded even if it keeps every promise, in words; "" if it may."""
     if str(effect.name).startswith(RESERVED):
         return f"names that begin with '{RESERVED}' are for structure without a name"
     if effect.baseline:
@@ -91,7 +91,7 @@ def unfit(effect: Effect) -> str:
 
 
 def _installed() -> Iterable[tuple[str, tuple[Effect, ...]]]:
-    """Where they come from and the effects, of each entry point, by package and name."""
+    """For each entry point, sorted by package and name: where it comes from, and its effects."""
     entries = metadata.entry_points(group=GROUP)
     for entry in sorted(entries, key=lambda e: (e.dist.name if e.dist else "", e.name)):
         where = f"package {entry.dist.name if entry.dist else '?'}, entry point '{entry.name}'"
@@ -107,14 +107,14 @@ def _installed() -> Iterable[tuple[str, tuple[Effect, ...]]]:
 
 
 def _effects_in(value: Any) -> tuple[Effect, ...]:
-    """The effects that a value is or holds; those of the catalogue, imported to be read, are none of the user's."""
+    """The effects that a value is or holds, without those of the catalogue, which the user's file has only imported."""
     items = value if isinstance(value, tuple | list) else (value,)
     own = tuple(item for item in items if isinstance(item, Effect))
     return tuple(effect for effect in own if not any(effect is known for known in CATALOGUE))
 
 
 def _does_not_run(path: Path, error: BaseException) -> str:
-    """The line of the file at which it failed, and how."""
+    """The message for a file that does not run: the line at which it failed, and how."""
     rows = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
     row = error.lineno if isinstance(error, SyntaxError) and error.filename == str(path) else (rows or [None])[-1]
     at = f"line {row}: " if row is not None else ""

@@ -6,6 +6,7 @@ import runpy
 import traceback
 from collections.abc import Iterable, Sequence
 from importlib import metadata
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -26,16 +27,20 @@ class EffectError(UserError):
     """An effect cannot be used; the message says in one line where it is declared, what is wrong and what to do."""
 
 
-def effects_with(files: Sequence[Path] = ()) -> tuple[Effect, ...]:
-    """The catalogue, the effects of installed packages and those of these files, in chain order.
+def effects_with(own: Sequence[str | PathLike[str] | Effect] = ()) -> tuple[Effect, ...]:
+    """The catalogue, the effects of installed packages and one's own, in chain order.
+
+    ``own`` are files that declare effects, and effects; those that are known already are not taken twice.
 
     Raises EffectError where one cannot be loaded, has a name that is taken, or breaks a promise of
     :mod:`twin.contract`.
     """
     declared = {effect.name: "the catalogue" for effect in CATALOGUE}
     found: list[Effect] = []
-    for where, effects in (*_installed(), *((path.name, effects_of(path)) for path in files)):
+    for where, effects in (*_installed(), *map(_declared, own)):
         for effect in effects:
+            if any(effect is known for known in found):
+                continue
             if effect.name in declared:
                 raise EffectError(
                     f"{where}: effect '{effect.name}' is declared by {declared[effect.name]} already; "
@@ -45,6 +50,14 @@ def effects_with(files: Sequence[Path] = ()) -> tuple[Effect, ...]:
             declared[effect.name] = where
             found.append(effect)
     return in_order((*CATALOGUE, *found)) if found else CATALOGUE
+
+
+def _declared(own: str | PathLike[str] | Effect) -> tuple[str, tuple[Effect, ...]]:
+    """Where effects of one's own come from, and which these are."""
+    if isinstance(own, Effect):
+        return "handed in", _effects_in(own)
+    path = Path(own)
+    return path.name, effects_of(path)
 
 
 def effects_of(path: Path) -> tuple[Effect, ...]:

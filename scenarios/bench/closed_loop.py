@@ -21,6 +21,7 @@ from twin.angles import Array, wrap_deg
 from twin.catalogue import CATALOGUE
 from twin.effect import Effect
 from twin.errors import UserError
+from twin.sweep import Sweep
 from twin.sweep_file import write_beside
 
 SCHEMA = "halltwin.closed_loop/1"
@@ -75,7 +76,8 @@ def run_loop(
 
     A run that was broken off in its second half goes on there.
     """
-    from diagnosis import explain
+    from diagnosis.report.answer import to_json
+    from scenarios.commands.explain import explain
     from twin.files import write_twin
 
     first = _half(job, "before")
@@ -92,11 +94,11 @@ def run_loop(
             prepare=lambda sequence: sequence.load(None),
         )
     say(f"measured {first.output.name}: {len(before.pretreated.kept)} readings")
-    found = explain(first.output, effects=effects, seed=seed)
-    answer = found.to_dict()
-    correction = correction_of(found.extended)
+    found = explain(Sweep.read(first.output), effects=effects, seed=seed)
+    answer = to_json(found)
+    correction = correction_of(found.fit.chain)
     twin_path, correction_path = part_path(job.output, "twin", ".toml"), part_path(job.output, "correction", ".toml")
-    write_twin(twin_path, found.extended)
+    write_twin(twin_path, found.fit.chain)
     _write_toml(correction_path, to_dict(correction))
     named = ", ".join(cause["name"] for cause in answer["causes"]) or "no cause beyond the paper's error model"
     say(f"explained: {answer['verdict']}: {named}; correction of {correction.series.shape[1]} orders loaded")

@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 
-from diagnosis import explain
+from scenarios.commands.explain import explain
 from twin import Chain, Motion, Sweep
 from twin.angles import TAU
 

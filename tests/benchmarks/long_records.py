@@ -48,10 +48,11 @@ def peak_mb() -> float:
 
 def explained(path: Path) -> str:
     """CPU time [s], peak memory [MB] and what was found."""
-    from diagnosis import explain
+    from diagnosis.report.answer import to_json
+    from scenarios.commands.explain import explain
 
     start = time.process_time()
-    answer = explain(path).to_dict()
+    answer = to_json(explain(Sweep.read(path)))
     names = "+".join(cause["name"] for cause in answer["causes"])
     return f"{time.process_time() - start} {peak_mb()} {names}"
 

@@ -6,6 +6,10 @@ import numpy as np
 import pytest
 
 from diagnosis.factors.control_chart import WEIGHT, average_run_length, chart, deviates, limit_for
+from diagnosis.factors.series import monitor
+from tests.diagnosis.cases import turn
+from twin.chain import Chain
+from twin.motion import Motion
 
 
 @pytest.mark.parametrize(
@@ -47,6 +51,17 @@ def test_self_starting_chart_keeps_its_run_length() -> None:
         lengths.append((400 if signal is None else signal) - 1)
     # Run lengths are nearly exponential: the mean of 150 scatters by 40/sqrt(150) = 3.3.
     assert np.mean(lengths) == pytest.approx(40.0, abs=10.0)
+
+
+@pytest.mark.parametrize("run_length", [50.0, 500.0])
+def test_charts_of_a_series_share_its_run_length(run_length: float) -> None:
+    """Charts that signal falsely once in L_k sweeps each do so once in 1 / sum(1 / L_k) sweeps together."""
+    motion = Motion.from_angle(turn(40))
+    sweeps = [Chain().with_effect("noise", rms_deg=0.02).simulate(motion, seed=k) for k in range(5)]
+    charts = monitor(sweeps, rng=np.random.default_rng(0), run_length=run_length).charts
+    assert len(charts) > 1
+    together = 1.0 / sum(1.0 / average_run_length(one.limit) for one in charts)
+    assert together == pytest.approx(run_length, rel=1e-3)
 
 
 def test_drift_is_signalled_in_its_direction() -> None:

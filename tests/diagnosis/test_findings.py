@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from diagnosis import diagnose, diagnose_many
 from diagnosis.error_model.fit import fit_baseline
-from diagnosis.error_model.model import NOMINAL, Readings
-from diagnosis.factors.air_gaps import GapSweep, laws
+from diagnosis.error_model.model import GAIN, NOMINAL, QUAD, VX, VY, Readings
+from diagnosis.factors.air_gaps import GapSweep, Law, laws
 from diagnosis.factors.channels import fit_curve, output_sense
-from diagnosis.factors.findings import curve_deg, quantify, quantify_many
+from diagnosis.factors.findings import curve_deg
 from diagnosis.factors.identifiability import HIDDEN, identifiability, invisible_count, paper_jacobian
 from diagnosis.factors.mechanical import mechanical
 from tests.diagnosis.cases import NOISE_RAD, measured, turn
@@ -139,12 +140,12 @@ def test_no_misalignment_reaches_a_gain_ratio_of_two() -> None:
 
 def test_channels_part_the_reference_from_the_sensor() -> None:
     chain = device().with_effect("reference_eccentricity", amplitude_deg=0.3, phase_deg=20.0)
-    found = quantify(sweep_of(chain, channels=True))
+    found = diagnose(sweep_of(chain, channels=True))
     assert found.added is not None
     assert found.added.beyond_order_1_deg == pytest.approx(0.3, abs=0.02)
     assert any("eccentricity" in words for words in found.sentences)
     assert found.added.curve.values[2:4] == pytest.approx([1.0, 1.01], abs=1e-3)
-    quiet = quantify(sweep_of(device(), channels=True))
+    quiet = diagnose(sweep_of(device(), channels=True))
     assert any("the reference adds nothing" in words for words in quiet.sentences)
 
 
@@ -176,13 +177,37 @@ def test_air_gaps_part_misalignment_from_electronics() -> None:
     assert laws([at(1.0, 1.0), at(0.99, 1.0)]) == ()
 
 
+@pytest.mark.parametrize(
+    ("part", "row", "null", "power", "said"),
+    [
+        ("offset", VX, 0.0, -1.0, "falls with the field"),
+        ("offset", VY, 0.0, -1.0, "falls with the field"),
+        ("gain mismatch and phase", GAIN, 1.0, 1.0, "grows with the field"),
+        ("quadratic term", QUAD, 0.0, 1.0, "grows with the field"),
+    ],
+)
+def test_an_exact_law_leaves_nothing_of_the_change(part: str, row: int, null: float, power: float, said: str) -> None:
+    """A constant voltage is a share of the signal that goes with 1/field, a square term V = a B + b B^2 one with field.
+
+    Where a part follows its law exactly, the law misses by nothing, so the change counts all by which a constant
+    share misses the values, in standard errors.
+    """
+    field, error = np.array([1.0, 0.7, 0.5, 0.4]), 1e-4
+    values = 0.01 * field**power
+    point = np.tile([0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (field.size, 1))
+    point[:, row] = null + values
+    found = laws([GapSweep(one, error**2 * np.eye(6), b) for one, b in zip(point, field, strict=True)])
+    expected = np.sqrt(np.sum((values - values.mean()) ** 2)) / error
+    assert {law.part: law for law in found}[part] == Law(part, said, pytest.approx(expected, rel=1e-9))
+
+
 def test_repeated_angles_are_not_independent() -> None:
     rng = np.random.default_rng(0)
     reference = np.repeat(turn(16), 10)
     jig = np.repeat(np.radians(0.1) * rng.standard_normal(16), 10)
     reading = measured(POINT, reference, noise=jig + NOISE_RAD * rng.standard_normal(160))
     sweep = Sweep.from_columns({"reference_deg": np.degrees(reference), "measured_deg": np.degrees(reading)})
-    found = quantify(sweep)
+    found = diagnose(sweep)
     assert found.repeated is not None
     assert "16 different angles" in found.repeated
     assert found.fit.degrees_of_freedom == 10
@@ -192,7 +217,7 @@ def test_repeated_angles_are_not_independent() -> None:
 
 def test_curve_is_the_error_of_the_fit() -> None:
     sweep = sweep_of(device())
-    found = quantify(sweep)
+    found = diagnose(sweep)
     error = sweep.measured_deg - sweep.reference_deg - found.fit.values["zero"]["zero_deg"]
     left = (error - curve_deg(found.fit, sweep.reference_deg) + 180.0) % 360.0 - 180.0
     np.testing.assert_allclose(left, np.degrees(found.fit.residual_rad), atol=1e-9)
@@ -200,7 +225,7 @@ def test_curve_is_the_error_of_the_fit() -> None:
 
 def test_many_agree_with_one() -> None:
     sweeps = [sweep_of(device(), 90 + 10 * (k % 2), channels=k == 2, seed=k) for k in range(4)]
-    for many, sweep in zip(quantify_many(sweeps), sweeps, strict=True):
-        one = quantify(sweep)
+    for many, sweep in zip(diagnose_many(sweeps), sweeps, strict=True):
+        one = diagnose(sweep)
         assert many.sweep is sweep
         np.testing.assert_allclose(many.fit.point, one.fit.point, atol=1e-8)

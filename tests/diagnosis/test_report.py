@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnosis import explain
 from diagnosis.discovery.pipeline import Discovery
+from diagnosis.report.answer import to_json
 from diagnosis.report.data import noise_level, spectrum
 from diagnosis.report.page import page, write_report
 from diagnosis.report.svg import MOST_POINTS, Axis, Layer, Plot, thinned
+from scenarios.commands.explain import explain
 from scenarios.commands.protocol import Protocol
 from twin.chain import Chain
 from twin.motion import Motion
@@ -42,8 +43,8 @@ def explained_case(name: str) -> tuple[Discovery, dict[str, Any], str]:
     motion = Protocol(turns=1, points=120, both_directions=True).motion()
     chain = Chain().with_values({**BASE, **CASES[name]})
     found = explain(chain.simulate(motion, seed=3))
-    answer = found.to_dict()
-    return found.discovery, answer, page(found.discovery, answer)
+    answer = to_json(found)
+    return found, answer, page(found, answer)
 
 
 @pytest.fixture(params=CASES)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +16,12 @@ from scenarios.studies.design.space import AXES
 from scenarios.studies.design.study import DesignStudy, ranking
 from scenarios.studies.machines import Machines
 from tests.scenarios.study_jobs import content
+from twin.angles import TAU
 from twin.errors import UserError
+from twin.magnet.assembly import Assembly
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement
+from twin.motion import Motion
 
 DEFAULT = {"diameter_mm": "6", "height_mm": "2.5", "air_gap_mm": "2"}
 
@@ -62,10 +65,53 @@ def test_the_stray_fields_error_goes_inversely_with_the_field() -> None:
     assert with_stray == pytest.approx(float(found["stray_error_deg"][3]), rel=0.05)
 
 
+@pytest.mark.parametrize("stray", ["0", "1.5"])
+def test_designs_are_driven_as_one_assembly_is(stray: str) -> None:
+    """Many designs at once give each one's own channels, hot or cold: the stray field keeps, the magnet's follows."""
+    chosen = study(air_gap_mm="1,3", off_axis_mm="0.2", stray_mT=stray)
+    table, which = chosen.space.table()
+    designs = chosen.space.assemble(table, which)
+    angle = np.linspace(0.0, TAU, 25)
+    motion = Motion.from_angle(angle, temperature_c=np.linspace(-40.0, 125.0, 25))
+    together = designs.channels(np.stack([angle, angle]), motion)
+    for number, channels in enumerate(together):
+        alone = Assembly(*(picked(part, number) for part in (designs.magnet, designs.placement)))
+        np.testing.assert_allclose(channels, alone.channels(np.stack([angle, angle]), motion), atol=1e-6)
+
+
+def picked(part: Any, number: int) -> Any:
+    """One design of a magnet or placement that holds many."""
+    columns = {item.name: getattr(part, item.name) for item in fields(part)}
+    return type(part)(**{k: v[number] if isinstance(v, np.ndarray) else v for k, v in columns.items()})
+
+
 def hot_field_error(chosen: DesignStudy) -> float:
     """Largest error [deg] of the field alone at the highest temperature, where the field is weakest."""
     hot = replace(chosen.demand, temperature_c=(25.0, 125.0))
     return float(figures(replace(chosen, demand=hot))["error_deg.field"][0])
+
+
+@pytest.mark.parametrize(
+    ("cause", "power"),
+    [
+        ("saturation", 2.0),
+        ("quadratic_nonlinearity", 1.0),
+        ("offset", -1.0),
+        ("offset_drift", -1.0),
+        ("hysteresis", -1.0),
+    ],
+)
+def test_a_causes_error_goes_with_its_power_of_the_field(cause: str, power: float) -> None:
+    """A response V = a B + b B^2 + c B^3 + V0, divided by the signal a B: the square term leaves a share that grows
+
+    with B, the cube one with B^2, a constant one that falls with B. So does a remanence, which is a constant field.
+    The error is proportional to the share but for its square: the largest here is half a percent.
+    """
+    found = figures(study(air_gap_mm="1:4:0.5"))
+    error, field = found[f"error_deg.{cause}"], found["field_mT"]
+    assert np.ptp(np.log(field)) > 1.0
+    slope = np.polyfit(np.log(field), np.log(error), 1)[0]
+    assert slope == pytest.approx(power, abs=0.01)
 
 
 def test_noise_limited_bits_follow_the_field() -> None:

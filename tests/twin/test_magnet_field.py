@@ -180,6 +180,15 @@ def test_a_weaker_hot_magnet_meets_the_same_offset() -> None:
     assert ratio == pytest.approx(1.0 / loss, rel=1e-3)
 
 
+@pytest.mark.parametrize("temperature_c", [-40.0, 25.0, 125.0])
+def test_a_stray_field_does_not_warm_up_with_the_magnet(temperature_c: float) -> None:
+    """It is a constant of the stator: it adds the same to both channels at any temperature of the magnet."""
+    motion = Motion.from_angle(TURN.shaft_rad, temperature_c=np.full(len(TURN), temperature_c))
+    own, disturbed = placed(sensor_x_mm=0.3), placed(sensor_x_mm=0.3, stray_x_mT=1.5, stray_y_mT=-0.8)
+    added = disturbed.nominal_mT * (disturbed.channels(motion) - own.channels(motion))
+    np.testing.assert_allclose(added, np.broadcast_to([[1.5], [-0.8]], added.shape), atol=1e-9)
+
+
 # ---- published figures ---------------------------------------------------------------------------------------------
 
 

@@ -1,0 +1,142 @@
+"""Mutations written by hand: each mechanism that somebody might take out without noticing."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation
+
+_SWARM = "diagnosis/error_model/swarm.py"
+_SWARM_TESTS = "tests/diagnosis/test_swarm.py"
+_BAND = "diagnosis/error_model/error_band.py"
+_DESIGN = "tests/scenarios/test_design.py"
+_GAPS = "diagnosis/factors/air_gaps.py"
+_LAW = "tests/diagnosis/test_findings.py::test_an_exact_law_leaves_nothing_of_the_change"
+
+ERROR_MODEL: tuple[Mutation, ...] = (
+    Mutation(
+        "swarm.discard",
+        _SWARM,
+        "            now[out] = np.inf\n",
+        "",
+        (f"{_SWARM_TESTS}::test_a_discarded_particle_counts_for_nothing",),
+        short=True,
+    ),
+    Mutation(
+        "swarm.discard_without_a_particle_inside",
+        _SWARM,
+        "out = outside(points) & known",
+        "out = outside(points)",
+        (f"{_SWARM_TESTS}::test_a_discarded_particle_counts_for_nothing",),
+    ),
+    Mutation(
+        "swarm.own_pull",
+        _SWARM,
+        "        velocity += pulls[0] * (own - place)\n",
+        "",
+        (f"{_SWARM_TESTS}::test_particles_move_by_equation_8",),
+        short=True,
+    ),
+    Mutation(
+        "swarm.best_pull",
+        _SWARM,
+        "        velocity += pulls[1] * (best - place)\n",
+        "",
+        (f"{_SWARM_TESTS}::test_particles_move_by_equation_8",),
+    ),
+    Mutation(
+        "swarm.inertia",
+        _SWARM,
+        "velocity *= inertia(settings, iteration - 1)",
+        "velocity *= settings.inertia_max",
+        (f"{_SWARM_TESTS}::test_particles_move_by_equation_8",),
+    ),
+    Mutation(
+        "error_band.adc",
+        _BAND,
+        "quantisation = np.sqrt(2.0) * FULL_SCALE / 2.0**adc_bits if adc_bits else 0.0",
+        "quantisation = 0.0",
+        (f"{_SWARM_TESTS}::test_delta_e_is_the_largest_deviation_of_a_simulated_sweep",),
+        short=True,
+    ),
+    Mutation(
+        "error_band.one_channel",
+        _BAND,
+        "np.sqrt(2.0) * FULL_SCALE / 2.0**adc_bits",
+        "FULL_SCALE / 2.0**adc_bits",
+        (f"{_SWARM_TESTS}::test_delta_e_is_the_largest_deviation_of_a_simulated_sweep",),
+    ),
+    Mutation(
+        "error_band.reference",
+        _BAND,
+        "float(quantisation + reference + noise + cordic + immeasurable_rad)",
+        "float(quantisation + noise + cordic + immeasurable_rad)",
+        (f"{_SWARM_TESTS}::test_delta_e_is_the_largest_deviation_of_a_simulated_sweep",),
+    ),
+    Mutation(
+        "error_band.noise",
+        _BAND,
+        "float(quantisation + reference + noise + cordic + immeasurable_rad)",
+        "float(quantisation + reference + cordic + immeasurable_rad)",
+        (f"{_SWARM_TESTS}::test_delta_e_is_the_largest_deviation_of_a_simulated_sweep",),
+    ),
+)
+
+FACTORS: tuple[Mutation, ...] = (
+    Mutation(
+        "air_gaps.falls_twice",
+        _GAPS,
+        '("falls with the field", -1.0)',
+        '("falls with the field", -2.0)',
+        (_LAW,),
+        short=True,
+    ),
+    Mutation(
+        "air_gaps.grows_twice",
+        _GAPS,
+        '("grows with the field", 1.0)',
+        '("grows with the field", 2.0)',
+        (_LAW,),
+    ),
+    Mutation(
+        "control_charts.run_length_not_shared",
+        "diagnosis/factors/series.py",
+        "limit_for(run_length * len(factors))",
+        "limit_for(run_length)",
+        ("tests/diagnosis/test_control_chart.py::test_charts_of_a_series_share_its_run_length",),
+        short=True,
+    ),
+)
+
+TWIN: tuple[Mutation, ...] = (
+    Mutation(
+        "assembly.stray_field_follows_the_magnet",
+        "twin/magnet/assembly.py",
+        "- stray[axis]) * warm + stray[axis]",
+        ") * warm",
+        ("tests/twin/test_magnet_field.py::test_a_stray_field_does_not_warm_up_with_the_magnet",),
+        short=True,
+    ),
+    Mutation(
+        "design.stray_field_follows_the_magnet",
+        "scenarios/studies/design/field.py",
+        "out = (out - stray[:, :2]) * warm[:, None] + stray[:, :2]",
+        "out = out * warm[:, None]",
+        (f"{_DESIGN}::test_designs_are_driven_as_one_assembly_is",),
+    ),
+    Mutation(
+        "design.saturation_grows_with_the_field",
+        "scenarios/studies/design/field.py",
+        '"saturation": (2.0, ("k_percent",))',
+        '"saturation": (1.0, ("k_percent",))',
+        (f"{_DESIGN}::test_a_causes_error_goes_with_its_power_of_the_field",),
+        short=True,
+    ),
+    Mutation(
+        "design.quadratic_term_keeps_its_share",
+        "scenarios/studies/design/field.py",
+        '"quadratic_nonlinearity": (1.0, ("q_percent",))',
+        '"quadratic_nonlinearity": (0.0, ("q_percent",))',
+        (f"{_DESIGN}::test_a_causes_error_goes_with_its_power_of_the_field",),
+    ),
+)
+
+BY_HAND: tuple[Mutation, ...] = (*ERROR_MODEL, *FACTORS, *TWIN)

@@ -1,0 +1,12 @@
+"""All mutations: those written by hand and those made from tables."""
+
+from __future__ import annotations
+
+from tests.mutations.by_hand import BY_HAND
+from tests.mutations.mutation import Mutation
+from tests.mutations.signs import signs
+
+
+def mutations() -> tuple[Mutation, ...]:
+    """Every mutation, those by hand first."""
+    return (*BY_HAND, *signs())

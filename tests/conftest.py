@@ -1,10 +1,18 @@
-"""For every test: numerical libraries on one thread, as the command line has them."""
+"""For every test: numerical libraries on one thread, as the command line has them, and which tests are asked for.
+
+Long studies are left out unless the marker expression asks for them (``-m study``). Tests of measured data are left out
+where these are absent, all but one, which says so.
+"""
 
 from __future__ import annotations
 
 import os
 import sys
 import warnings
+
+import pytest
+
+from tests.measured import DATA
 
 if "numpy" in sys.modules and "OPENBLAS_NUM_THREADS" not in os.environ:
     warnings.warn(
@@ -13,3 +21,19 @@ if "numpy" in sys.modules and "OPENBLAS_NUM_THREADS" not in os.environ:
         stacklevel=1,
     )
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what is not asked for or cannot run."""
+    left_out: list[pytest.Item] = []
+    if "study" not in str(config.getoption("markexpr")):
+        left_out += [item for item in items if item.get_closest_marker("study")]
+    asked = [item for item in items if item.get_closest_marker("measured") and item not in left_out]
+    if asked and not DATA.is_dir():
+        reason = f"there are no measured sweeps at {DATA}: {len(asked)} tests need them"
+        asked[0].add_marker(pytest.mark.skip(reason=reason))
+        left_out += asked[1:]
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+        gone = set(left_out)
+        items[:] = [item for item in items if item not in gone]

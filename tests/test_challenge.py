@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,17 +10,14 @@ import pytest
 from scenarios.commands.explain import explain_file
 
 from .hidden.scoring import right
+from .measured import CHALLENGE
 
-CHALLENGE = Path(__file__).parents[1] / ".." / "shared" / "data" / "challenge"
-pytestmark = pytest.mark.skipif(
-    not (CHALLENGE / "truth.json").exists(), reason="the challenge sweeps are not beside the repository"
-)
+pytestmark = pytest.mark.measured
 
 
 def truth() -> dict[str, Any]:
-    """What is hidden in each sweep, by name; nothing where the sweeps are absent."""
-    path = CHALLENGE / "truth.json"
-    content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    """What is hidden in each sweep, by name."""
+    content: dict[str, Any] = json.loads((CHALLENGE / "truth.json").read_text(encoding="utf-8"))
     return content
 
 

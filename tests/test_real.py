@@ -1,4 +1,4 @@
-"""Measured sweeps of real sensors. They are not part of the repository; where they are absent nothing is tested.
+"""Measured sweeps of real sensors. They are not part of the repository.
 
 What is known of them, and so can be asked, stands in their README: the direction effect, the zero made anew at each
 sweep, the order 4 and the glitches of the oven and room sets, the drive's ripple of one stepper.
@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 
 from .command_line import explained
+from .measured import REAL
 
-REAL = Path(__file__).parents[1] / ".." / "shared" / "data" / "real"
-pytestmark = pytest.mark.skipif(not REAL.is_dir(), reason="the measured sweeps are not beside the repository")
+pytestmark = pytest.mark.measured
 
 OVEN = ("oven_b_start1", "oven_b_start2")
 BENCH = (*OVEN, "room_repeat")
@@ -108,12 +108,8 @@ def test_gain_ratio_far_outside_the_search_range(name: str, folder: Path) -> Non
         OVEN[::-1],
     ],
 )
-def test_twin_of_one_recording_predicts_the_next(
-    first: str, second: str, folder: Path, request: pytest.FixtureRequest
-) -> None:
+def test_twin_of_one_recording_predicts_the_next(first: str, second: str, folder: Path) -> None:
     """Within half as much again of what the twin extended on the second recording itself leaves."""
-    if "study" not in str(request.config.getoption("markexpr")):
-        pytest.skip("minutes long: run with -m study")
     own = answered(folder, second)["extended"]["rms_deg"]
     answered(folder, first)
     held = explained(folder / f"{second}.csv", "--twin", folder / f"{first}.toml")

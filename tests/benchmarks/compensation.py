@@ -9,17 +9,16 @@ own zero is taken out of both. The table averages readings repeated at one angle
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 
 from diagnosis.correction.calibration import calibrate
 from diagnosis.correction.compensation import correction_of
 from diagnosis.correction.cross_validation import against
+from tests.measured import REAL
 from twin.angles import TAU, Array, radians, wrap
 from twin.sweep import Sweep
 
-REAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "real"
 FILES = (
     "jig_hall_sensor2",
     "jig_hall_sensor3",

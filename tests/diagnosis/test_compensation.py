@@ -15,8 +15,9 @@ from diagnosis.correction.compensation import Correction, correction_of, from_di
 from diagnosis.correction.compensation_c import header, sine_polynomial
 from diagnosis.correction.cross_validation import against, cross_validated, folds
 from diagnosis.error_model.model import twin_values
-from tests.benchmarks.compensation import FILES, POINTS, REAL, look_up_table, mean_of_draws
+from tests.benchmarks.compensation import FILES, POINTS, look_up_table, mean_of_draws
 from tests.diagnosis.cases import NOISE_RAD, measured, points, senses, turn
+from tests.measured import REAL
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain
 from twin.errors import UserError
@@ -166,10 +167,7 @@ def test_look_up_table_goes_through_its_points() -> None:
     assert error.rms_deg[1] < 1e-9
 
 
-real = pytest.mark.skipif(not REAL.exists(), reason=f"the measured sweeps are not at {REAL}")
-
-
-@real
+@pytest.mark.measured
 @pytest.mark.parametrize("name", ["jig_hall_sensor2", "jig_hall_sensor3", "oven_b_start1", "room_repeat"])
 @pytest.mark.parametrize("count", POINTS)
 def test_better_than_a_look_up_table_on_real_sensors(name: str, count: int) -> None:
@@ -177,7 +175,7 @@ def test_better_than_a_look_up_table_on_real_sensors(name: str, count: int) -> N
     assert ours < 1.03 * table
 
 
-@real
+@pytest.mark.measured
 @pytest.mark.study
 @pytest.mark.parametrize("name", FILES)
 def test_better_than_a_look_up_table_over_more_draws(name: str) -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import pytest
 
 from tests.command_line import halltwin
@@ -21,3 +24,17 @@ def test_example_is_its_real_output(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "100")
     assert words(shown) == words(halltwin("explain", ROOT / "scenarios/data/bench_sweep.csv").out)
     assert "hysteresis" in shown
+
+
+def test_python_lines_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """From the folder of the repository, as a reader would run them; what they might write goes elsewhere."""
+    (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(compile(block(README, "python", "python"), "README.md", "exec"), names)
+    assert "hysteresis" in capsys.readouterr().out
+    assert repr(names["found"]).startswith("Explanation('bench_sweep.csv', explained: hysteresis")
+    # Simulated again, the gain ratio comes back within two half widths of its 95 % interval: four standard errors.
+    told = names["factors"].factors["gain_ratio"]
+    truth = names["found"].extended.values["gain_mismatch"]["ratio"]
+    assert told.value == pytest.approx(truth, abs=told.high - told.low)

@@ -32,12 +32,12 @@ CATALOGUE: tuple[Effect, ...] = in_order(_DECLARED)
 
 
 def base_name(key: str) -> str:
-    """The effect's name of an instance key: ``drive_ripple#2`` is a second ``drive_ripple``."""
+    """The name of the effect that an instance key belongs to: ``drive_ripple#2`` is a second ``drive_ripple``."""
     return key.split("#", 1)[0]
 
 
 def unnamed(key: str) -> bool:
-    """Whether an instance key is of an empirical shape, for which the catalogue has no cause's name."""
+    """Whether an instance key belongs to an empirical shape: structure that has no cause's name."""
     return base_name(key).startswith("unnamed")
 
 

@@ -19,12 +19,12 @@ from twin.sweep import Sweep
 
 Values = Mapping[str, Parameters]
 SIGNALS: tuple[ActsOn, ...] = ("shaft", "field", "channels", "angle")
-"""The signals of the sensor's side, in order; a conversion follows each."""
+"""The signals on the sensor's side, in order; behind its effects each is converted to the next."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """One operation of a run: the key and effect (None for a conversion), its parameters, the signals around it."""
+    """One operation of a run: an effect or a conversion (effect None), its parameters, the signal before and after."""
 
     key: str
     effect: Effect | None
@@ -35,12 +35,12 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Effects with their parameters, and who counts which way.
+    """Effects with their parameters, and the senses in which sensor and output count.
 
     ``values`` holds the parameters of the effects that are present, by instance key; every other effect is at null
     and does nothing. ``sensor_sense`` is s of a = s theta + zero, ``output_sense`` is h of m = h atan2(y, x).
     ``magnet`` drives the channels by its computed field; without one they are the field's ideal cosine and sine.
-    ``encoder`` counts the reference's lines in a simulated record; None: it reads exactly, as an expected reading does.
+    ``encoder`` rounds the reference of a simulated record to whole counts; without one the reference reads exactly.
     ``parts`` are the scale of the signals in millitesla and volts; they change no reading.
     Immutable: the ``with_`` methods return another chain.
     """
@@ -121,7 +121,7 @@ class Chain:
             signal = after
 
     def _driven(self, angle: Array, motion: Motion) -> Array:
-        """The two channels that the field at these angles [rad] (..., 2, n) drives."""
+        """The channels in a field at these angles [rad] (..., 2, n): the magnet's field, or cosine and sine."""
         if self.magnet is None:
             return channels_of(np.cos(angle[..., :1, :]), np.sin(angle[..., 1:, :]))
         return self.magnet.channels(angle, motion)
@@ -154,9 +154,10 @@ class Chain:
         return self.parts.field_mT if self.magnet is None else self.magnet.nominal_mT
 
     def shaft(self, recorded: Motion) -> Motion:
-        """The motion whose reference readings are the shaft angles of ``recorded``: the reference's errors undone.
+        """The true motion of a recorded one: the shaft angles at which the reference reads what was recorded.
 
-        A fixed point: the errors change over a turn by much less than the angle does.
+        Found by fixed-point iteration, which converges because the reference's error changes far more slowly over a
+        turn than the angle does.
         """
         if not any(True for _ in self.active("reference")):
             return recorded

@@ -1,4 +1,4 @@
-"""What every effect promises, checked on examples: by the tests for the catalogue, by the commands for a user's own."""
+"""What every effect promises. The tests check it for the catalogue, the commands for an effect of the user's own."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from twin.effect import ActsOn, Effect, Footprint, Param, Role
 from twin.motion import Motion
 
 ROUNDING_RAD = 1e-12
-"""Angles of up to 4 pi and channels of size 1 carry some 1e-15; a few operations and the arctangent add to it."""
+"""Rounding that is allowed: a double near 4 pi carries about 1e-15, a few operations and the arctangent add to it."""
 NEEDS = frozenset(
     {
         *("time_s", "direction", "speed_rpm", "turn", "temperature_c", "vx"),
@@ -35,10 +35,10 @@ _SMOOTH: tuple[Role, ...] = ("strength", "level")
 
 @dataclass(frozen=True, kw_only=True)
 class Example:
-    """Parameters on which an effect is checked: its strengths (whatever vanishes at null), and the other ones.
+    """Parameters at which an effect is checked: ``strengths`` make it vanish at their null, ``shapes`` are all others.
 
-    ``memory``: the effect needs the order of the readings. ``origin``: from where strengths are halved, where that is
-    not null. ``power``: the error goes with strength^power.
+    ``memory``: what it does depends on the order of the readings. ``origin``: the values from which strengths are
+    scaled, where these are not null. ``power``: the error grows as this power of the strengths.
     """
 
     strengths: Mapping[str, Any]
@@ -61,7 +61,11 @@ class Example:
 
 @dataclass(frozen=True)
 class Promise:
-    """``broken`` says in words what is wrong ("": kept); ``unasked`` why it is not asked of this effect ("": it is)."""
+    """One promise.
+
+    ``broken`` returns in words what is wrong, or "" where the promise is kept; ``unasked`` returns why the promise does
+    not apply to an effect, or "" where it does.
+    """
 
     name: str
     broken: Callable[[Effect, Example, Motion], str]
@@ -70,7 +74,10 @@ class Promise:
 
 @dataclass(frozen=True)
 class Result:
-    """How an effect keeps one promise: ``said`` is what is wrong, or why it was not asked (``kept`` is None)."""
+    """Whether an effect keeps one promise; ``kept`` is None where the promise does not apply.
+
+    ``said`` is what is wrong, or why the promise does not apply.
+    """
 
     promise: str
     kept: bool | None
@@ -149,7 +156,7 @@ def _typical(param: Param) -> float:
 
 
 def check(effect: Effect, *, example: Example | None = None, motion: Motion | None = None) -> Iterator[Result]:
-    """How an effect keeps each promise. What its own code raises breaks the promise that was being checked."""
+    """Check every promise in turn; an exception in the effect's own code breaks the promise that was being checked."""
     motion = motion or full_motion()
     with np.errstate(all="ignore"):
         said = _undeclared(effect)

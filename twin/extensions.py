@@ -6,6 +6,7 @@ import runpy
 import traceback
 from collections.abc import Iterable, Sequence
 from importlib import metadata
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -26,16 +27,20 @@ class EffectError(UserError):
     """An effect cannot be used; the message says in one line where it is declared, what is wrong and what to do."""
 
 
-def effects_with(files: Sequence[Path] = ()) -> tuple[Effect, ...]:
-    """The catalogue, the effects of installed packages and those of these files, in chain order.
+def effects_with(own: Sequence[str | PathLike[str] | Effect] = ()) -> tuple[Effect, ...]:
+    """The catalogue, the effects of installed packages and one's own, in chain order.
+
+    ``own`` are files that declare effects, and effects; those that are known already are not taken twice.
 
     Raises EffectError where one cannot be loaded, has a name that is taken, or breaks a promise of
     :mod:`twin.contract`.
     """
     declared = {effect.name: "the catalogue" for effect in CATALOGUE}
     found: list[Effect] = []
-    for where, effects in (*_installed(), *((path.name, effects_of(path)) for path in files)):
+    for where, effects in (*_installed(), *map(_declared, own)):
         for effect in effects:
+            if any(effect is known for known in found):
+                continue
             if effect.name in declared:
                 raise EffectError(
                     f"{where}: effect '{effect.name}' is declared by {declared[effect.name]} already; "
@@ -45,6 +50,14 @@ def effects_with(files: Sequence[Path] = ()) -> tuple[Effect, ...]:
             declared[effect.name] = where
             found.append(effect)
     return in_order((*CATALOGUE, *found)) if found else CATALOGUE
+
+
+def _declared(own: str | PathLike[str] | Effect) -> tuple[str, tuple[Effect, ...]]:
+    """Where effects of one's own come from, and which these are."""
+    if isinstance(own, Effect):
+        return "handed in", _effects_in(own)
+    path = Path(own)
+    return path.name, effects_of(path)
 
 
 def effects_of(path: Path) -> tuple[Effect, ...]:
@@ -80,7 +93,7 @@ def refuse_broken(effect: Effect, where: str) -> None:
 
 
 def unfit(effect: Effect) -> str:
-    """What keeps an effect of the user's own from being loaded, whatever it promises, in words; "" where nothing."""
+    """Why an effect of the user's own may not be loaded even if it keeps every promise, in words; "" if it may."""
     if str(effect.name).startswith(RESERVED):
         return f"names that begin with '{RESERVED}' are for structure without a name"
     if effect.baseline:
@@ -91,7 +104,7 @@ def unfit(effect: Effect) -> str:
 
 
 def _installed() -> Iterable[tuple[str, tuple[Effect, ...]]]:
-    """Where they come from and the effects, of each entry point, by package and name."""
+    """For each entry point, sorted by package and name: where it comes from, and its effects."""
     entries = metadata.entry_points(group=GROUP)
     for entry in sorted(entries, key=lambda e: (e.dist.name if e.dist else "", e.name)):
         where = f"package {entry.dist.name if entry.dist else '?'}, entry point '{entry.name}'"
@@ -107,14 +120,14 @@ def _installed() -> Iterable[tuple[str, tuple[Effect, ...]]]:
 
 
 def _effects_in(value: Any) -> tuple[Effect, ...]:
-    """The effects that a value is or holds; those of the catalogue, imported to be read, are none of the user's."""
+    """The effects that a value is or holds, without those of the catalogue, which the user's file has only imported."""
     items = value if isinstance(value, tuple | list) else (value,)
     own = tuple(item for item in items if isinstance(item, Effect))
     return tuple(effect for effect in own if not any(effect is known for known in CATALOGUE))
 
 
 def _does_not_run(path: Path, error: BaseException) -> str:
-    """The line of the file at which it failed, and how."""
+    """The message for a file that does not run: the line at which it failed, and how."""
     rows = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
     row = error.lineno if isinstance(error, SyntaxError) and error.filename == str(path) else (rows or [None])[-1]
     at = f"line {row}: " if row is not None else ""

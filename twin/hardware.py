@@ -103,7 +103,7 @@ def run(hardware: Hardware, motion: Motion, rng: np.random.Generator | None = No
 
 
 def _flux(vertical_mT: Array, disk: Disk) -> Array:
-    """The vertical field [mT] with the disk's magnetisation levelling off."""
+    """The vertical field [mT] under a disk that saturates along a tanh curve."""
     level = disk.gain * disk.saturation_mT
     return np.asarray(level * np.tanh(vertical_mT / level))
 

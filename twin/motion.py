@@ -101,7 +101,7 @@ class Motion:
         )
 
     def part(self, rows: IntArray) -> Motion:
-        """The motion with these rows (m,) alone, turns numbered anew."""
+        """Only these rows (m,) of the motion, with the turns numbered anew."""
         return replace(
             self,
             shaft_rad=self.shaft_rad[rows],
@@ -136,7 +136,7 @@ class Motion:
 
     @cached_property
     def provides(self) -> frozenset[str]:
-        """What this motion lets one see: recorded columns and properties of the protocol."""
+        """What effects may need of a motion and this one has: recorded columns, and properties of the protocol."""
         found = set(self.columns)
         if len({way for _, _, way in self.segments}) == 2:
             found.add("both directions")

@@ -1,4 +1,4 @@
-"""Parts: what stands behind a chain in the units of the hardware, beside its magnet. The defaults are typical."""
+"""The hardware behind a chain apart from its magnet: concentrator and Hall plates, with typical figures as defaults."""
 
 from __future__ import annotations
 

@@ -23,7 +23,8 @@ _ONE_ANGLE_DEG = 0.1
 """Angles closer than this count as one: a jig's stop, read again."""
 _FOLLOWS_DEG = 40.0
 _FOLLOWS_SHARE = 0.6
-"""A sensor follows where the typical difference is below this angle, and this share of what the shaft itself did."""
+"""A sensor follows the shaft if their median difference is below this angle, and below this share of the shaft's own
+movement."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -259,7 +260,7 @@ def _spread(angle: Array) -> float:
 
 
 def _follows(measured: Array, driver: Array) -> bool:
-    """Whether one angle (n,) [deg] goes with another; over a part of a turn a constant is near to everything."""
+    """Whether one angle (n,) [deg] follows another. Over part of a turn a constant is near to any, hence the share."""
     return _distance(measured, driver) <= min(_FOLLOWS_DEG, _FOLLOWS_SHARE * _spread(driver))
 
 

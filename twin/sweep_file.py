@@ -212,7 +212,7 @@ def check_writable(path: Path) -> None:
 
 
 def _in_place(path: Path) -> bool:
-    """Whether a path leads to a device, a pipe or another file's place, which must not be replaced by a new file."""
+    """Whether a path is a device, a pipe or a link: it is to be written to, and not to be replaced by a new file."""
     return path.is_symlink() or (path.exists() and not path.is_file())
 
 

@@ -38,7 +38,7 @@ def from_table(kind: type[Part], content: Any, where: str) -> Part:
 
 
 def to_table(part: Any) -> dict[str, Any]:
-    """What of a dataclass's values differs from the defaults, as plain values."""
+    """Those values of a dataclass that differ from its defaults, as plain values."""
     default, changed = type(part)(), {}
     for item in fields(part):
         value = getattr(part, item.name)

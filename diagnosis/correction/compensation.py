@@ -94,9 +94,9 @@ def _uncorrectable(chain: Chain, key: str) -> bool:
 
 
 def _settled_turn(chain: Chain, shaft: Array, way: float, temperature_c: float) -> Array:
-    """Readings [rad] of one turn at standstill at the ascending angles (n,), arrived at from one side.
+    """Readings [rad] of one turn at standstill at the ascending angles (n,), each approached from one side.
 
-    The turn before settles what has a memory.
+    A turn runs before it, after which effects with a memory have settled.
     """
     path = np.concatenate([shaft - TAU, shaft]) if way > 0 else np.concatenate([shaft, shaft + TAU])[::-1]
     motion = Motion.from_angle(path, direction=np.full(path.size, way), temperature_c=np.full(path.size, temperature_c))

@@ -17,7 +17,7 @@ _GRID = 720
 
 @dataclass(frozen=True, eq=False)
 class BeforeAfter:
-    """Errors [rad] (n,) without and with the correction's shape; both with the zero found in calibration."""
+    """Errors [rad] (n,) before and after the correction; before it only calibration's slope and zero are applied."""
 
     before_rad: Array
     after_rad: Array
@@ -33,7 +33,7 @@ class BeforeAfter:
         return tuple(float(np.degrees(np.max(np.abs(part)))) for part in (self.before_rad, self.after_rad))  # type: ignore[return-value]
 
     def per_turn(self, turn: Array) -> BeforeAfter:
-        """The same with each turn's own zero taken out: where the reference finds its zero anew."""
+        """The same with each turn's own zero taken out: for references that find their zero anew at every turn."""
         return BeforeAfter(_without_zeros(self.before_rad, turn), _without_zeros(self.after_rad, turn))
 
 

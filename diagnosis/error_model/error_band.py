@@ -1,4 +1,4 @@
-"""Delta E of Eq. 7 from a chain's own settings, and Eq. 11 looked up at a few sentinel readings."""
+"""The error band: Delta E (Eq. 7) from the parameters of a chain, and the discard rule (Eq. 11) at a few readings."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from twin.chain import Chain
 
 SENTINELS = 32
 _REACH = 4.0
-"""How many standard deviations of what is random count as the largest deviation."""
+"""Standard deviations of a random term that count as its largest deviation."""
 
 
 def delta_e_rad(chain: Chain, *, immeasurable_rad: float = 0.0) -> float:
     """Eq. 7: quantisation + reference (Eq. 3) + immeasurable + largest CORDIC error [rad].
 
-    The printed sum mixes an RMS with maxima; here every term is a largest deviation, since Eq. 11 holds the band
-    against every single angle: half a step of each grid, four standard deviations of what is random.
+    The printed sum mixes an RMS with maxima. Eq. 11 compares the band with every single angle, so here every term is a
+    largest deviation: half a step of each grid, four standard deviations of each random term.
     """
 
     def of(effect: str, name: str, null: float = 0.0) -> float:
@@ -40,9 +40,9 @@ def delta_e_rad(chain: Chain, *, immeasurable_rad: float = 0.0) -> float:
 
 
 def outside(readings: Readings, band_rad: float) -> Callable[[Array], NDArray[np.bool_]]:
-    """Eq. 11 for a swarm on the readings (batch, n): does a point (batch, particles, 6) leave the band anywhere?
+    """The discard rule (Eq. 11) on readings (batch, n): which points (batch, particles, 6) leave the band somewhere.
 
-    Looked up at :data:`SENTINELS` readings spread over the rows, whatever their number.
+    It is checked at :data:`SENTINELS` readings spread over the rows, so that its cost does not grow with their number.
     """
     pick = np.unique(np.linspace(0, readings.count - 1, SENTINELS).astype(np.intp))
     few = readings.sweeps((slice(None), None, pick))

@@ -1,4 +1,4 @@
-"""One fit of the paper's error model: the swarm finds the valley, least squares its floor.
+"""The fit of the paper's error model: the swarm finds the neighbourhood of the minimum, least squares the minimum.
 
     from diagnosis.error_model.fit import fit_baseline
 
@@ -9,11 +9,12 @@
     fit.outliers                    # (n,) rows that robust=True left out
     fit.residual_rad                # (n,) measured - predicted, wrapped
 
-Angles (n,) in rad, any range, wrapped or not, in any order; 8 rows to millions. ``senses=(s, h)`` fixes who counts
-which way, otherwise both pairs that fit the slope are tried. ``weights`` (n,) are inverse variances up to a factor;
-a row of weight 0 is not used. ``robust=True`` leaves isolated gross errors (jumps of up to 180 deg in up to a few
-per cent of the rows) out of the fit; smooth structure, however large, is never left out. ``band_rad`` is Delta E of
-Eq. 7 (:func:`diagnosis.error_model.error_band.delta_e_rad`) and turns on the discard rule of Eq. 11.
+Angles (n,) in rad, any range, wrapped or not, in any order; 8 rows to millions. ``senses=(s, h)`` fixes the senses
+in which sensor and output count; otherwise both pairs that agree with the slope are tried. ``weights`` (n,) are
+inverse variances up to a factor; a row of weight 0 is not used. ``robust=True`` leaves isolated gross errors (jumps of
+up to 180 deg in up to a few per cent of the rows) out of the fit; smooth structure, however large, is never left out.
+``band_rad`` is Delta E of Eq. 7 (:func:`diagnosis.error_model.error_band.delta_e_rad`) and turns on the discard rule of
+Eq. 11.
 
 :func:`fit_equal` does many sweeps of equal length at once, (batch, n) each, :func:`fit_many` a list of any lengths.
 """
@@ -32,10 +33,10 @@ from diagnosis.error_model.result import BaselineFit, Contributions, SearchRange
 from twin.angles import Array
 
 QUICK = swarm.SwarmSettings(particles=32, iterations=64, stop_settled=True)
-"""Enough to find the valley; the polish does the rest. The paper's own setting is ``SwarmSettings()``."""
+"""Enough to come near the minimum; least squares does the rest. The paper's own setting is ``SwarmSettings()``."""
 
 _CLEAR_SIGMA2 = 100.0
-"""Swapped senses whose fit is worse by this many squared standard errors are not polished."""
+"""Swapped senses whose first fit is worse by this many squared standard errors are not fitted to the readings."""
 _BATCH = 128
 
 
@@ -147,7 +148,7 @@ def _fit_batch(
 def _both_senses(
     used: Readings, exact: least_squares.Polished, coarse: least_squares.Polished, swapped: least_squares.Polished
 ) -> tuple[least_squares.Polished, tuple[Array, Array], NDArray[np.bool_]]:
-    """Polish the swapped senses too where they are not clearly worse, and keep the better pair of each sweep.
+    """Fit the swapped senses to the readings too, where they are not clearly worse; keep the better pair of each sweep.
 
     Returns the better one, points (batch, 6) and costs (batch,) of the other, and where the swapped one is the better.
     """
@@ -195,7 +196,7 @@ def _results(
     other: tuple[Array, Array] | None,
     valley: Valley,
 ) -> list[BaselineFit]:
-    """One report a sweep; ``plain`` are the readings in the senses that were kept, with the caller's weights."""
+    """One result a sweep; ``plain`` are the readings in the senses that were kept, with the caller's weights."""
     batch, n = exact.points.shape[0], plain.count
     # residual() is h m - atan2(y, x): times h it is measured minus predicted.
     residual = output[:, None] * plain.residual(exact.points)
@@ -258,12 +259,12 @@ def _results(
 
 
 def _left_out(plain: Readings, counted: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Rows that the robust option left out: not those that the caller gave no weight."""
+    """Rows that the robust option left out; those to which the caller gave the weight 0 are not among them."""
     return ~counted if plain.weights is None else ~counted & (plain.weights > 0.0)
 
 
 def _inverse(curvature: Array) -> Array:
-    """Inverse of (6, 6); combinations that the readings cannot see get an enormous variance instead of a crash."""
+    """Inverse of (6, 6); combinations that the readings do not determine get an enormous variance."""
     scale = 1.0 / np.sqrt(np.maximum(np.diagonal(curvature), 1e-300))
     values, vectors = np.linalg.eigh(curvature * scale[:, None] * scale)
     return np.asarray((vectors / np.maximum(values, 1e-13)) @ vectors.T * scale[:, None] * scale)

@@ -1,4 +1,7 @@
-"""Where the minimum lies: a first look, then the swarm on the quadratic form, in a range that widens by itself."""
+"""Global search for the minimum: a first look by least squares, then the swarm, both on the quadratic form.
+
+The swarm's range is widened where its best particle stands at the edge.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +40,7 @@ class Valley:
 def search(
     readings: Readings, *, settings: swarm.SwarmSettings, rng: np.random.Generator, band_rad: float | None = None
 ) -> Valley:
-    """Swarm each sweep in Table 2's range, and again in a wider one as long as the best stands at a wall.
+    """Run each sweep's swarm in the range of Table 2, and in a wider one while its best particle stands at the edge.
 
     ``band_rad`` is the Delta E of the discard rule (Eq. 11); None leaves the rule out.
     """

@@ -17,10 +17,10 @@ def isolated(
 ) -> NDArray[np.bool_]:
     """Mask (batch, n) of isolated gross errors.
 
-    ``order`` (batch, n) sorts the readings by shaft angle; ``known`` (batch, n) marks those found before, which are
-    no witnesses for their neighbours. A reading counts when it lies more than six robust standard deviations from
-    the fit and from the median of its four neighbours, and when those share less than half of its deviation: so
-    structure, however narrow its peak, is never taken for a glitch. Rows of weight 0 are not looked at.
+    ``order`` (batch, n) sorts the readings by shaft angle; ``known`` (batch, n) marks those found before, which
+    count for nothing where their neighbours are judged. A reading is a gross error when it lies more than six robust
+    standard deviations from the fit and from the median of its four neighbours, and when those share less than half of
+    its deviation: so structure, however narrow its peak, is never taken for one. Rows of weight 0 are not looked at.
     """
     witnesses = np.take_along_axis(np.where(known, 0.0, residual_rad), order, axis=-1)
     around = np.stack([np.roll(witnesses, shift, axis=-1) for shift in (-2, -1, 1, 2)])

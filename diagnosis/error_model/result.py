@@ -1,4 +1,4 @@
-"""What a fit of the paper's error model says: values, intervals, senses, search range, and who contributed what."""
+"""The result of a fit of the paper's error model: values, intervals, senses, search range, and what each step gave."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from twin.chain import Chain
 
 @dataclass(frozen=True)
 class Senses:
-    """Who counts which way: s of a = s theta + zero, h of m = h atan2(y, x).
+    """The senses in which sensor and output count: s of a = s theta + zero, h of m = h atan2(y, x).
 
-    Their product is plain to see; which of the two pairs with that product it is shows only through the quadratic
-    term. ``other`` holds the parameters (6,) of the swapped pair, ``sigma`` says how much worse it fits, in standard
-    errors. Where the pair was given, the other one is not tried: None and infinity.
+    The slope of the readings tells their product. Which of the two pairs with that product is the right one shows only
+    through the quadratic term: ``other`` holds the parameters (6,) of the swapped pair, ``sigma`` says by how many
+    standard errors it fits worse. Where the pair was given, the other one is not tried: None and infinity.
     """
 
     sensor: int
@@ -46,9 +46,9 @@ class SearchRange:
 
 @dataclass(frozen=True)
 class Contributions:
-    """What each step brought, RMS in rad: nothing but the zero fitted, the swarm's best, after the polish.
+    """What each step of the fit gave: the RMS error [rad] with the zero alone, after the swarm, after least squares.
 
-    The first two are the swarm's own objective: sines of the angle error, weighted by r^2 (to a few per cent, RMS).
+    The first two come from the swarm's objective, sines of the angle error weighted by r^2: the RMS to a few per cent.
     """
 
     zero_only_rms_rad: float
@@ -90,7 +90,7 @@ class BaselineFit:
     degrees_of_freedom: int
     """Of sigma_rad: used rows less the six parameters."""
     settled: bool
-    """Whether the polish came to rest."""
+    """Whether least squares converged."""
 
     def __repr__(self) -> str:
         point = ", ".join(f"{name}={value:.5g}" for name, value in self.named().items())

@@ -1,4 +1,4 @@
-"""Where the swarm looks: Table 2's range, widened by itself where the best particle stands at a wall."""
+"""The range that the swarm searches: that of Table 2, widened where the best particle stands at its edge."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _FARTHEST_ZERO = np.pi
 
 @dataclass(frozen=True, eq=False)
 class Box:
-    """lower, upper (lanes, 6); half widths and which were widened, likewise; centre of the zero (lanes,)."""
+    """Search ranges, one a lane: lower, upper, half width, whether widened (lanes, 6); middle of the zero (lanes,)."""
 
     lower: Array
     upper: Array
@@ -34,13 +34,13 @@ class Box:
 
 
 def first_box(zero: Array) -> Box:
-    """Table 2's range around the zeros (lanes,)."""
+    """The range of Table 2 around these zeros (lanes,)."""
     half = np.tile(TABLE_2_HALF, (zero.size, 1))
     return _box(half, np.zeros(half.shape, dtype=bool), zero)
 
 
 def at_wall(best: Array, lower: Array, upper: Array) -> NDArray[np.bool_]:
-    """Which coordinates (lanes, 6) of the best stand at a wall that can still be moved."""
+    """Which coordinates (lanes, 6) of the best particles stand at an edge that can still be moved."""
     margin = _NEAR * (upper - lower)
     low = (best - lower <= margin) & (lower > LOWER_LIMIT)
     high = (upper - best <= margin) & (upper < UPPER_LIMIT)
@@ -50,7 +50,7 @@ def at_wall(best: Array, lower: Array, upper: Array) -> NDArray[np.bool_]:
 
 
 def widened(box: Box, walls: NDArray[np.bool_]) -> Box:
-    """The box with the marked sides (lanes, 6) moved outwards."""
+    """The ranges with the marked edges (lanes, 6) moved outwards."""
     return _box(np.where(walls, _STEP * box.half, box.half), box.widened | walls, box.zero)
 
 

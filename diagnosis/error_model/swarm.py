@@ -10,9 +10,9 @@ Repaired, because it is not printed or cannot work as printed:
 - The objective is a sum of squares: the printed signed sum (Eq. 6) lets errors cancel.
 - r1 and r2 are drawn for every coordinate, so that the swarm can turn.
 - Eq. 11 is applied once a particle inside the band is known (before that it would discard everybody). A discarded
-  particle's position counts for nothing, and the particle flies on. Setting it down elsewhere instead was tried and
-  makes the swarm shrink onto the first particle inside the band: half of the searches then failed.
-- Eq. 11 is looked up at a few sentinel readings spread over the turn: a particle outside the band there is outside it
+  particle's position counts for nothing, and the particle flies on. Setting it down elsewhere instead makes the swarm
+  shrink onto the first particle inside the band, so that searches fail.
+- Eq. 11 is checked at a few sentinel readings spread over the turn: a particle outside the band there is outside it
   for certain, and the cost stays independent of the number of readings.
 
 The search runs in coordinates that span the range with 0..1, so that every parameter moves alike.
@@ -77,7 +77,7 @@ class SwarmResult(NamedTuple):
 
 
 def inertia(settings: SwarmSettings, iteration: int) -> float:
-    """Eq. 10."""
+    """Inertia at an iteration (Eq. 10): it falls linearly from its largest to its smallest value."""
     share = (settings.iterations - iteration) / max(settings.iterations, 1)
     return share * (settings.inertia_max - settings.inertia_min) + settings.inertia_min
 

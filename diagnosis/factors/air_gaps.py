@@ -1,4 +1,4 @@
-"""What sweeps of one sensor at several air gaps add: which errors follow the field, which do not.
+"""What sweeps at several air gaps tell of one sensor: which of its errors follow the field, and which do not.
 
 The field's strength is read from the amplitude of the channels. An error of the electronics keeps its share when the
 field changes, a quadratic term grows with the field (q = K1 mag / K2), a constant voltage and a stray field weigh less
@@ -33,7 +33,7 @@ class GapSweep:
 
 @dataclass(frozen=True)
 class Law:
-    """How one part behaves over the gaps: the law that fits best, and how many sigma the law "stays" misses by."""
+    """How one factor goes with the field: the law that fits best, and by how many sigma the law "stays" fits worse."""
 
     part: str
     best: str
@@ -41,7 +41,7 @@ class Law:
 
 
 def laws(sweeps: Sequence[GapSweep]) -> tuple[Law, ...]:
-    """For each part the simplest law over the field. Empty where the amplitudes hardly differ."""
+    """The law that each factor follows, the simplest that fits. Empty where the amplitudes hardly differ."""
     strength = np.array([sweep.amplitude for sweep in sweeps])
     if len(sweeps) < 2 or np.ptp(strength) < SMALLEST_CHANGE * strength.max():
         return ()

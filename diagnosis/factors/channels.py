@@ -1,4 +1,4 @@
-"""What the raw channels add: amplitudes and offsets singly, the sense of the output, and errors free of the reference.
+"""What the raw channels add: each amplitude and offset on its own, the output's sense, errors free of the reference.
 
 The points (vx, vy) lie on a curve that no reference encoder enters: x = Vx + Ax F(cos a), y = Vy + Ay F(sin(a + beta))
 with a eliminated. What an angle shows beyond that curve sits in the reference or in the coupling.

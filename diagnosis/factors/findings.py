@@ -13,6 +13,7 @@ from diagnosis.error_model.fit import QUICK, fit_baseline, fit_equal
 from diagnosis.error_model.model import Readings
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors import channels
+from diagnosis.factors.air_gaps import GapSweep, Law, laws
 from diagnosis.factors.channels import Added
 from diagnosis.factors.identifiability import Identifiability, identifiability
 from diagnosis.factors.mechanical import Mechanical, mechanical
@@ -54,7 +55,7 @@ class Findings:
         return tuple(self.sweep.numbers[self.fit.outliers].tolist())
 
 
-def diagnose(
+def quantify(
     sweep: Sweep,
     *,
     rng: np.random.Generator | None = None,
@@ -74,10 +75,10 @@ def diagnose(
     return _findings(sweep, fit)
 
 
-def diagnose_many(
+def quantify_many(
     sweeps: Sequence[Sweep], *, rng: np.random.Generator | None = None, robust: bool = True
 ) -> list[Findings]:
-    """Diagnose many sweeps; those of equal length and senses in one batched swarm."""
+    """Fit and judge many sweeps; those of equal length and senses in one batched swarm."""
     rng = rng or np.random.default_rng(DEFAULT_SEED)
     groups: dict[tuple[int, tuple[int, int] | None], list[int]] = {}
     angles = [(radians(sweep.reference_deg), radians(sweep.measured_deg)) for sweep in sweeps]
@@ -95,6 +96,14 @@ def diagnose_many(
         )
         found.update({i: _findings(sweeps[i], fit) for i, fit in zip(indices, fits, strict=True)})
     return [found[i] for i in range(len(sweeps))]
+
+
+def gap_laws(found: Sequence[Findings]) -> tuple[Law, ...]:
+    """How the factors follow the field, where all sweeps hold raw channels of different amplitude."""
+    curves = [item.added.curve for item in found if item.added is not None]
+    if len(curves) < len(found):
+        return ()
+    return laws([GapSweep(f.fit.point, f.fit.covariance, c.amplitude) for f, c in zip(found, curves, strict=True)])
 
 
 def senses_from_channels(sweep: Sweep, reference: Array, measured: Array) -> tuple[int, int] | None:

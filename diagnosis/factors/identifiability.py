@@ -41,7 +41,7 @@ _WHAT = {
 
 @dataclass(frozen=True)
 class Profile:
-    """Where the profile likelihood of one parameter ends: 95 % limits, infinite where it never rises enough."""
+    """95 % limits of one parameter by its profile likelihood; infinite where that never falls far enough."""
 
     name: str
     low: float
@@ -131,7 +131,7 @@ def identifiability(
 
 
 def _weak(fit: BaselineFit, correlations: Array) -> NDArray[np.bool_]:
-    """Parameters (6,) whose interval a straight line may not describe: hardly seen, or nearly tied to another."""
+    """Parameters (6,) whose interval may be lopsided: hardly different from none, or nearly tied to another."""
     away = np.abs(fit.point - model.NOMINAL) / np.maximum(fit.standard_errors, 1e-300)
     away[ZERO] = np.inf
     tied = (np.abs(correlations - np.eye(6)) > _TIED).any(axis=1)

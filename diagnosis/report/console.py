@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping
 from typing import Any
 
@@ -35,6 +36,13 @@ def show(answer: Mapping[str, Any], console: Console | None = None) -> None:
         if number:
             console.print()
         console.print(part)
+
+
+def text(answer: Mapping[str, Any], *, width: int) -> str:
+    """What :func:`show` prints, in lines of this many characters, without colours."""
+    out = io.StringIO()
+    show(answer, Console(file=out, width=width, highlight=False, color_system=None, force_jupyter=False))
+    return out.getvalue().removesuffix("\n")
 
 
 def _sweep(sweep: Mapping[str, Any]) -> RenderableType:

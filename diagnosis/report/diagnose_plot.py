@@ -3,39 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnosis import Findings
 from diagnosis.error_model.model import ZERO
-from diagnosis.factors.findings import curve_deg
-from diagnosis.report.plotting import save, style
+from diagnosis.factors.findings import Findings, curve_deg
+from diagnosis.report.plotting import drawing
 from twin.angles import Array, wrap_deg
 from twin.errors import UserError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MOST_PANELS = 16
 _MOST_POINTS = 20000
 _POINT, _CURVE = "#4477aa", "#cc3311"
 
 
-def plot_fits(path: Path, found: Sequence[Findings]) -> None:
-    """One panel a sweep: measured angle error over the turn, and the curve of the fitted parameters."""
+def fitted_figure(found: Sequence[Findings]) -> Figure:
+    """One panel a sweep: measured angle error over the turn, and the curve of the fitted parameters.
+
+    Raises UserError without matplotlib, or for more sweeps than can be seen in one picture.
+    """
     if len(found) > MOST_PANELS:
-        raise UserError(f"{path.name}: {len(found)} sweeps do not fit in one picture; plot at most {MOST_PANELS}")
-    plt = style(path)
+        raise UserError(f"{len(found)} sweeps do not fit in one picture; plot at most {MOST_PANELS}")
     columns = int(np.ceil(np.sqrt(len(found))))
     rows = -(-len(found) // columns)
-    figure, axes = plt.subplots(
-        rows, columns, figsize=(max(4.2 * columns, 6.5), max(2.9 * rows, 3.8)), squeeze=False, layout="constrained"
-    )
-    for axis, item in zip(axes.flat, found, strict=False):
-        _panel(axis, item)
-    for axis in axes.flat[len(found) :]:
-        axis.set_visible(False)
-    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
-    save(figure, path)
+    with drawing() as new_figure:
+        figure = new_figure(figsize=(max(4.2 * columns, 6.5), max(2.9 * rows, 3.8)), layout="constrained")
+        axes = figure.subplots(rows, columns, squeeze=False)
+        for axis, item in zip(axes.flat, found, strict=False):
+            _panel(axis, item)
+        for axis in axes.flat[len(found) :]:
+            axis.set_visible(False)
+        figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    return figure
 
 
 def _panel(axis: Any, item: Findings) -> None:
@@ -55,22 +58,24 @@ def _panel(axis: Any, item: Findings) -> None:
     axis.grid(alpha=0.25)
 
 
-def plot_convergence(path: Path, found: Sequence[Findings]) -> None:
-    """RMS of the swarm's best and of the particles' own bests over the iterations; the polished RMS as a line."""
-    plt = style(path)
-    figure, axis = plt.subplots(figsize=(6.5, 4.0), layout="constrained")
-    for item in found:
-        steps = item.fit.contributions
-        thin = {"lw": 1.4, "alpha": max(0.9 / np.sqrt(len(found)), 0.15)}
-        first = item is found[0]
-        axis.semilogy(
-            np.degrees(steps.own_history_rad), color=_POINT, label="own bests, mean" if first else None, **thin
-        )
-        axis.semilogy(np.degrees(steps.best_history_rad), color=_CURVE, label="best of all" if first else None, **thin)
+def convergence_figure(found: Sequence[Findings]) -> Figure:
+    """RMS of the swarm's best and of the particles' own bests over the iterations; the polished RMS as a line.
+
+    Raises UserError without matplotlib.
+    """
+    with drawing() as new_figure:
+        figure = new_figure(figsize=(6.5, 4.0), layout="constrained")
+        axis = figure.subplots()
+        for number, item in enumerate(found):
+            steps = item.fit.contributions
+            own, best = ("own bests, mean", "best of all") if number == 0 else (None, None)
+            thin = {"lw": 1.4, "alpha": max(0.9 / np.sqrt(len(found)), 0.15)}
+            axis.semilogy(np.degrees(steps.own_history_rad), color=_POINT, label=own, **thin)
+            axis.semilogy(np.degrees(steps.best_history_rad), color=_CURVE, label=best, **thin)
         if len(found) == 1:
-            floor = float(np.degrees(steps.polished_rms_rad))
+            floor = float(np.degrees(found[0].fit.contributions.polished_rms_rad))
             axis.axhline(floor, color="0.3", lw=0.9, ls="--", label="after the polish")
-    axis.set(xlabel="iteration", ylabel="RMS angle error [deg]")
-    axis.grid(alpha=0.25, which="both")
-    axis.legend(frameon=True)
-    save(figure, path)
+        axis.set(xlabel="iteration", ylabel="RMS angle error [deg]")
+        axis.grid(alpha=0.25, which="both")
+        axis.legend(frameon=True)
+    return figure

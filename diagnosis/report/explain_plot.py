@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from diagnosis.discovery.pipeline import Discovery
 from diagnosis.report.facts import angle_error_deg
-from diagnosis.report.plotting import save, style
+from diagnosis.report.plotting import drawing
+from twin.angles import Array
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_DIRECTIONS = ((1.0, "#0072B2", "o", "forward"), (-1.0, "#D55E00", "^", "backward"))
 
 
-def draw(found: Discovery, path: Path) -> None:
-    """Three panels over the reference angle [deg], directions apart. Raises UserError as in report.plotting."""
-    plt = style(path)
+def residual_figure(found: Discovery) -> Figure:
+    """Three panels over the reference angle [deg], directions apart. Raises UserError without matplotlib."""
     sweep = found.sweep
     evidence = found.fit.evidence
     kept = evidence.usable[evidence.group] & ~found.masked
@@ -24,22 +29,29 @@ def draw(found: Discovery, path: Path) -> None:
         ("left by the error model", np.degrees(found.baseline.residual[0])[evidence.group][kept]),
         ("left by the extended twin", np.degrees(found.fit.residual[0])[evidence.group][kept]),
     )
-    figure, axes = plt.subplots(1, 3, figsize=(10.0, 3.2), sharex=True, layout="constrained")
-    for axis, (title, values) in zip(axes, panels, strict=True):
-        for sense, colour, mark, label in ((1.0, "#0072B2", "o", "forward"), (-1.0, "#D55E00", "^", "backward")):
-            if np.any(way == sense):
-                axis.plot(
-                    angle[way == sense], values[way == sense], mark, ms=2.2, mew=0, color=colour, label=label, alpha=0.7
-                )
-        axis.set_title(f"{title}: {np.sqrt(np.mean(values**2)):.3g} deg RMS", fontsize=9)
-        axis.set_xlabel("reference angle [deg]")
-        axis.set_xticks(range(0, 361, 90))
-        axis.grid(alpha=0.3)
-    axes[0].set_ylabel("angle error [deg]")
-    limit = 1.1 * max(float(np.max(np.abs(values))) for _, values in panels[1:])
-    for axis in axes[1:]:
-        axis.set_ylim(-limit, limit)
-    axes[0].legend(loc="best", markerscale=2.5)
-    named = ", ".join(cause.name for cause in found.causes) or "no cause"
-    figure.suptitle(f"{sweep.name}: {named}", fontsize=10)
-    save(figure, path)
+    with drawing() as new_figure:
+        figure = new_figure(figsize=(10.0, 3.2), layout="constrained")
+        axes = figure.subplots(1, 3, sharex=True)
+        for axis, (title, values) in zip(axes, panels, strict=True):
+            _panel(axis, angle, way, values, title)
+        axes[0].set_ylabel("angle error [deg]")
+        limit = 1.1 * max(float(np.max(np.abs(values))) for _, values in panels[1:])
+        for axis in axes[1:]:
+            axis.set_ylim(-limit, limit)
+        axes[0].legend(loc="best", markerscale=2.5)
+        named = ", ".join(cause.name for cause in found.causes) or "no cause"
+        figure.suptitle(f"{sweep.name}: {named}", fontsize=10)
+    return figure
+
+
+def _panel(axis: Any, angle: Array, way: Array, values: Array, title: str) -> None:
+    """Values (n,) [deg] over the angle (n,) [deg], the two directions in colours of their own."""
+    for sense, colour, mark, label in _DIRECTIONS:
+        if np.any(way == sense):
+            axis.plot(
+                angle[way == sense], values[way == sense], mark, ms=2.2, mew=0, color=colour, label=label, alpha=0.7
+            )
+    axis.set_title(f"{title}: {np.sqrt(np.mean(values**2)):.3g} deg RMS", fontsize=9)
+    axis.set_xlabel("reference angle [deg]")
+    axis.set_xticks(range(0, 361, 90))
+    axis.grid(alpha=0.3)

@@ -3,39 +3,75 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from twin.errors import UserError
 from twin.sweep_file import write_beside
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 FORMATS = (".png", ".svg", ".pdf")
+STYLE = {"svg.fonttype": "none", "svg.hashsalt": "halltwin", "font.size": 9.0}
+"""Text stays text and ids are fixed, so that the same data gives the same bytes."""
+
+
+@contextmanager
+def drawing() -> Iterator[Callable[..., Figure]]:
+    """matplotlib's ``Figure``, to be called within: the style holds as long, and pyplot knows of nothing.
+
+    Raises UserError without matplotlib.
+    """
+    matplotlib = _matplotlib()
+    from matplotlib.figure import Figure
+
+    with matplotlib.rc_context(STYLE):
+        yield Figure
+
+
+def check_format(path: Path) -> None:
+    """Raise UserError where a picture of this name cannot be drawn: its format is another, or matplotlib is absent."""
+    if path.suffix not in FORMATS:
+        raise UserError(f"{path.name}: pictures end in {', '.join(FORMATS)}; found '{path.suffix}'")
+    _matplotlib()
 
 
 def style(path: Path) -> Any:
     """matplotlib's pyplot, set up to draw files alone. Raises UserError without matplotlib or for another format."""
-    if path.suffix not in FORMATS:
-        raise UserError(f"{path.name}: pictures end in {', '.join(FORMATS)}; found '{path.suffix}'")
-    try:
-        import matplotlib
-    except ImportError:
-        raise UserError("drawing needs matplotlib; pip install 'halltwin[plot]'") from None
+    check_format(path)
+    matplotlib = _matplotlib()
     matplotlib.use("Agg")
-    # Text stays text and ids are fixed, so that the same data gives the same bytes.
-    matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "halltwin", "font.size": 9.0})
+    matplotlib.rcParams.update(STYLE)
     import matplotlib.pyplot as plt
 
     return plt
 
 
 def save(figure: Any, *paths: Path) -> None:
-    """Write the figure under each name, whole or not at all, and close it."""
+    """Write a figure of pyplot's under each name, whole or not at all, and close it."""
     import matplotlib.pyplot as plt
 
+    write_figure(figure, *paths)
+    plt.close(figure)
+
+
+def write_figure(figure: Any, *paths: Path) -> None:
+    """Write the figure under each name, whole or not at all; the same figure gives the same bytes."""
     for path in paths:
         kind = path.suffix.removeprefix(".")
         stamp = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind]
         out = io.BytesIO()
-        figure.savefig(out, format=kind, dpi=150, metadata=stamp)
+        with _matplotlib().rc_context(STYLE):
+            figure.savefig(out, format=kind, dpi=150, metadata=stamp)
         write_beside(path, out.getvalue())
-    plt.close(figure)
+
+
+def _matplotlib() -> Any:
+    try:
+        import matplotlib
+    except ImportError:
+        raise UserError("drawing needs matplotlib; pip install 'halltwin[plot]'") from None
+    return matplotlib

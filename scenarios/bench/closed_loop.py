@@ -21,7 +21,6 @@ from twin.angles import Array, wrap_deg
 from twin.catalogue import CATALOGUE
 from twin.effect import Effect
 from twin.errors import UserError
-from twin.sweep import Sweep
 from twin.sweep_file import write_beside
 
 SCHEMA = "halltwin.closed_loop/1"
@@ -76,8 +75,7 @@ def run_loop(
 
     A run that was broken off in its second half goes on there.
     """
-    from diagnosis.report.answer import to_json
-    from scenarios.commands.explain import explain
+    from diagnosis import explain
     from twin.files import write_twin
 
     first = _half(job, "before")
@@ -94,11 +92,11 @@ def run_loop(
             prepare=lambda sequence: sequence.load(None),
         )
     say(f"measured {first.output.name}: {len(before.pretreated.kept)} readings")
-    found = explain(Sweep.read(first.output), effects=effects, seed=seed)
-    answer = to_json(found)
-    correction = correction_of(found.fit.chain)
+    found = explain(first.output, effects=effects, seed=seed)
+    answer = found.to_dict()
+    correction = correction_of(found.extended)
     twin_path, correction_path = part_path(job.output, "twin", ".toml"), part_path(job.output, "correction", ".toml")
-    write_twin(twin_path, found.fit.chain)
+    write_twin(twin_path, found.extended)
     _write_toml(correction_path, to_dict(correction))
     named = ", ".join(cause["name"] for cause in answer["causes"]) or "no cause beyond the paper's error model"
     say(f"explained: {answer['verdict']}: {named}; correction of {correction.series.shape[1]} orders loaded")

@@ -1,4 +1,4 @@
-"""The command line of effects of one's own: options only, as in :mod:`scenarios.cli.main`, which takes them in."""
+"""Commands on the catalogue of effects and on effects of one's own."""
 
 from __future__ import annotations
 
@@ -7,9 +7,17 @@ from typing import Annotated
 
 import typer
 
-EffectFiles = Annotated[
-    list[Path] | None, typer.Option("--effects", help="Python file with effects of your own; may be repeated.")
-]
+from scenarios.cli.options import EffectFiles
+
+
+def causes(
+    markdown: Annotated[bool, typer.Option("--markdown", help="As the tables of the guide.")] = False,
+    effects: EffectFiles = None,
+) -> None:
+    """List the causes that the twin can simulate and the search can name."""
+    from scenarios.commands.causes import run
+
+    run(markdown=markdown, effect_files=effects or ())
 
 
 def new_effect(

@@ -1,4 +1,4 @@
-"""The command line of the studies at scale: options only, as in :mod:`scenarios.cli.main`, which takes them in."""
+"""Commands that run studies at scale: training sweeps, the choice of a magnet, what comes back of known causes."""
 
 from __future__ import annotations
 
@@ -7,16 +7,21 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import BothDirections, Points, Seed, SpeedRpm, Temperatures, Turns
-
-Workers = Annotated[int | None, typer.Option(help="Worker processes; without it one for each core.")]
-Scheduler = Annotated[
-    str | None, typer.Option(help="Hand the work to a Dask cluster: its address, or 'local' to start one.")
-]
+from scenarios.cli.options import (
+    BothDirections,
+    Points,
+    Scheduler,
+    Seed,
+    SpeedRpm,
+    StudyFolder,
+    Temperatures,
+    Turns,
+    Workers,
+)
 
 
 def generate(
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder of the study; run again to go on.")],
+    output: StudyFolder,
     sweeps: Annotated[int, typer.Option("-n", "--sweeps", help="How many sweeps.")] = 10_000,
     twin: Annotated[str, typer.Option(help="Twin TOML or preset that sweeps are drawn around.")] = "paper-encoder",
     cause: Annotated[list[str] | None, typer.Option(help="Draw only this cause; may be repeated.")] = None,
@@ -81,9 +86,7 @@ def design(
     mountings: Annotated[int, typer.Option(help="Mountings drawn for each design.")] = 200,
     min_yield: Annotated[float, typer.Option(help="Share of mountings that must keep error and window.")] = 0.99,
     best: Annotated[int, typer.Option(help="How many designs to list.")] = 10,
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder of the study; again to go on.")] = Path(
-        "design"
-    ),
+    output: StudyFolder = Path("design"),
     plot: Annotated[bool, typer.Option(help="Draw the map.")] = True,
     workers: Workers = None,
     scheduler: Scheduler = None,
@@ -118,7 +121,7 @@ def design(
 
 
 def recover(
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder of the study; run again to go on.")],
+    output: StudyFolder,
     cause: Annotated[list[str] | None, typer.Option(help="baseline, clean, or a cause; may be repeated.")] = None,
     noise: Annotated[str, typer.Option(help="RMS noise in deg.")] = "0.01,0.03,0.1",
     points: Annotated[str, typer.Option(help="Readings a turn.")] = "36,90,360",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from scenarios.commands.protocol import Protocol
@@ -13,16 +13,23 @@ from twin.reference.encoder import Encoder
 from twin.sweep import Sweep
 
 
+@dataclass(frozen=True, kw_only=True)
+class Outputs:
+    """Files to write: the sweep, and where asked for the intermediate signals as a table and as a picture."""
+
+    sweep: Path
+    trace: Path | None = None
+    plot: Path | None = None
+
+
 def run(
     twin: str,
-    output: Path,
+    outputs: Outputs,
     *,
     recorded: Path | None,
     protocol: Protocol,
     seed: int,
     reference_lines: int | None = None,
-    trace_path: Path | None = None,
-    plot_path: Path | None = None,
     effect_files: Sequence[Path] = (),
 ) -> None:
     """Simulate on the protocol, or on the motion of a recorded sweep, and write what was asked for.
@@ -35,16 +42,16 @@ def run(
     # A recorded motion holds the reference's readings: the shaft is where its errors are undone.
     motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded).motion())
     sweep = chain.simulate(motion, seed=seed)
-    sweep.write(output)
-    print(f"wrote {output} ({len(motion)} readings)")
-    if trace_path is None and plot_path is None:
+    sweep.write(outputs.sweep)
+    print(f"wrote {outputs.sweep} ({len(motion)} readings)")
+    if outputs.trace is None and outputs.plot is None:
         return
     from scenarios.commands.trace import plot_trace, trace, write_trace
 
     traced = trace(chain, motion, seed=seed)
-    if trace_path is not None:
-        write_trace(trace_path, traced)
-        print(f"wrote {trace_path}")
-    if plot_path is not None:
-        plot_trace(plot_path, traced, title=f"{Path(twin).stem}, seed {seed}")
-        print(f"wrote {plot_path}")
+    if outputs.trace is not None:
+        write_trace(outputs.trace, traced)
+        print(f"wrote {outputs.trace}")
+    if outputs.plot is not None:
+        plot_trace(outputs.plot, traced, title=f"{Path(twin).stem}, seed {seed}")
+        print(f"wrote {outputs.plot}")

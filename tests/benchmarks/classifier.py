@@ -17,9 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis import explain
 from diagnosis.error_model.fit import fit_baseline, fit_equal
-from diagnosis.report.answer import to_json
-from scenarios.commands.explain import explain
 from scenarios.commands.protocol import Protocol
 from scenarios.studies.machines import Machines
 from scenarios.studies.training.draw import Ranges
@@ -128,7 +127,7 @@ def main() -> None:
             guess = str(forest.predict(figures_of(sweep)[None])[0])
             spent["classifier"] += time.perf_counter() - start
             start = time.perf_counter()
-            answer = to_json(explain(sweep))
+            answer = explain(sweep).to_dict()
             spent["explain"] += time.perf_counter() - start
             guessed[cause] += guess == cause or guess in truth.get("tolerated", ())
             answered[cause] += right(answer, truth)

@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 
-from scenarios.commands.explain import explain
+from diagnosis import explain
 from twin import Chain, Motion, Sweep
 from twin.angles import TAU
 

@@ -14,15 +14,14 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import Fit, solve
 from diagnosis.discovery.fitting.noise_colour import colour_of
 from diagnosis.discovery.proof.family_wise import family_wise
 from diagnosis.discovery.search.likelihood_ratio import settle, take_out
 from diagnosis.discovery.search.screening import Base, screen
-from scenarios.commands.explain import explain
 from tests.hidden.generator import draw
 from twin.catalogue import CATALOGUE
-from twin.sweep import Sweep
 
 LEVELS = (0.2, 0.1, 0.05, 0.02, 0.01)
 
@@ -33,7 +32,7 @@ def baseline_of(seed: int, bench: str) -> Fit:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "sweep.csv"
         hidden.write_csv(path)
-        found = explain(Sweep.read(path))
+        found = explain(path).discovery
     fit = found.fit
     free = {one.key for one in found.baseline.free}
     for key in sorted({one.key for one in fit.free} - free):

@@ -15,12 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnosis import explain
 from diagnosis.discovery.fitting.noise_colour import Colour
 from diagnosis.discovery.pipeline import Discovery
 from diagnosis.discovery.proof.predictive_check import Likeness, likeness
 from diagnosis.discovery.search.likelihood_ratio import drop
-from diagnosis.report.answer import to_json
-from scenarios.commands.explain import explain
 from tests.hidden.scoring import verdict
 from tests.hidden.sets import Job, jobs
 from twin.sweep import Sweep
@@ -36,10 +35,10 @@ def explained(job: Job, folder: Path) -> tuple[Discovery, bool, bool, float]:
     hidden.write_csv(path)
     sweep = Sweep.read(path)
     started = time.process_time()
-    found = explain(sweep)
+    answered = explain(sweep)
     spent = time.process_time() - started
-    right = verdict(to_json(found), hidden.truth) == "right"
-    return found, right, hidden.truth["noise_kind"] in ("ar1", "pink"), spent
+    right = verdict(answered.to_dict(), hidden.truth) == "right"
+    return answered.discovery, right, hidden.truth["noise_kind"] in ("ar1", "pink"), spent
 
 
 def main() -> None:

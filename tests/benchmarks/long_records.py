@@ -48,11 +48,10 @@ def peak_mb() -> float:
 
 def explained(path: Path) -> str:
     """CPU time [s], peak memory [MB] and what was found."""
-    from diagnosis.report.answer import to_json
-    from scenarios.commands.explain import explain
+    from diagnosis import explain
 
     start = time.process_time()
-    answer = to_json(explain(Sweep.read(path)))
+    answer = explain(path).to_dict()
     names = "+".join(cause["name"] for cause in answer["causes"])
     return f"{time.process_time() - start} {peak_mb()} {names}"
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from diagnosis import explain
 from diagnosis.discovery.fitting.observations import MOST_ROWS, collect
 from diagnosis.discovery.fitting.subsample import LONGEST, STRETCHES, searched_part
-from diagnosis.report.answer import to_json
-from scenarios.commands.explain import explain
 from twin.angles import Array
 from twin.sweep import Sweep
 
@@ -40,7 +39,7 @@ def test_averaged_readings_keep_the_scatter_of_single_ones() -> None:
 
 
 def test_every_rms_of_an_averaged_sweep_is_that_of_single_readings() -> None:
-    answer = to_json(explain(_sweep(3 * MOST_ROWS, 4 * 360)))
+    answer = explain(_sweep(3 * MOST_ROWS, 4 * 360)).to_dict()
     assert answer["verdict"] == "adequate"
     for figure in (answer["baseline"]["rms_deg"], answer["extended"]["heldout_rms_deg"], answer["noise_floor_deg"]):
         assert abs(figure / NOISE_DEG - 1.0) < 0.02
@@ -75,6 +74,6 @@ def test_rows_keep_their_numbers_where_others_were_rejected() -> None:
     measured[1000] += 45.0
     read = _read({"reference_deg": sweep.reference_deg, "measured_deg": measured})
     assert list(read.rejected) == [4, 701]
-    answer = to_json(explain(read))
+    answer = explain(read).to_dict()
     glitches = [row for cause in answer["causes"] for row in cause.get("rows", [])]
     assert [*glitches, *answer["sweep"]["wild_rows"]] == [1001]

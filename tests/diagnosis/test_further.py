@@ -12,15 +12,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.further.measurements import MENU, Recording
 from diagnosis.discovery.further.power import ENOUGH_SIGMA, best, expected, separation_sigma
 from diagnosis.discovery.pipeline import Discovery
-from scenarios.commands.explain import explain
 from tests.hidden.generator import draw
 from tests.hidden.motion import Motion
 from twin import motion as twin_motion
-from twin.sweep import Sweep
 
 PLAN = {entry.name: entry.plan for entry in MENU}
 CASES = (
@@ -62,7 +61,7 @@ def test_advice_holds(
 ) -> None:
     path = tmp_path / "sweep.csv"
     draw([cause], seed=seed, strength=strength, protocol=f"{protocol}-channels").write_csv(path)
-    first = explain(Sweep.read(path))
+    first = explain(path).discovery
     (named,) = first.causes
     assert named.name == cause
     assert rival in named.rivals
@@ -81,7 +80,7 @@ def test_advice_holds(
         protocol=f"{protocol}{channels}channels",
         remeasured=planned(recording.motion),
     ).write_csv(path)
-    second = explain(Sweep.read(path))
+    second = explain(path).discovery
     assert {one.name: set(one.rivals) & set(named.rivals) for one in second.causes} == {cause: set()}
     told = separation_sigma(first.fit, named.rivals[rival], plan)
     assert achieved_sigma(second, first.fit, named.rivals[rival], recording) == pytest.approx(told, rel=0.1, abs=4.0)

@@ -13,14 +13,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.fitting.noise_colour import Colour, colour_of
 from diagnosis.discovery.pipeline import Discovery
 from diagnosis.discovery.proof.predictive_check import SWEEPS, likeness
 from diagnosis.discovery.search.likelihood_ratio import drop, settle
-from scenarios.commands.explain import explain
 from tests.hidden.generator import draw
-from twin.sweep import Sweep
 
 FIRST_SEED = 9300
 RIGHT = (
@@ -44,7 +43,7 @@ def found(cause: str, bench: str, number: int = 0) -> Discovery:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "sweep.csv"
         hidden.write_csv(path)
-        return explain(Sweep.read(path))
+        return explain(path).discovery
 
 
 def test_p_is_spread_evenly_where_the_twin_is_right() -> None:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from scenarios.commands.explain import explain
+from diagnosis import explain
 from tests.hidden.generator import draw
-from twin.sweep import Sweep
 
 
 def test_a_bump_that_one_block_holds_is_proven_on_scattered_readings(tmp_path: Path) -> None:
@@ -14,7 +13,7 @@ def test_a_bump_that_one_block_holds_is_proven_on_scattered_readings(tmp_path: P
     hidden = draw([], seed=177007036, bench="easy", structure="local_bump")
     path = tmp_path / "sweep.csv"
     hidden.write_csv(path)
-    found = explain(Sweep.read(path))
+    found = explain(path).discovery
     assert [cause.name for cause in found.causes] == ["unnamed"]
     assert found.causes[0].keys == ("unnamed_bump",)
     # What is left on unseen readings is the noise: its RMS is known to 1/sqrt(2n), five of these.

@@ -12,12 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from diagnosis import explain
 from diagnosis.discovery.pipeline import Discovery
-from diagnosis.report.answer import to_json
 from diagnosis.report.data import noise_level, spectrum
 from diagnosis.report.page import page, write_report
 from diagnosis.report.svg import MOST_POINTS, Axis, Layer, Plot, thinned
-from scenarios.commands.explain import explain
 from scenarios.commands.protocol import Protocol
 from twin.chain import Chain
 from twin.motion import Motion
@@ -43,8 +42,8 @@ def explained_case(name: str) -> tuple[Discovery, dict[str, Any], str]:
     motion = Protocol(turns=1, points=120, both_directions=True).motion()
     chain = Chain().with_values({**BASE, **CASES[name]})
     found = explain(chain.simulate(motion, seed=3))
-    answer = to_json(found)
-    return found, answer, page(found, answer)
+    answer = found.to_dict()
+    return found.discovery, answer, page(found.discovery, answer)
 
 
 @pytest.fixture(params=CASES)

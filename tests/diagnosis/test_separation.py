@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.further.measurements import FINEST_DEG, MENU, Recording
 from diagnosis.discovery.further.power import Option, advice, best, expected, separation_sigma
 from diagnosis.discovery.pipeline import Discovery
-from scenarios.commands.explain import explain
 from scenarios.commands.protocol import Protocol
 from twin.chain import Chain
 from twin.motion import Motion
@@ -98,7 +98,7 @@ def saturated(seed: int) -> Discovery:
         .with_effect("saturation", k_percent=0.6)
         .with_effect("noise", rms_deg=0.02)
     )
-    return explain(chain.simulate(ONE_WAY, seed=seed))
+    return explain(chain.simulate(ONE_WAY, seed=seed)).discovery
 
 
 def left(fit: Fit, sigma_rad: float) -> float:
@@ -150,6 +150,6 @@ def test_a_second_air_gap_parts_saturation_from_a_harmonic_of_the_magnet() -> No
 def test_what_is_told_apart_has_no_advice() -> None:
     chain = Chain().with_effect("hysteresis", lag_deg=0.15, memory_deg=15.0).with_effect("noise", rms_deg=0.01)
     dense = Protocol(turns=2, points=360, both_directions=True, channels=False).motion()
-    (cause,) = explain(chain.simulate(dense, seed=1)).causes
+    (cause,) = explain(chain.simulate(dense, seed=1)).discovery.causes
     assert not cause.rivals
     assert cause.options == ()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from scenarios.commands.protocol import Protocol
-from scenarios.commands.simulate import run
+from scenarios.commands.simulate import Outputs, run
 from scenarios.commands.trace import trace
 from twin.angles import TAU
 from twin.chain import Chain
@@ -67,7 +67,7 @@ def test_the_option_replaces_the_lines_of_the_file(tmp_path: Path) -> None:
         out = tmp_path / f"{lines}.csv"
         run(
             str(tmp_path / "twin.toml"),
-            out,
+            Outputs(sweep=out),
             recorded=None,
             protocol=Protocol(points=97),
             seed=1,

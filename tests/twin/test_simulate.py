@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from scenarios.commands.protocol import Protocol, numbers
-from scenarios.commands.simulate import run
+from scenarios.commands.simulate import Outputs, run
 from scenarios.commands.trace import trace
 from tests.benchmarks.throughput import largest_difference_deg
 from twin.angles import wrap
@@ -38,8 +38,9 @@ def test_stop_and_measure_has_no_speed() -> None:
 
 @pytest.mark.parametrize("name", preset_names())
 def test_presets_simulate_to_a_readable_sweep(name: str, tmp_path: Path) -> None:
-    run(name, tmp_path / "a.csv", recorded=None, protocol=Protocol(), seed=1, trace_path=tmp_path / "t.csv")
-    run(name, tmp_path / "b.csv", recorded=None, protocol=Protocol(), seed=1)
+    traced = Outputs(sweep=tmp_path / "a.csv", trace=tmp_path / "t.csv")
+    run(name, traced, recorded=None, protocol=Protocol(), seed=1)
+    run(name, Outputs(sweep=tmp_path / "b.csv"), recorded=None, protocol=Protocol(), seed=1)
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
     sweep = Sweep.read(tmp_path / "a.csv")
     error = wrap(np.radians(sweep.measured_deg - sweep.reference_deg))
@@ -105,7 +106,7 @@ def test_a_recorded_motion_keeps_the_reference(tmp_path: Path) -> None:
     )
     run(
         str(tmp_path / "twin.toml"),
-        tmp_path / "again.csv",
+        Outputs(sweep=tmp_path / "again.csv"),
         recorded=tmp_path / "recorded.csv",
         protocol=Protocol(),
         seed=2,
@@ -118,9 +119,8 @@ def test_a_recorded_motion_keeps_the_reference(tmp_path: Path) -> None:
 def test_draws_the_trace(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     for name in ("trace.png", "trace.svg"):
-        run(
-            "hall-misaligned", tmp_path / "s.csv", recorded=None, protocol=Protocol(), seed=0, plot_path=tmp_path / name
-        )
+        outputs = Outputs(sweep=tmp_path / "s.csv", plot=tmp_path / name)
+        run("hall-misaligned", outputs, recorded=None, protocol=Protocol(), seed=0)
         assert (tmp_path / name).stat().st_size > 5_000
 
 

@@ -21,7 +21,7 @@ Codes = NDArray[np.int64]
 
 @dataclass(frozen=True, kw_only=True)
 class Converter:
-    """What one converter does wrong; every default is the ideal one.
+    """The imperfections of one converter; by default it has none.
 
     ``gap_s``          y is converted this much after x (sequential conversion)
     ``aperture_s``     RMS of the sampling instant's jitter
@@ -29,7 +29,7 @@ class Converter:
     ``reference_rms``  white noise of the reference, relative; ``ripple`` of the reference, relative, at ``ripple_Hz``
     ``noise_rms``      white noise at the input, in the unit of the full scale
     ``inl_lsb``        bow of the transfer curve: its largest deviation, in steps; ``dnl_lsb``: RMS of the step widths
-    ``part``           which part of a batch: the seed of its step widths
+    ``part``           number of this part in its batch: the seed from which its step widths are drawn
     ``stuck_bit``      number of a bit of the offset binary code that stays at ``stuck_at``; None: none does
     ``latency_s``      from the sampling of x to the code
     """

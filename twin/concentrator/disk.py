@@ -1,4 +1,4 @@
-"""The concentrator as a disk over four plates: gain, in-plane to vertical conversion, and what its placement costs.
+"""The concentrator as a disk over four plates: gain, in-plane to vertical conversion, and errors of its placement.
 
 A soft magnetic disk draws an in-plane field in at one edge and lets it out at the other, so the vertical field under
 its edge goes with the cosine of the azimuth from the field. Two plates on opposite edges, subtracted, make a channel.

@@ -1,4 +1,4 @@
-"""Assembly: a magnet and its placement as what drives the two channels of a chain."""
+"""A magnet and its placement: the field that drives the two channels of a chain."""
 
 from __future__ import annotations
 

@@ -35,10 +35,10 @@ MT_PER_T = 1e3
 TOLERANCE = 3e-10
 """Relative to the smallest |B| of the turn."""
 ORDERS = (5, 6, 7, 8, 10, 13)
-"""Up to which orders designs are taken together."""
+"""Designs are computed in groups, by the highest order that they need: up to each of these."""
 FEWEST_NODES = 16
 CACHED = 1 << 16
-"""Numbers of a product that are kept at hand until they are written where they belong: 512 KiB."""
+"""Numbers computed at a time, so that they stay in the processor's cache: 512 KiB."""
 NODE_TOLERANCE = 1e-13
 """Of the field at one node, relative to that on the axis."""
 MOST_NODES = 64
@@ -169,7 +169,7 @@ def series_by_group(
 def _near_axis(
     magnet: Magnet, placement: Placement, rows: BoolArray, tolerance: float
 ) -> Iterator[tuple[BoolArray, Series]]:
-    """Of ``rows`` the untilted round magnets with the sensor near enough to their axis, in groups of like orders."""
+    """Series of those ``rows`` that are untilted round magnets with the sensor near their axis, in groups of orders."""
     zero = np.zeros(rows.shape)
     tilted = (placement.magnet_tilt_x_deg + zero != 0.0) | (placement.magnet_tilt_y_deg + zero != 0.0)
     if magnet.shape == "block" or not np.any(rows & ~tilted):
@@ -279,7 +279,7 @@ def _points_mm(magnet: Magnet, placement: Placement, theta: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Sense:
-    """What makes the field of a unit remanence that in the sensor's axes: arrays over all designs."""
+    """From the field of a unit remanence to the field in the sensor's axes: scale, stray field, axes of each design."""
 
     scale_mT: Array
     stray_mT: Array

@@ -1,4 +1,4 @@
-"""The reference encoder's counts and the drive's orders: what the bench's hardware says of its own ripple and steps."""
+"""Counts of an incremental reference encoder, and the orders at which a drive's ripple is to be expected."""
 
 from __future__ import annotations
 

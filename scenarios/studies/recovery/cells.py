@@ -126,12 +126,11 @@ class Grid:
         return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
     def _asked(self, cell: Cell, rng: np.random.Generator) -> dict[str, Any]:
-        from diagnosis.report.answer import to_json
-        from scenarios.commands.explain import explain
+        from diagnosis import explain
 
         motion = cell.motion()
         chain, sweep = simulate(cell, motion, rng)
-        causes = to_json(explain(sweep))["causes"]
+        causes = explain(sweep).to_dict()["causes"]
         row: dict[str, Any] = {name: np.full(SLOTS, np.nan) for name in ("truth", "found", "low", "high", "bound")}
         hit = [cell.cause in (entry["name"], *entry["indistinguishable_from"]) for entry in causes]
         row |= {"named": float(any(hit)), "extra": float(len(causes) - any(hit))}

@@ -1,0 +1,113 @@
+"""The public call for the paper's error factors: one sweep or many in, factors with their intervals out."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+
+from diagnosis.diagnosed import Diagnoses, Diagnosis
+from diagnosis.input_checks import SweepLike, as_sweep, checked_seed
+
+
+def diagnose(sweep: SweepLike, *, robust: bool = True, seed: int = 0) -> Diagnosis:
+    """Quantify the paper's error factors of a sweep, and say what each figure is worth.
+
+    What ``halltwin diagnose`` does for one sweep: a particle swarm finds the valley, least squares its floor; then
+    intervals, what these readings cannot tell, and the mechanical cause that would make the same curve. Causes beyond
+    the error model are what :func:`diagnosis.explain` looks for.
+
+    Parameters
+    ----------
+    sweep : str, os.PathLike, Sweep, or columns by name
+        The measured sweep, as :func:`diagnosis.explain` takes it.
+    robust : bool, optional
+        Leave isolated gross errors out of the fit, as the paper's pretreatment does.
+    seed : int, optional
+        Seed of the swarm, 0 or more: the same sweep and seed give the same answer, bit for bit.
+
+    Returns
+    -------
+    Diagnosis
+        The factors as text, plain values, table, picture or twin.
+
+    Raises
+    ------
+    twin.SweepError
+        Where the sweep cannot be used; a ``ValueError`` whose message says which column and row, what was found,
+        what was expected and what to do.
+
+    See Also
+    --------
+    diagnose_many : many sweeps at once.
+    diagnosis.explain : what this error model gets wrong.
+
+    References
+    ----------
+    "A Novel Diagnosis Method for a Hall Plates-Based Rotary Encoder with a Magnetic Concentrator", Sensors 2014,
+    14(8), 13980-13998, https://doi.org/10.3390/s140813980.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from diagnosis import diagnose
+    >>> from twin import Chain, Motion
+    >>> motion = Motion.from_angle(np.radians(np.arange(0.0, 360.0, 2.0)))
+    >>> sensor = Chain().with_effect("offset", x_percent=0.8, y_percent=-0.5).with_effect("noise", rms_deg=0.01)
+    >>> found = diagnose(sensor.simulate(motion, seed=1))
+    >>> x = found.factors["Vx_over_Ax"]
+    >>> x.low < 0.008 < x.high
+    True
+    """
+    return diagnose_many([sweep], robust=robust, seed=seed)[0]
+
+
+def diagnose_many(sweeps: Iterable[SweepLike], *, robust: bool = True, seed: int = 0) -> Diagnoses:
+    """Quantify the paper's error factors of many sweeps; those of equal length in one swarm.
+
+    Parameters
+    ----------
+    sweeps : iterable of sweeps
+        Measured sweeps, each as :func:`diagnosis.explain` takes it.
+    robust : bool, optional
+        Leave isolated gross errors out of the fits.
+    seed : int, optional
+        Seed of the swarm, 0 or more.
+
+    Returns
+    -------
+    Diagnoses
+        A sequence of :class:`Diagnosis`, and what the sweeps say together.
+
+    Raises
+    ------
+    twin.SweepError
+        Where one of the sweeps cannot be used, as in :func:`diagnose`.
+    twin.errors.UserError
+        Where there is no sweep.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from diagnosis import diagnose_many
+    >>> from twin import Chain, Motion
+    >>> motion = Motion.from_angle(np.radians(np.arange(0.0, 360.0, 2.0)))
+    >>> sensor = Chain().with_effect("gain_mismatch", ratio=1.01).with_effect("noise", rms_deg=0.01)
+    >>> found = diagnose_many(sensor.simulate(motion, seed=seed) for seed in range(3))
+    >>> [round(one.factors["gain_ratio"].value, 3) for one in found]
+    [1.01, 1.01, 1.01]
+    """
+    import numpy as np
+
+    from diagnosis.blas_threads import one_blas_thread
+    from diagnosis.factors.findings import quantify_many
+    from twin.errors import UserError
+    from twin.sweep import Sweep
+
+    rng = np.random.default_rng(checked_seed(seed))
+    if isinstance(sweeps, str | os.PathLike | Sweep) or hasattr(sweeps, "keys"):
+        raise UserError("found a single sweep where several are expected; give a list of sweeps, or call diagnose")
+    read = [as_sweep(sweep) for sweep in sweeps]
+    if not read:
+        raise UserError("found no sweep; give at least one")
+    with one_blas_thread():
+        return Diagnoses(tuple(Diagnosis(one) for one in quantify_many(read, rng=rng, robust=robust)))

@@ -1,0 +1,155 @@
+"""The public call: a sweep in, what the simulation gets wrong about it out."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, TypeAlias
+
+from diagnosis.explanation import Explanation
+from diagnosis.input_checks import SweepLike, as_sweep, checked_seed
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from diagnosis.discovery.pipeline import Discovery
+    from twin.chain import Chain
+    from twin.effect import Effect
+    from twin.sweep import Sweep
+
+OwnEffects: TypeAlias = "str | os.PathLike[str] | Effect | Sequence[str | os.PathLike[str] | Effect]"
+"""Causes of one's own: files that declare them, or effects; one or several."""
+
+
+def explain(
+    sweep: SweepLike,
+    *,
+    twin: str | os.PathLike[str] | Chain | None = None,
+    effects: OwnEffects = (),
+    seed: int = 0,
+) -> Explanation:
+    """Say what the simulation gets wrong about a measured sweep, by name, with proof; or that nothing is wrong.
+
+    What ``halltwin explain`` does: the paper's error model is fitted, what it leaves is searched for causes, each
+    cause is judged on readings that no fit has seen, and the twin is extended by those that stand.
+
+    Parameters
+    ----------
+    sweep : str, os.PathLike, Sweep, or columns by name
+        The measured sweep: a file (CSV, ``.csv.gz``, Parquet), a :class:`twin.Sweep`, a pandas DataFrame, a dict of
+        arrays, or an xarray Dataset. Columns bear the names of the file format, with their units:
+        ``reference_deg`` and ``measured_deg``, and where recorded ``time_s``, ``direction``, ``speed_rpm``, ``turn``,
+        ``temperature_c``, ``vx`` and ``vy``; one value for each reading, in the order in which they were taken.
+    twin : str, os.PathLike, or Chain, optional
+        Hold the sweep against this twin as it is, instead of the paper's error model: a twin file (TOML), or a
+        :class:`twin.Chain` such as the ``extended`` one of another recording. Only its zeros are fitted.
+    effects : str, os.PathLike, Effect, or a sequence of these, optional
+        Causes of your own, which are searched beside the catalogue and the installed ones: Python files that
+        declare them, or :class:`twin.Effect` objects.
+    seed : int, optional
+        Seed of everything random, 0 or more: the same sweep and seed give the same answer, bit for bit.
+
+    Returns
+    -------
+    Explanation
+        Verdict, causes and extended twin, as text, JSON, table, picture or report.
+
+    Raises
+    ------
+    twin.SweepError
+        Where the sweep cannot be used; a ``ValueError`` whose message says which column and row, what was found,
+        what was expected and what to do.
+    twin.errors.UserError
+        The same, where the twin or an effect cannot be used. Also a ``ValueError``.
+
+    Notes
+    -----
+    Linear algebra runs on one thread meanwhile: the matrices are small, and more threads take more time.
+
+    References
+    ----------
+    "A Novel Diagnosis Method for a Hall Plates-Based Rotary Encoder with a Magnetic Concentrator", Sensors 2014,
+    14(8), 13980-13998, https://doi.org/10.3390/s140813980: the error model that the search sets out from.
+
+    Examples
+    --------
+    A simulated sensor lags behind the field by hysteresis, which shows when the shaft turns there and back:
+
+    >>> import numpy as np
+    >>> from diagnosis import explain
+    >>> from twin import Chain, Motion
+    >>> there = np.arange(0.0, 720.0, 2.0)
+    >>> motion = Motion.from_angle(np.radians(np.concatenate([there, there[::-1]])))
+    >>> sensor = Chain().with_effect("hysteresis", lag_deg=0.12, memory_deg=8.0).with_effect("noise", rms_deg=0.02)
+    >>> found = explain(sensor.simulate(motion, seed=1))
+    >>> found.verdict
+    'explained'
+    >>> [cause.name for cause in found.causes]
+    ['hysteresis']
+    """
+    import numpy as np
+
+    from diagnosis.blas_threads import one_blas_thread
+
+    rng = np.random.default_rng(checked_seed(seed))
+    searched = _searched(effects, twin)
+    given = _given(twin, searched)
+    read = as_sweep(sweep)
+    with one_blas_thread():
+        return Explanation(_discovery(read, given=given, effects=searched, rng=rng))
+
+
+def _discovery(
+    sweep: Sweep, *, given: Chain | None, effects: tuple[Effect, ...], rng: np.random.Generator
+) -> Discovery:
+    """The search, from the fitted error model or from a given twin."""
+    from dataclasses import replace
+
+    import numpy as np
+
+    from diagnosis.discovery.fitting.initial_fit import senses_of_channels
+    from diagnosis.discovery.fitting.subsample import searched_part
+    from diagnosis.discovery.pipeline import discover
+    from diagnosis.error_model.fit import fit_baseline
+
+    sweep = searched_part(sweep)
+    if given is not None:
+        return discover(sweep, start=given, given=given, effects=effects, rng=rng)
+    fit = fit_baseline(
+        np.radians(sweep.reference_deg),
+        np.radians(sweep.measured_deg),
+        rng=rng,
+        senses=senses_of_channels(sweep),
+        robust=True,
+    )
+    return discover(sweep, start=replace(fit.chain(), effects=effects), effects=effects, rng=rng)
+
+
+def _searched(own: OwnEffects, twin: str | os.PathLike[str] | Chain | None) -> tuple[Effect, ...]:
+    """The catalogue with the installed effects, one's own, and those that a given chain brings along."""
+    from twin.catalogue import in_order
+    from twin.chain import Chain
+    from twin.effect import Effect
+    from twin.extensions import effects_with
+
+    effects = effects_with((own,) if isinstance(own, str | os.PathLike | Effect) else tuple(own))
+    known = {effect.name for effect in effects}
+    brought = [effect for effect in twin.effects if effect.name not in known] if isinstance(twin, Chain) else []
+    return in_order((*effects, *brought)) if brought else effects
+
+
+def _given(twin: str | os.PathLike[str] | Chain | None, effects: tuple[Effect, ...]) -> Chain | None:
+    """The twin that the sweep is held against, with these effects. Raises UserError where it is none."""
+    from dataclasses import replace
+
+    from twin.chain import Chain
+    from twin.errors import UserError
+    from twin.files import read_twin
+
+    if twin is None:
+        return None
+    if isinstance(twin, Chain):
+        return replace(twin, effects=effects)
+    if not isinstance(twin, str | os.PathLike):
+        raise UserError(f"twin is of the type {type(twin).__name__}; expected the path of a twin file, or a Chain")
+    return read_twin(os.fspath(twin), effects=effects)

@@ -1,0 +1,143 @@
+"""What may be handed in: a sweep as a file, a Sweep, or columns by name, checked as those of a file are; a seed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from decimal import Decimal
+from numbers import Real
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+
+if TYPE_CHECKING:
+    from twin.angles import Array
+    from twin.sweep import Sweep
+
+_MISSING = frozenset({"NoneType", "NAType", "NaTType"})
+"""Types of a cell that holds no reading: None, and what pandas puts there."""
+
+
+class Columns(Protocol):
+    """Columns by name: a dict of arrays, a pandas DataFrame, an xarray Dataset, an opened .npz file."""
+
+    def keys(self) -> Iterable[Any]:
+        """The names."""
+        ...
+
+    def __getitem__(self, name: Any, /) -> Any:
+        """The column of this name: one number a reading."""
+        ...
+
+
+SweepLike: TypeAlias = "str | os.PathLike[str] | Sweep | Columns"
+"""What :func:`diagnosis.explain` and :func:`diagnosis.diagnose` take as a sweep."""
+
+
+def as_sweep(source: SweepLike) -> Sweep:
+    """The sweep that is meant.
+
+    Parameters
+    ----------
+    source : str, os.PathLike, Sweep, or columns by name
+        A file (CSV, ``.csv.gz``, Parquet); a :class:`twin.Sweep`, taken as it is; or anything that has ``keys()`` and
+        gives a column for each: a dict of arrays, a pandas DataFrame (levels of its index count as columns where
+        they bear the name of one), an xarray Dataset (coordinates count as columns). Names and units are those of
+        the file format; other columns are ignored. A missing cell is NaN, None or what pandas puts there.
+
+    Returns
+    -------
+    twin.Sweep
+        Its checked columns; rows with missing cells are rejected, and listed in ``rejected`` by their number.
+
+    Raises
+    ------
+    twin.SweepError
+        A ``ValueError``: where it cannot be used as a sweep. The message says in one line which column and row,
+        what was found, what was expected and what to do.
+    """
+    from twin.errors import SweepError
+    from twin.sweep import Sweep
+    from twin.sweep_columns import COLUMNS, REQUIRED
+
+    if isinstance(source, Sweep):
+        return source
+    if isinstance(source, str | os.PathLike):
+        return Sweep.read(os.fspath(source))
+    name = type(source).__name__
+    if not (hasattr(source, "keys") and hasattr(source, "__getitem__")):
+        raise SweepError(
+            f"found {_article(name)} where a sweep is expected; give a path, a Sweep, or columns by name "
+            "(dict of arrays, pandas DataFrame, xarray Dataset)"
+        )
+    table = _with_index(source, COLUMNS)
+    names = _names(table)
+    for needed in REQUIRED:
+        if needed not in names:
+            found = ", ".join(map(str, names)) or "no column"
+            raise SweepError(f"{name}: column {needed} is missing; found {found}; rename the column or add it")
+    columns = {key: _values(table[key], f"{name}: column {key}") for key in COLUMNS if key in names}
+    rows = columns[REQUIRED[0]].size
+    for key, values in columns.items():
+        if values.size != rows:
+            raise SweepError(
+                f"{name}: column {key} holds {values.size} values and {REQUIRED[0]} {rows}; "
+                "expected one for each reading, NaN where there is none"
+            )
+    return Sweep.from_columns(columns, name=name)
+
+
+def checked_seed(seed: int) -> int:
+    """The seed of a call of the interface. Raises UserError where it is none."""
+    from twin.errors import UserError
+
+    if isinstance(seed, bool) or not hasattr(seed, "__index__") or seed.__index__() < 0:
+        raise UserError(f"seed is {seed!r}; expected a whole number, 0 or more")
+    return seed.__index__()
+
+
+def _with_index(source: Any, known: Iterable[str]) -> Any:
+    """A DataFrame with the levels of its index as columns where one bears the name of a column; others unchanged."""
+    levels = getattr(getattr(source, "index", None), "names", ())
+    return source.reset_index() if any(level in known for level in levels) else source
+
+
+def _names(source: Any) -> list[Any]:
+    """The names of the columns, those of a Dataset's coordinates included."""
+    return list(dict.fromkeys([*source.keys(), *getattr(source, "coords", ())]))
+
+
+def _values(column: Any, where: str) -> Array:
+    """A column's numbers (n,), NaN where there is none. Raises SweepError for what is no number."""
+    import numpy as np
+
+    from twin.errors import SweepError
+
+    cells = np.asarray(column)
+    if isinstance(column, np.ma.MaskedArray):
+        cells = cells.astype(object)
+        cells[np.ma.getmaskarray(column)] = None
+    if cells.ndim != 1:
+        raise SweepError(f"{where} has the shape {cells.shape}; expected one number for each reading, in one dimension")
+    if cells.dtype.kind in "iuf":
+        return cells.astype(np.float64)
+    if cells.dtype.kind in "mM":
+        raise SweepError(f"{where} holds times of the type {cells.dtype}; expected plain numbers: convert to seconds")
+    return np.array([_cell(cell, row, where) for row, cell in enumerate(cells.tolist(), 1)], dtype=np.float64)
+
+
+def _cell(cell: Any, row: int, where: str) -> float:
+    """The number of one cell."""
+    from twin.errors import SweepError
+
+    if type(cell).__name__ in _MISSING:
+        return float("nan")
+    if isinstance(cell, Real | Decimal) and not isinstance(cell, bool):
+        return float(cell)
+    shown = repr(cell)
+    raise SweepError(
+        f"{where}, row {row}: found {shown if len(shown) <= 40 else shown[:40] + '...'} ({type(cell).__name__}); "
+        "expected a number, or NaN where a reading is missing: convert the column"
+    )
+
+
+def _article(name: str) -> str:
+    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"

@@ -1,0 +1,104 @@
+"""The factors of diagnosed sweeps as plain values: the JSON of ``halltwin diagnose`` (schema halltwin.diagnose/1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from diagnosis.error_model.model import BETA, NAMES, ZERO
+from diagnosis.factors.air_gaps import Law
+from diagnosis.factors.findings import Findings
+
+SCHEMA = "halltwin.diagnose/1"
+PUBLIC = ("Vx_over_Ax", "Vy_over_Ay", "gain_ratio", "beta_deg", "quad", "zero_deg")
+"""The six parameters as an answer names them, in the order of :data:`diagnosis.error_model.model.NAMES`."""
+_IN_DEGREES = (BETA, ZERO)
+
+
+def to_json(found: Sequence[Findings], over_gaps: Sequence[Law]) -> dict[str, Any]:
+    """The answer to one or many sweeps, with the laws that their factors follow over the air gaps."""
+    return {
+        "schema": SCHEMA,
+        "sweeps": [one_sweep(item) for item in found],
+        "air_gaps": [dict(vars(law)) for law in over_gaps],
+    }
+
+
+def one_sweep(found: Findings) -> dict[str, Any]:
+    """One sweep's factors; an infinite limit is null."""
+    fit = found.fit
+    answer: dict[str, Any] = {
+        "sweep": found.sweep.name,
+        "rows": found.sweep.rows,
+        "rejected": len(found.sweep.rejected),
+        "glitch_rows": list(found.glitch_rows),
+        "parameters": parameters(found),
+        "senses": {
+            "sensor": fit.senses.sensor,
+            "output": fit.senses.output,
+            "decided": fit.senses.matters,
+            "sigma": _finite(fit.senses.sigma),
+        },
+        "rms_deg": _degrees(fit.rms_rad),
+        "steps": _steps(found),
+        "search": {"rounds": fit.search.rounds, "widened": [PUBLIC[NAMES.index(n)] for n in fit.search.widened]},
+        "correlations": [[_finite(v) for v in row] for row in found.identifiability.correlations],
+        "covered_deg": found.identifiability.covered_deg,
+        "mechanical": dict(vars(found.mechanical)),
+        "sentences": list(found.sentences),
+    }
+    if found.added is not None:
+        curve = found.added.curve
+        answer["channels"] = {
+            **{name: float(curve.values[k]) for k, name in enumerate(("Vx", "Vy", "Ax", "Ay"))},
+            "beyond_order_1_deg": found.added.beyond_order_1_deg,
+            "beyond_order_2_deg": found.added.beyond_order_2_deg,
+        }
+    return answer
+
+
+def parameters(found: Findings) -> dict[str, dict[str, Any]]:
+    """The six parameters with their 95 % intervals, and the profile's limits where the interval is not symmetric."""
+    fit = found.fit
+    answer: dict[str, dict[str, Any]] = {
+        name: {
+            "value": _finite(_scale(k) * fit.point[k]),
+            "low": _finite(_scale(k) * fit.low[k]),
+            "high": _finite(_scale(k) * fit.high[k]),
+            "unit": "deg" if k in _IN_DEGREES else "1",
+            "at_bound": bool(fit.at_bound[k]),
+        }
+        for k, name in enumerate(PUBLIC)
+    }
+    for profile in found.identifiability.profiles:
+        k = NAMES.index(profile.name)
+        answer[PUBLIC[k]]["profile"] = [_finite(_scale(k) * profile.low), _finite(_scale(k) * profile.high)]
+    return answer
+
+
+def _steps(found: Findings) -> dict[str, Any]:
+    """What each step of the fit has brought."""
+    steps = found.fit.contributions
+    return {
+        "zero_only_rms_deg": _degrees(steps.zero_only_rms_rad),
+        "swarm_rms_deg": _degrees(steps.swarm_rms_rad),
+        "polished_rms_deg": _degrees(steps.polished_rms_rad),
+        "particles_evaluated": steps.particles_evaluated,
+        "passes": steps.passes,
+        "settled": found.fit.settled,
+    }
+
+
+def _scale(place: int) -> float:
+    """What the parameter at this place is multiplied by for the unit of the answer."""
+    return 180.0 / np.pi if place in _IN_DEGREES else 1.0
+
+
+def _degrees(value_rad: float) -> float:
+    return float(np.degrees(value_rad))
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

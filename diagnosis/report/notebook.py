@@ -1,0 +1,38 @@
+"""The answer as a notebook shows it: the verdict and a table of the causes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
+from typing import Any
+
+from diagnosis.report.tables import number, table
+from diagnosis.report.wording import chance, instances, parameter_line, structure_words, verdict_words
+
+_HEADS = ("cause", "parameters", "held-out RMS before / deg", "after / deg", "chance of a false alarm")
+
+
+def notebook_html(answer: Mapping[str, Any]) -> str:
+    """A fragment of HTML that takes its looks from the notebook."""
+    name, verdict = escape(answer["sweep"]["name"]), escape(answer["verdict"])
+    said = f"<p><b>{name}: {verdict}.</b> {escape(verdict_words(answer))}</p>"
+    if not answer["causes"]:
+        return said
+    rows = [
+        [
+            escape(cause["name"]),
+            "<br>".join(map(escape, _lines(answer, cause))),
+            number(cause["heldout_rms_deg_before"]),
+            number(cause["heldout_rms_deg_after"]),
+            number(cause["false_alarm_probability"], chance(cause["false_alarm_probability"])),
+        ]
+        for cause in answer["causes"]
+    ]
+    return said + table(_HEADS, rows, numbers=(2, 3, 4), stacked=False)
+
+
+def _lines(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list[str]:
+    """A cause's parameters, one line an instance; structure without a name in words."""
+    if cause["name"] == "unnamed":
+        return [structure_words(structure) for structure in answer["unexplained"]["structure"]]
+    return [line for line in map(parameter_line, instances(cause["parameters"])) if line]

@@ -1,0 +1,83 @@
+"""The command of the bench on a CAN bus."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from scenarios.cli.options import BothDirections, EffectFiles, Points, Seed, SpeedRpm, SweepFile, Temperatures, Turns
+
+
+def bench(
+    output: SweepFile = Path("bench.csv"),
+    closed_loop: Annotated[
+        bool, typer.Option("--closed-loop", help="Measure, explain, compensate, measure again.")
+    ] = False,
+    plot: Annotated[Path | None, typer.Option(help="Draw the closed loop: .png, .svg or .pdf.")] = None,
+    twin: Annotated[str | None, typer.Option(help="Encoder on the virtual bench: twin TOML or preset.")] = None,
+    hide: Annotated[
+        list[str] | None, typer.Option(help="Effect to hide in it, EFFECT:PARAMETER=VALUE[,...]; may be repeated.")
+    ] = None,
+    points: Points = 360,
+    turns: Turns = 1,
+    both_directions: BothDirections = False,
+    speed_rpm: SpeedRpm = None,
+    temperatures: Temperatures = "",
+    settle: Annotated[float, typer.Option(help="Time in s from the last step to a reading.")] = 0.3,
+    channels: Annotated[bool, typer.Option(help="The encoder sends vx and vy as well.")] = True,
+    chamber: Annotated[bool, typer.Option(help="A climate chamber on the bus tells the temperature.")] = True,
+    interface: Annotated[str, typer.Option(help="Interface of python-can.")] = "virtual",
+    channel: Annotated[str | None, typer.Option(help="Its channel, e.g. can0.")] = None,
+    bus_option: Annotated[
+        list[str] | None, typer.Option(help="Further option of the interface, KEY=VALUE; may be repeated.")
+    ] = None,
+    serve: Annotated[float | None, typer.Option(help="Be the virtual bench for other processes for so many s.")] = None,
+    record: Annotated[Path | None, typer.Option(help="Record the bus: .asc, .blf, .csv, .db, .log or .trc.")] = None,
+    replay: Annotated[Path | None, typer.Option(help="Make the sweep from such a log instead.")] = None,
+    restart: Annotated[bool, typer.Option("--restart", help="Do not go on with a broken run.")] = False,
+    timeout: Annotated[float, typer.Option(help="Time in s to wait for an answer.")] = 0.2,
+    attempts: Annotated[int, typer.Option(help="How often to ask a silent node.")] = 15,
+    manifest: Annotated[float, typer.Option(help="Reject readings this far off the typical error, in deg.")] = 20.0,
+    fault: Annotated[
+        list[str] | None, typer.Option(help="Fault on the bus, KIND[:NODE][=VALUE], e.g. lost=0.02, silent:hall.")
+    ] = None,
+    real_time: Annotated[bool, typer.Option("--real-time", help="Motions take the time they would take.")] = False,
+    effects: EffectFiles = None,
+    seed: Seed = 0,
+) -> None:
+    """Measure on a bench over CAN, virtual by default: stepper, reference encoder, Hall encoder, climate chamber."""
+    from scenarios.bench.command import Options, run
+
+    run(
+        Options(
+            output=output,
+            twin=twin,
+            hide=hide or (),
+            points=points,
+            turns=turns,
+            both_directions=both_directions,
+            speeds_rpm=speed_rpm or (0.0,),
+            temperatures=temperatures,
+            settle_s=settle,
+            channels=channels,
+            chamber=chamber,
+            closed_loop=closed_loop,
+            plot=plot,
+            record=record,
+            replay=replay,
+            restart=restart,
+            serve=serve,
+            interface=interface,
+            channel=channel,
+            bus_options=bus_option or (),
+            faults=fault or (),
+            timeout_s=timeout,
+            attempts=attempts,
+            manifest_deg=manifest,
+            real_time=real_time,
+            effect_files=effects or (),
+            seed=seed,
+        )
+    )

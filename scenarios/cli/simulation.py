@@ -1,0 +1,90 @@
+"""Commands that simulate: a sweep of a twin, the chain in hardware units, the spinning current, the paper's figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from scenarios.cli.options import (
+    BothDirections,
+    EffectFiles,
+    PictureFolder,
+    Points,
+    Seed,
+    SpeedRpm,
+    SweepFile,
+    Temperatures,
+    Turns,
+)
+
+
+def simulate(
+    twin: Annotated[str, typer.Argument(help="Twin TOML, or the name of a preset.")] = "imc-14bit",
+    output: SweepFile = Path("sweep.csv"),
+    motion: Annotated[Path | None, typer.Option(help="Simulate on the motion of this recorded sweep.")] = None,
+    turns: Turns = 1,
+    points: Points = 360,
+    both_directions: BothDirections = False,
+    speed_rpm: SpeedRpm = None,
+    temperatures: Temperatures = "",
+    channels: Annotated[bool, typer.Option(help="Record vx and vy as well.")] = True,
+    reference_lines: Annotated[int | None, typer.Option(help="Lines of the reference encoder (4 counts each).")] = None,
+    trace: Annotated[Path | None, typer.Option(help="Write every intermediate signal as CSV.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw the trace: .png, .svg or .pdf.")] = None,
+    effects: EffectFiles = None,
+    seed: Seed = 0,
+) -> None:
+    """Simulate a sweep from a twin, on a protocol or on a recorded motion."""
+    from scenarios.commands.protocol import Protocol, numbers
+    from scenarios.commands.simulate import Outputs, run
+
+    protocol = Protocol(
+        turns=turns,
+        points=points,
+        both_directions=both_directions,
+        speeds_rpm=speed_rpm or [0.0],
+        temperatures_c=numbers("temperatures", temperatures),
+        channels=channels,
+    )
+    run(
+        twin,
+        Outputs(sweep=output, trace=trace, plot=plot),
+        recorded=motion,
+        protocol=protocol,
+        seed=seed,
+        reference_lines=reference_lines,
+        effect_files=effects or (),
+    )
+
+
+def hardware(
+    output: PictureFolder,
+    twin: Annotated[str, typer.Argument(help="Twin TOML or preset, for its magnet.")] = "imc-14bit",
+    effects: EffectFiles = None,
+    seed: Seed = 0,
+) -> None:
+    """Run one turn through magnet, concentrator, spun plates, converter, CORDIC and link, in the hardware's units."""
+    from scenarios.commands.hardware import run_command
+
+    run_command(twin, output, effect_files=effects or (), seed=seed)
+
+
+def spinning(
+    output: PictureFolder,
+    seed: Seed = 0,
+) -> None:
+    """Show the spinning current phase by phase: the offset before and after, the noise with its 1/f corner moved."""
+    from scenarios.commands.spinning import run
+
+    run(output, seed=seed)
+
+
+def paper(
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for table and figures.")],
+) -> None:
+    """Regenerate Table 1 and Figures 3 to 9 of the paper from the twin."""
+    from scenarios.commands.paper import run
+
+    run(output)

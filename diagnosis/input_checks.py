@@ -65,7 +65,7 @@ def as_sweep(source: SweepLike) -> Sweep:
     name = type(source).__name__
     if not (hasattr(source, "keys") and hasattr(source, "__getitem__")):
         raise SweepError(
-            f"found {_article(name)} where a sweep is expected; give a path, a Sweep, or columns by name "
+            f"found an object of the type {name} where a sweep is expected; give a path, a Sweep, or columns by name "
             "(dict of arrays, pandas DataFrame, xarray Dataset)"
         )
     table = _with_index(source, COLUMNS)
@@ -111,7 +111,8 @@ def _values(column: Any, where: str) -> Array:
 
     from twin.errors import SweepError
 
-    cells = np.asarray(column)
+    # A list is taken cell by cell: as an array, one text among its numbers would make all of them text.
+    cells = np.asarray(column, dtype=object if isinstance(column, list | tuple) else None)
     if isinstance(column, np.ma.MaskedArray):
         cells = cells.astype(object)
         cells[np.ma.getmaskarray(column)] = None
@@ -137,7 +138,3 @@ def _cell(cell: Any, row: int, where: str) -> float:
         f"{where}, row {row}: found {shown if len(shown) <= 40 else shown[:40] + '...'} ({type(cell).__name__}); "
         "expected a number, or NaN where a reading is missing: convert the column"
     )
-
-
-def _article(name: str) -> str:
-    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"

@@ -72,13 +72,13 @@ def minus(text: str) -> str:
 def half_width(parameter: Mapping[str, Any]) -> float | None:
     """Half of a parameter's 95 % interval; None where it has no end."""
     low, high = parameter["low"], parameter["high"]
-    return None if low is None or high is None else 0.5 * (high - low)
+    return None if low is None or high is None or math.isinf(high - low) else 0.5 * (high - low)
 
 
 def figure(parameter: Mapping[str, Any], scale: float = 1.0) -> tuple[str, str]:
     """Value and half width ("" where the value is exact) of a parameter, to two digits of the half width."""
     value, half = parameter["value"], half_width(parameter)
-    if value is None:
+    if value is None or math.isnan(value):
         return "unknown", ""
     if half is None:
         return plain(value * scale, 4), "±unknown"

@@ -126,14 +126,16 @@ class Explanation:
     def __repr__(self) -> str:
         from diagnosis.report.wording import plain
 
-        extended = self._answer["extended"]
+        before, extended = self._answer["baseline"]["heldout_rms_deg"], self._answer["extended"]
         names = ", ".join(cause.name for cause in self.causes)
-        held = (self._answer["baseline"]["heldout_rms_deg"], extended["heldout_rms_deg"], extended["gain"])
-        before, after, gain = (plain(value) for value in held)
-        return (
-            f"Explanation({self.sweep.name!r}, {self.verdict}{f': {names}' if names else ''}; "
-            f"held-out RMS {before} -> {after} deg, {gain} times closer)"
-        )
+        held = f"held-out RMS {plain(before)} deg"
+        if names:
+            gain = f"{plain(extended['gain'])} times closer"
+            names, held = (
+                f": {names}",
+                f"held-out RMS {plain(before)} -> {plain(extended['heldout_rms_deg'])} deg, {gain}",
+            )
+        return f"Explanation({self.sweep.name!r}, {self.verdict}{names}; {held})"
 
     def _repr_html_(self) -> str:
         """Verdict and causes as a notebook shows them."""

@@ -22,6 +22,7 @@ from .baseline import Injected, Setting
 from .catalogue import CAUSES
 from .chain import Bench, Readings, sample
 from .clearance import clearance_sigma
+from .columns import all_columns, written_columns
 from .motion import Array, Demands, Motion
 from .noise import Noise
 from .streams import stream
@@ -47,6 +48,34 @@ class Hidden:
         Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
+@dataclass(frozen=True)
+class Asked:
+    """What a draw is asked for; its parts draw from streams of their own, which depend on nothing else."""
+
+    causes: tuple[str, ...]
+    structure: str | None
+    bench: str
+    strength: str
+    seed: int
+
+    def stream(self, *names: str) -> np.random.Generator:
+        """The stream of one part of the draw."""
+        key = "+".join([*self.causes, self.structure or "", self.bench, self.strength])
+        return stream(self.seed, key, *names)
+
+    def check(self) -> None:
+        """Refuse what there is not. Raises ValueError."""
+        for name in self.causes:
+            if name not in CAUSES:
+                raise ValueError(f"cause must be one of {sorted(CAUSES)}; instead received {name!r}")
+        if len(set(self.causes)) != len(self.causes):
+            raise ValueError(f"causes must differ; instead received {list(self.causes)}")
+        if self.structure is not None and self.structure not in structures.STRUCTURES:
+            raise ValueError(f"structure must be one of {sorted(structures.STRUCTURES)}; got {self.structure!r}")
+        if self.bench not in ("easy", "hard") or self.strength not in STRENGTHS:
+            raise ValueError(f"bench is easy or hard, strength normal or weak; got {self.bench!r}, {self.strength!r}")
+
+
 def draw(
     causes: Sequence[str],
     *,
@@ -65,97 +94,97 @@ def draw(
     is another motion of the same device and bench: its sweep has every column that belongs to it.
     `strength_deg` is given to every cause in place of one drawn from the range; all else stays as it is.
     """
-    labels = sorted(causes)
-    key = "+".join([*labels, structure or "", bench, strength])
-    for name in labels:
-        if name not in CAUSES:
-            raise ValueError(f"cause must be one of {sorted(CAUSES)}; instead received {name!r}")
-    if len(set(labels)) != len(labels):
-        raise ValueError(f"causes must differ; instead received {labels}")
-    if structure is not None and structure not in structures.STRUCTURES:
-        raise ValueError(f"structure must be one of {sorted(structures.STRUCTURES)}; got {structure!r}")
-    if bench not in ("easy", "hard") or strength not in STRENGTHS:
-        raise ValueError(f"bench is easy or hard, strength normal or weak; got {bench!r}, {strength!r}")
-
-    asked, _, forced = (protocol or "").partition("+")
-    if not forced:
-        asked, _, barred = asked.partition("-")
-    else:
-        barred = ""
-    suitable = suitable_protocols(labels, structure)
-    if asked:
-        if asked not in protocols.PROTOCOLS:
-            raise ValueError(f"protocol must be one of {sorted(protocols.PROTOCOLS)}; instead received {asked!r}")
-        chosen = asked
-    elif suitable:
-        chosen = protocols.choose(stream(seed, key, "protocol"), suitable)
-    else:
-        raise ValueError(f"no protocol shows all of {labels} and {structure}")
-
-    demands = demanded(labels, structure, bench)
-    motion = protocols.drive(chosen, stream(seed, key, "motion"), bench=bench, demands=demands)
-    own = baselines.choose(stream(seed, key, "baseline"), bench=bench)
-    rng = stream(seed, key, "bench")
+    asked = Asked(tuple(sorted(causes)), structure, bench, strength, seed)
+    asked.check()
+    chosen, with_channels = _protocol(protocol or "", asked)
+    demands = demanded(asked.causes, structure, bench)
+    motion = protocols.drive(chosen, asked.stream("motion"), bench=bench, demands=demands)
+    own = baselines.choose(asked.stream("baseline"), bench=bench)
+    rng = asked.stream("bench")
     noise = noises.choose(rng, bench=bench, repeats=motion.repeats)
     channels = bool(demands.channels or rng.random() < 0.25)
-    channels = bool(forced) or (channels and not barred)
-    setting = Setting(motion, own, noise, _bits(rng, bench, noise, labels), strength == "weak")
+    channels = channels if with_channels is None else with_channels
+    setting = Setting(motion, own, noise, _bits(rng, bench, noise, asked.causes), strength == "weak")
 
-    injected = [_settle(name, stream(seed, key, "cause", name), setting, strength_deg) for name in labels]
+    injected = [_settle(name, asked.stream("cause", name), setting, strength_deg) for name in asked.causes]
     if structure is not None:
-        one = stream(seed, key, "structure", structure)
+        one = asked.stream("structure", structure)
         size = float(one.uniform(*STRENGTHS[strength]))
         injected.append(structures.plan(structure, one, size, setting))
-    if remeasured is not None:
-        motion = remeasured
     by_name = {entry.name: entry for entry in injected}
-    bits, step = setting.output_bits, setting.word_deg
+    bits = setting.output_bits
     if "output_quantisation" in by_name:
         bits = int(by_name["output_quantisation"].parameters["bits"])
-        step = 360.0 / 2**bits
         # the definition asks that rounding rule over what is left otherwise
-        noise = replace(noise, sigma_deg=min(noise.sigma_deg, step / np.sqrt(12.0) / (1.6 * GRID_CAUSE)))
+        most = 360.0 / 2**bits / np.sqrt(12.0) / (1.6 * GRID_CAUSE)
+        noise = replace(noise, sigma_deg=min(noise.sigma_deg, most))
     scale, grid = _channel_unit(rng, bench, by_name.get("adc_stuck_bit"))
-    setup = Bench(motion, own, noise, bits, channels, scale, grid)
-    readings = sample(setup, injected, stream(seed, key, "noise"))
+    setup = Bench(motion if remeasured is None else remeasured, own, noise, bits, channels, scale, grid)
+    readings = sample(setup, injected, asked.stream("noise"))
     if remeasured is None:
-        columns = _columns(setup, readings, demands, bench, stream(seed, key, "columns"))
+        columns = written_columns(setup, readings, demands, bench, asked.stream("columns"))
     else:
-        columns = _all_columns(setup, readings)
+        columns = all_columns(setup, readings)
+    truth = _truth(asked, setup, injected, protocol=chosen, readings=readings, reference_deg=columns["reference_deg"])
+    return Hidden(columns, truth)
 
-    truth: dict[str, object] = {
-        "causes": [*labels, *(["unnamed"] if structure is not None else [])],
-        "tolerated": _tolerated(setup, labels),
+
+def _protocol(named: str, asked: Asked) -> tuple[str, bool | None]:
+    """The protocol, named or drawn, and whether its name forces the channels in or out."""
+    name, plus, _ = named.partition("+")
+    name, minus, _ = name.partition("-")
+    suitable = suitable_protocols(asked.causes, asked.structure)
+    if name and name not in protocols.PROTOCOLS:
+        raise ValueError(f"protocol must be one of {sorted(protocols.PROTOCOLS)}; instead received {name!r}")
+    if not name and not suitable:
+        raise ValueError(f"no protocol shows all of {list(asked.causes)} and {asked.structure}")
+    chosen = name or protocols.choose(asked.stream("protocol"), suitable)
+    return chosen, True if plus else False if minus else None
+
+
+def _truth(
+    asked: Asked,
+    setup: Bench,
+    injected: list[Injected],
+    *,
+    protocol: str,
+    readings: Readings,
+    reference_deg: Array,
+) -> dict[str, object]:
+    """What is hidden in the sweep, and all that the bench has done."""
+    motion, step = setup.motion, 360.0 / 2**setup.output_bits
+    return {
+        "causes": [*asked.causes, *(["unnamed"] if asked.structure is not None else [])],
+        "tolerated": _tolerated(setup, asked.causes),
         "strength_deg": {entry.name: entry.strength_deg for entry in injected},
         "parameters": {entry.name: dict(entry.parameters) for entry in injected},
         "clearance_sigma": {entry.name: clearance_sigma(setup, injected, entry.name) for entry in injected},
-        "noise_deg": noise.sigma_deg,
-        "noise_kind": noise.kind,
-        "noise_correlation": noise.correlation,
+        "noise_deg": setup.noise.sigma_deg,
+        "noise_kind": setup.noise.kind,
+        "noise_correlation": setup.noise.correlation,
         "floor_deg": float(np.hypot(np.std(readings.noise_deg), step / np.sqrt(12.0))),
-        "output_bits": bits,
-        "baseline": own.parameters(),
-        "frame": _frame(own, motion, columns),
-        "protocol": chosen,
-        "channels": channels,
-        "bench": bench,
-        "strength": strength,
-        "structure": structure,
-        "seed": seed,
+        "output_bits": setup.output_bits,
+        "baseline": setup.baseline.parameters(),
+        "frame": _frame(setup.baseline, motion, reference_deg),
+        "protocol": protocol,
+        "channels": setup.channels,
+        "bench": asked.bench,
+        "strength": asked.strength,
+        "structure": asked.structure,
+        "seed": asked.seed,
         "rows": len(motion.time_s),
         "turns": len(motion.time_s) / (motion.points_per_turn * motion.repeats),
         "points_per_turn": motion.points_per_turn,
         "repeats": motion.repeats,
     }
-    return Hidden(columns, truth)
 
 
-def _frame(own: baselines.Baseline, motion: Motion, columns: dict[str, Array]) -> dict[str, float]:
+def _frame(own: baselines.Baseline, motion: Motion, reference_deg: Array) -> dict[str, float]:
     """What the truth needs to be told in another convention: the scale, the first reading, the record's length."""
     return {
         "amplitude_x": own.amplitude_x,
         "first_time_s": float(motion.time_s[0]),
-        "first_reference_deg": float(columns["reference_deg"][0]),
+        "first_reference_deg": float(reference_deg[0]),
         "duration_s": float(np.ptp(motion.time_s)),
     }
 
@@ -215,59 +244,3 @@ def _channel_unit(rng: np.random.Generator, bench: str, stuck: Injected | None) 
     unit = int(rng.integers(0, 3))
     # volts at 16 bits, counts of a 16-bit converter, millitesla in microtesla
     return ((1.65, 3.3 / 2**16), (24000.0, 1.0), (48.0, 1e-3))[unit]
-
-
-def _all_columns(setup: Bench, readings: Readings) -> dict[str, Array]:
-    """Every column that the motion has something to say in."""
-    motion = setup.motion
-    columns = {"time_s": motion.time_s, "reference_deg": readings.reference_deg, "measured_deg": readings.word_deg}
-    columns |= {"direction": motion.direction, "turn": motion.turn.astype(float)}
-    if motion.moving:
-        columns["speed_rpm"] = motion.speed_rpm
-    if np.ptp(motion.temperature_c) > 0:
-        columns["temperature_c"] = motion.temperature_c
-    return columns | ({"vx": readings.x, "vy": readings.y} if setup.channels else {})
-
-
-def _columns(
-    setup: Bench, readings: Readings, demands: Demands, bench: str, rng: np.random.Generator
-) -> dict[str, Array]:
-    """The columns a bench of this kind writes down; redundant ones are left out at times."""
-    motion = setup.motion
-    hard = bench == "hard"
-    omit = 0.5 if hard else 0.1
-    columns: dict[str, Array] = {}
-    if motion.moving or demands.time_column or not hard or rng.random() < 0.8:
-        columns["time_s"] = motion.time_s
-    wrapped = rng.random() < (0.6 if hard else 0.8)
-    read = readings.reference_deg
-    columns["reference_deg"] = np.mod(read, 360.0) if wrapped else read
-    signed = hard and rng.random() < 0.3
-    word = readings.word_deg
-    columns["measured_deg"] = np.where(word >= 180.0, word - 360.0, word) if signed else word
-
-    both = bool(np.ptp(motion.direction) > 0)
-    several = len(np.unique(np.abs(motion.speed_rpm))) > 1
-    if both and not rng.random() < omit:
-        columns["direction"] = motion.direction
-    if motion.moving and not rng.random() < omit * (1.0 if several else 1.5):
-        columns["speed_rpm"] = motion.speed_rpm
-    heated = bool(np.ptp(motion.temperature_c) > 0)
-    if demands.turn_column or heated or rng.random() < (0.25 if hard else 0.3):
-        columns["turn"] = motion.turn.astype(float)
-    if heated:
-        columns["temperature_c"] = motion.temperature_c
-    elif hard and rng.random() < 0.2:
-        # a warm room: slow, small, and nothing to do with the readings
-        share = np.linspace(0.0, 1.0, len(motion.time_s))
-        columns["temperature_c"] = np.round(22.0 + 3.0 * rng.random() + rng.uniform(-1.5, 1.5) * share, 1)
-    if hard and "temperature_c" in columns:
-        warm = columns["temperature_c"].copy()
-        if heated and rng.random() < 0.5:
-            warm = np.round(warm + 0.15 * rng.standard_normal(len(warm)), 1)
-        if rng.random() < 0.6:
-            warm[rng.random(len(warm)) < rng.uniform(0.01, 0.1)] = np.nan
-        columns["temperature_c"] = warm
-    if setup.channels:
-        columns["vx"], columns["vy"] = readings.x, readings.y
-    return columns

@@ -60,6 +60,25 @@ def to_dict(chain: Chain) -> dict[str, Any]:
 
 def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[Effect, ...] = CATALOGUE) -> Chain:
     """The chain of a twin file's content. Raises TwinError."""
+    _check_keys(content, name=name)
+    chain = Chain(
+        sensor_sense=_sense(content, "sensor_sense", name=name),
+        output_sense=_sense(content, "output_sense", name=name),
+        effects=effects,
+        magnet=_table(content, "magnet", name=name),
+        parts=_table(content, "hardware", name=name) or Parts(),
+        encoder=_table(content, "reference", name=name),
+    )
+    declared = content.get("effects", {})
+    if not isinstance(declared, Mapping):
+        raise TwinError(f"{name}: effects is {declared!r}; expected tables such as [effects.offset]")
+    for key, params in declared.items():
+        chain = _with_declared(chain, key, params, name=name)
+    return chain
+
+
+def _check_keys(content: Mapping[str, Any], *, name: str) -> None:
+    """Refuse another schema and keys that a twin file does not have. Raises TwinError."""
     if content.get("schema") != SCHEMA:
         raise TwinError(
             f"{name}: schema is {content.get('schema')!r}; expected {SCHEMA!r}: give a twin file, "
@@ -68,40 +87,38 @@ def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[
     for key in content:
         if key not in _KEYS:
             raise TwinError(f"{name}: unknown key {key!r}; expected only {', '.join(_KEYS)}")
-    senses = {key: content.get(key, 1) for key in ("sensor_sense", "output_sense")}
-    for key, sense in senses.items():
-        if sense not in (1, -1):
-            raise TwinError(f"{name}: {key} is {sense!r}; expected 1 or -1")
-    tables: dict[str, Any] = {}
-    for key, build in _TABLES.items():
-        if key in content:
-            try:
-                tables[key] = build(content[key])
-            except UserError as error:
-                raise TwinError(f"{name}: [{key}]: {error}") from None
-    chain = Chain(
-        sensor_sense=senses["sensor_sense"],
-        output_sense=senses["output_sense"],
-        effects=effects,
-        magnet=tables.get("magnet"),
-        encoder=tables.get("reference"),
-        parts=tables.get("hardware", Parts()),
-    )
-    declared = content.get("effects", {})
-    if not isinstance(declared, Mapping):
-        raise TwinError(f"{name}: effects is {declared!r}; expected tables such as [effects.offset]")
-    for key, params in declared.items():
-        if base_name(key) not in {effect.name for effect in effects}:
-            raise TwinError(
-                f"{name}: [effects.{key}]: no effect named '{base_name(key)}'; halltwin causes lists them, "
-                "and your own come with --effects FILE.py or, for studies, from an installed package"
-            )
-        try:
-            _check_params(find(key, effects), params)
-            chain = chain.with_effect(key, **params)
-        except (KeyError, ValueError) as error:
-            raise TwinError(f"{name}: [effects.{key}]: {error.args[0] if error.args else error}") from None
-    return chain
+
+
+def _sense(content: Mapping[str, Any], key: str, *, name: str) -> int:
+    """Who counts which way: 1 where nothing is said. Raises TwinError."""
+    sense = content.get(key, 1)
+    if sense not in (1, -1):
+        raise TwinError(f"{name}: {key} is {sense!r}; expected 1 or -1")
+    return int(sense)
+
+
+def _table(content: Mapping[str, Any], key: str, *, name: str) -> Any:
+    """What a table of the file stands for; None without it. Raises TwinError."""
+    if key not in content:
+        return None
+    try:
+        return _TABLES[key](content[key])
+    except UserError as error:
+        raise TwinError(f"{name}: [{key}]: {error}") from None
+
+
+def _with_declared(chain: Chain, key: str, params: Any, *, name: str) -> Chain:
+    """The chain with the effect of ``[effects.key]``. Raises TwinError."""
+    if base_name(key) not in {effect.name for effect in chain.effects}:
+        raise TwinError(
+            f"{name}: [effects.{key}]: no effect named '{base_name(key)}'; halltwin causes lists them, "
+            "and your own come with --effects FILE.py or, for studies, from an installed package"
+        )
+    try:
+        _check_params(find(key, chain.effects), params)
+        return chain.with_effect(key, **params)
+    except (KeyError, ValueError) as error:
+        raise TwinError(f"{name}: [effects.{key}]: {error.args[0] if error.args else error}") from None
 
 
 def _check_params(effect: Effect, params: Any) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,6 +24,14 @@ _ENOUGH = 0.15
 _SHARE = "share of the error / deg"
 
 Group = tuple[str, str, BoolArray]
+
+
+class Across(NamedTuple):
+    """A coordinate of the readings (n,), what it is called, and the part of it that is shown."""
+
+    values: Array
+    label: str
+    window: tuple[float, float]
 
 
 def pictures(found: Discovery, read: Readings, cause: Named) -> Iterator[tuple[str, Plot]]:
@@ -49,17 +57,19 @@ def _one(found: Discovery, read: Readings, keys: tuple[str, ...]) -> tuple[str, 
     if "frequency_Hz" in values:
         clock, name = read.clock
         first = _window(clock, _PERIODS / max(float(values["frequency_Hz"]), 1e-9))
-        return _over(read, share, clock, name, first, "A piece of the record, as long as a few periods.")
+        return _over(read, share, Across(clock, name, first), "A piece of the record, as long as a few periods.")
     order = float(values.get("order", 0.0))
     if order and order != round(order) and order < _PERIODS:
         turns = (read.motion.shaft_rad - read.motion.shaft_rad.min()) / TAU
         everything = (float(turns.min()), float(turns.max()))
-        return _over(read, share, turns, "shaft turns, counted through", everything, "It does not repeat each turn.")
+        return _over(
+            read, share, Across(turns, "shaft turns, counted through", everything), "It does not repeat each turn."
+        )
     if order > 2.0 * _PERIODS:
         width = max(_PERIODS * 360.0 / order, 60.0 * 360.0 / read.motion.points_per_turn)
         if width < 360.0:
             window = _window(read.angle_deg, width)
-            return _over(read, share, read.angle_deg, "shaft angle / deg", window, "A piece of the turn.")
+            return _over(read, share, Across(read.angle_deg, "shaft angle / deg", window), "A piece of the turn.")
     return _smooth(read, share)
 
 
@@ -73,7 +83,7 @@ def _smooth(read: Readings, share: Array) -> tuple[str, Plot]:
             return f"Over the angle{name}.", _over_angle(read, share, groups)
     clock, name = read.clock
     everything = (float(clock.min()), float(clock.max()))
-    return _over(read, share, clock, name, everything, "In the order in which the readings were taken.")
+    return _over(read, share, Across(clock, name, everything), "In the order in which the readings were taken.")
 
 
 def _views(read: Readings) -> Iterator[tuple[str, list[Group]]]:
@@ -115,17 +125,16 @@ def _over_angle(read: Readings, share: Array, groups: list[Group]) -> Plot:
     return Plot(ANGLE, Axis(_SHARE), layers, "the effect's share of the error over the shaft angle")
 
 
-def _over(
-    read: Readings, share: Array, across: Array, name: str, window: tuple[float, float], note: str
-) -> tuple[str, Plot]:
-    """Share and readings over a coordinate (n,), in a window of it."""
-    use = np.flatnonzero((across >= window[0]) & (across <= window[1]))
-    use = use[np.argsort(across[use], kind="stable")]
+def _over(read: Readings, share: Array, across: Across, note: str) -> tuple[str, Plot]:
+    """Note and picture of share and readings over a coordinate, in a window of it."""
+    use = np.flatnonzero((across.values >= across.window[0]) & (across.values <= across.window[1]))
+    use = use[np.argsort(across.values[use], kind="stable")]
     layers = [
-        Layer("points", across[use], (share + read.after_deg)[use], "readings", "c-cause"),
-        Layer("line", across[use], share[use], "the effect", "c-cause deep"),
+        Layer("points", across.values[use], (share + read.after_deg)[use], "readings", "c-cause"),
+        Layer("line", across.values[use], share[use], "the effect", "c-cause deep"),
     ]
-    return note, Plot(Axis(name, window), Axis(_SHARE), layers, f"the effect's share of the error over {name}")
+    words = f"the effect's share of the error over {across.label}"
+    return note, Plot(Axis(across.label, across.window), Axis(_SHARE), layers, words)
 
 
 def _stairs(found: Discovery, read: Readings, share: Array, values: Any) -> tuple[str, Plot]:
@@ -133,10 +142,12 @@ def _stairs(found: Discovery, read: Readings, share: Array, values: Any) -> tupl
     smooth = np.mod(found.sweep.measured_deg - share - read.after_deg, 360.0)
     if "bits" in values:
         place = np.mod(smooth * 2.0 ** float(values["bits"]) / 360.0, 1.0)
-        return _over(read, share, place, "place within a step / 1", (0.0, 1.0), "All readings, folded into one step.")
+        return _over(
+            read, share, Across(place, "place within a step / 1", (0.0, 1.0)), "All readings, folded into one step."
+        )
     width = max(12.0 * float(np.ptp(share)), 60.0 * 360.0 / read.motion.points_per_turn)
     window = _window(smooth, width)
-    return _over(read, share, smooth, "angle before rounding / deg", window, "A few of the uneven steps.")
+    return _over(read, share, Across(smooth, "angle before rounding / deg", window), "A few of the uneven steps.")
 
 
 def _spread(found: Discovery, read: Readings, effect: Effect, values: Any) -> tuple[str, Plot]:

@@ -137,11 +137,17 @@ def _causes(answer: Mapping[str, Any], found: Discovery, read: Readings) -> Iter
     )
     yield tables.summary(answer["causes"])
     for place, (cause, named) in enumerate(zip(answer["causes"], found.causes, strict=True), 1):
-        yield _cause(place, cause, named, answer, found, read)
+        yield _cause(cause, named, place=place, answer=answer, found=found, read=read)
 
 
 def _cause(
-    place: int, cause: Mapping[str, Any], named: Named, answer: Mapping[str, Any], found: Discovery, read: Readings
+    cause: Mapping[str, Any],
+    named: Named,
+    *,
+    place: int,
+    answer: Mapping[str, Any],
+    found: Discovery,
+    read: Readings,
 ) -> str:
     effect = find(named.keys[0], found.fit.chain.effects)
     head = f'<h3 id="cause-{place}">{place}. <span class="name">{escape(cause["name"])}</span></h3>'

@@ -8,6 +8,7 @@ sigma and a tenth: a false alarm in fewer than one in ten thousand of the compar
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -22,13 +23,26 @@ from tests.hidden.motion import Motion
 from twin import motion as twin_motion
 
 PLAN = {entry.name: entry.plan for entry in MENU}
+
+
+class Case(NamedTuple):
+    """A drawn cause, a rival that its sweep cannot tell it from, and the measurement that is advised."""
+
+    cause: str
+    protocol: str
+    strength: str
+    seed: int
+    rival: str
+    advised: str
+
+
 CASES = (
-    ("saturation", "static", "normal", 1, "magnet_harmonic", "raw channels"),
-    ("saturation", "static", "weak", 2, "magnet_harmonic", "raw channels"),
-    ("latency", "spin_both", "normal", 2, "hysteresis", "second speed"),
-    ("latency", "spin_both", "normal", 1, "index_slip", "second speed"),
-    ("backlash", "static_both", "normal", 3, "hysteresis", "denser points after a reversal"),
-    ("backlash", "static_both", "normal", 2, "index_slip", "more turns"),
+    Case("saturation", "static", "normal", 1, "magnet_harmonic", "raw channels"),
+    Case("saturation", "static", "weak", 2, "magnet_harmonic", "raw channels"),
+    Case("latency", "spin_both", "normal", 2, "hysteresis", "second speed"),
+    Case("latency", "spin_both", "normal", 1, "index_slip", "second speed"),
+    Case("backlash", "static_both", "normal", 3, "hysteresis", "denser points after a reversal"),
+    Case("backlash", "static_both", "normal", 2, "index_slip", "more turns"),
 )
 
 
@@ -55,10 +69,9 @@ def achieved_sigma(found: Discovery, first: Fit, rival: Fit, recording: Recordin
     return float(np.sqrt((squares[1] - squares[0]) / (squares[0] / found.fit.rows / found.fit.evidence.observables)))
 
 
-@pytest.mark.parametrize(("cause", "protocol", "strength", "seed", "rival", "advised"), CASES)
-def test_advice_holds(
-    cause: str, protocol: str, strength: str, seed: int, rival: str, advised: str, tmp_path: Path
-) -> None:
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.cause}-{case.rival}-{case.advised}")
+def test_advice_holds(case: Case, tmp_path: Path) -> None:
+    cause, protocol, strength, seed, rival, advised = case
     path = tmp_path / "sweep.csv"
     draw([cause], seed=seed, strength=strength, protocol=f"{protocol}-channels").write_csv(path)
     first = explain(path).discovery

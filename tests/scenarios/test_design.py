@@ -13,7 +13,7 @@ from scenarios.studies.design.check import check_design, magpylib_mT
 from scenarios.studies.design.options import demand_of, space_of
 from scenarios.studies.design.run import explore, run, study_of
 from scenarios.studies.design.space import AXES
-from scenarios.studies.design.study import DesignStudy, ranking
+from scenarios.studies.design.study import Demand, DesignStudy, ranking
 from scenarios.studies.machines import Machines
 from tests.scenarios.study_jobs import content
 from twin.angles import TAU
@@ -28,9 +28,14 @@ DEFAULT = {"diameter_mm": "6", "height_mm": "2.5", "air_gap_mm": "2"}
 
 def study(*, sampling: str = "grid", count: int = 0, shape: str = "cylinder", **axes: str) -> DesignStudy:
     whole = {name: axes.get(name, DEFAULT.get(name, "0")) for name in AXES}
-    space = space_of(whole, shape, ("N35H",), 2.0, sampling, count, 0)
-    demand = demand_of(0.5, "30:90", "-40:125", "off_axis=0.3mm, tilt=1deg", 20, 0.9)
-    return study_of("imc-14bit", space, demand, seed=0)
+    space = space_of(whole, shape=shape, grades=("N35H",), bore_mm=2.0, sampling=sampling, count=count, seed=0)
+    return study_of("imc-14bit", space, demand(), seed=0)
+
+
+def demand(*, window: str = "30:90", tolerance: str = "off_axis=0.3mm, tilt=1deg") -> Demand:
+    return demand_of(
+        max_error_deg=0.5, window=window, temperature="-40:125", tolerance=tolerance, mountings=20, min_yield=0.9
+    )
 
 
 def figures(chosen: DesignStudy) -> dict[str, Any]:
@@ -163,9 +168,9 @@ def test_the_command_lists_draws_and_checks(tmp_path: Path, capsys: pytest.Captu
 
 def test_what_cannot_be_is_refused() -> None:
     with pytest.raises(UserError, match="has no"):
-        demand_of(0.5, "30:90", "-40:125", "offaxis=0.3mm", 20, 0.9)
+        demand(tolerance="offaxis=0.3mm")
     with pytest.raises(UserError, match="low:high"):
-        demand_of(0.5, "90:30", "-40:125", "", 20, 0.9)
+        demand(window="90:30")
     with pytest.raises(UserError, match="has no \\[magnet\\]"):
         study_of("paper-encoder", study().space, study().demand, seed=0)
     with pytest.raises(UserError, match="air_gap_mm is 0 mm"):

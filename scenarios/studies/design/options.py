@@ -13,7 +13,14 @@ from twin.magnet.magnet import Shape
 
 
 def space_of(
-    axes: Mapping[str, str], shape: str, grades: tuple[str, ...], bore_mm: float, sampling: str, count: int, seed: int
+    axes: Mapping[str, str],
+    *,
+    shape: str,
+    grades: tuple[str, ...],
+    bore_mm: float,
+    sampling: str,
+    count: int,
+    seed: int,
 ) -> Space:
     """The space. Raises UserError."""
     if shape not in get_args(Shape):
@@ -30,7 +37,7 @@ def space_of(
 
 
 def demand_of(
-    max_error_deg: float, window: str, temperature: str, tolerance: str, mountings: int, min_yield: float
+    *, max_error_deg: float, window: str, temperature: str, tolerance: str, mountings: int, min_yield: float
 ) -> Demand:
     """The demand. Raises UserError."""
     return Demand(

@@ -20,14 +20,13 @@ def draw_map(path: Path, found: Mapping[str, Array], study: DesignStudy) -> None
     """Two panels over diameter and air gap: error at 95 % of the mountings, and field at the sensor at 25 C."""
     plt = style(path)
     figure, panels = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained", sharex=True, sharey=True)
-    keeps = feasible(found, study.demand)
     shown = (
         (panels[0], "error_p95_deg", "error kept by 95 % of the mountings (deg)", "viridis_r"),
         (panels[1], "field_mT", "field at the sensor at 25 °C (mT)", "cividis"),
     )
     best = found["design"][ranking(found, study.demand)[0]]
     for panel, name, label, colours in shown:
-        _panel(figure, panel, found, name, label, colours, keeps, study)
+        _panel(figure, panel, found, study, name=name, label=label, colours=colours)
         panel.plot(best[_DIAMETER], best[_GAP], "*", ms=13, mfc="white", mec="black", label="best")
         panel.set_xlabel("diameter of the magnet (mm)")
     panels[0].set_ylabel("air gap (mm)")
@@ -44,12 +43,14 @@ def _panel(
     figure: Any,
     panel: Any,
     found: Mapping[str, Array],
+    study: DesignStudy,
+    *,
     name: str,
     label: str,
     colours: str,
-    keeps: BoolArray,
-    study: DesignStudy,
 ) -> None:
+    """One figure ``name`` of all designs over diameter and air gap, those that keep the demand marked."""
+    keeps = feasible(found, study.demand)
     diameter, gap = found["design"][:, _DIAMETER], found["design"][:, _GAP]
     across, along = np.unique(diameter), np.unique(gap)
     if study.space.sampling != "grid" or across.size < 2 or along.size < 2:

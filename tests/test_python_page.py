@@ -11,7 +11,7 @@ import pytest
 from tests.pages import GUIDE, ROOT
 from tests.shown_examples import FLAGS, Checker, docstring_examples, run_docstring, run_page
 
-MODULES = ("diagnosis.explain", "diagnosis.diagnose")
+MODULES = ("diagnosis.explain", "diagnosis.diagnose", "twin.chain", "twin.motion", "twin.sweep")
 
 
 def test_the_page_shows_what_comes_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -35,14 +35,35 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Effects with their parameters, and the senses in which sensor and output count.
+    """A twin: effects with their parameters, and the senses in which sensor and output count.
 
-    ``values`` holds the parameters of the effects that are present, by instance key; every other effect is at null
-    and does nothing. ``sensor_sense`` is s of a = s theta + zero, ``output_sense`` is h of m = h atan2(y, x).
-    ``magnet`` drives the channels by its computed field; without one they are the field's ideal cosine and sine.
-    ``encoder`` rounds the reference of a simulated record to whole counts; without one the reference reads exactly.
-    ``parts`` are the scale of the signals in millitesla and volts; they change no reading.
     Immutable: the ``with_`` methods return another chain.
+
+    Attributes
+    ----------
+    values : mapping of str to parameters
+        Parameters of the effects that are present, by instance key; every other effect is at null and does nothing.
+    sensor_sense, output_sense : int
+        +1 or -1: s of a = s theta + zero, and h of m = h atan2(y, x).
+    effects : tuple of Effect
+        Those that can be present, in the order in which they act.
+    magnet : Assembly or None
+        Drives the channels by its computed field; None: they are the field's ideal cosine and sine.
+    encoder : Encoder or None
+        Rounds the reference of a simulated record to whole counts; None: the reference reads exactly.
+    parts : Parts
+        The scale of the signals in millitesla and volts; it changes no reading.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from twin import Chain, Motion
+    >>> sensor = Chain().with_effect("offset", x_percent=1.0)
+    >>> motion = Motion.from_angle(np.radians(np.arange(0.0, 360.0, 2.0)))
+    >>> print(f"{np.degrees(np.max(np.abs(sensor.error(motion)))):.3f} deg")
+    0.573 deg
+    >>> sensor.with_effect("noise", rms_deg=0.02).simulate(motion, seed=1)
+    Sweep('simulated', 180 readings, columns reference_deg, measured_deg)
     """
 
     values: Values = field(default_factory=dict)
@@ -60,9 +81,26 @@ class Chain:
     # ---- changing -------------------------------------------------------------------------------------------------
 
     def with_effect(self, key: str, **params: Any) -> Chain:
-        """This chain with the effect's parameters set; those not given keep their value, or null.
+        """The chain with an effect's parameters set; those not given keep their value, or null.
 
-        Raises KeyError for an unknown effect or parameter, ValueError for one out of range.
+        Parameters
+        ----------
+        key : str
+            Name of the effect; ``NAME#2`` is a second instance of it.
+        **params
+            Its parameters, in the units of their names.
+
+        Returns
+        -------
+        Chain
+            Another chain.
+
+        Raises
+        ------
+        KeyError
+            For an unknown effect or parameter.
+        ValueError
+            For a value out of range.
         """
         effect = find(key, self.effects)
         for name, value in params.items():
@@ -78,11 +116,22 @@ class Chain:
         return replace(self, values={**self.values, key: merged})
 
     def with_values(self, values: Values) -> Chain:
-        """This chain with several effects' parameters set, unchecked (a fit's inner loop)."""
+        """The chain with several effects' parameters set, unchecked (a fit's inner loop)."""
         return replace(self, values={**self.values, **values})
 
     def without(self, *keys: str) -> Chain:
-        """This chain with these effects back at null."""
+        """The chain with some effects back at null.
+
+        Parameters
+        ----------
+        *keys : str
+            Instance keys; those that are not present are passed over.
+
+        Returns
+        -------
+        Chain
+            Another chain.
+        """
         return replace(self, values={key: params for key, params in self.values.items() if key not in keys})
 
     # ---- running --------------------------------------------------------------------------------------------------
@@ -127,7 +176,20 @@ class Chain:
         return self.magnet.channels(angle, motion)
 
     def readings(self, motion: Motion, values: Values | None = None) -> Array:
-        """Expected reading [rad], ``(n,)``, or ``(batch, n)`` where parameters are arrays of shape ``(batch,)``."""
+        """The reading that is expected: without noise and rare events.
+
+        Parameters
+        ----------
+        motion : Motion
+            Conditions of n readings.
+        values : mapping of str to parameters, optional
+            Parameters to set beforehand, unchecked.
+
+        Returns
+        -------
+        ndarray
+            [rad], ``(n,)``, or ``(batch, n)`` where parameters are arrays of shape ``(batch,)``.
+        """
         chain = self if values is None else self.with_values(values)
         *_, last = chain.steps(motion)
         return last.after[..., 0, :]
@@ -168,7 +230,21 @@ class Chain:
         return guess
 
     def trace(self, motion: Motion, *, seed: int | None = None) -> dict[str, Array]:
-        """Every intermediate signal of one run by the name of its operation, and the reference's reading [rad]."""
+        """Every intermediate signal of one run, from the shaft to the reading.
+
+        Parameters
+        ----------
+        motion : Motion
+            Conditions of n readings.
+        seed : int, optional
+            Of noise and rare events; without one there are none.
+
+        Returns
+        -------
+        dict of str to ndarray
+            By the name of the operation, with the shapes of :data:`twin.effect.ActsOn`; angles in rad. ``reference``
+            is the reference's reading (n,).
+        """
         rng = None if seed is None else np.random.default_rng(seed)
         signals = {"shaft": motion.shaft_rad}
         signals.update({step.key: step.after for step in self.steps(motion, rng)})
@@ -176,7 +252,20 @@ class Chain:
         return signals
 
     def simulate(self, motion: Motion, *, seed: int = 0) -> Sweep:
-        """One sweep as a bench records it: noise, rare events and quantisation included; angles in [0, 360) deg."""
+        """One sweep as a bench records it: noise, rare events and quantisation included.
+
+        Parameters
+        ----------
+        motion : Motion
+            Conditions of n readings, and which columns the bench records.
+        seed : int, optional
+            Of everything random, 0 or more.
+
+        Returns
+        -------
+        Sweep
+            Measured angles in [0, 360) deg.
+        """
         rng = np.random.default_rng(seed)
         channels = measured = None
         for step in self.steps(motion, rng):
@@ -194,7 +283,18 @@ class Chain:
         )
 
     def error(self, motion: Motion) -> Array:
-        """Expected angle error [rad] (..., n): reading minus reference, in the sense that the two count together."""
+        """The angle error that is expected: reading minus reference, in the sense that the two count together.
+
+        Parameters
+        ----------
+        motion : Motion
+            Conditions of n readings.
+
+        Returns
+        -------
+        ndarray
+            [rad], (n,), or ``(batch, n)`` as :meth:`readings`.
+        """
         slope = self.sensor_sense * self.output_sense
         return wrap(self.readings(motion) - slope * self.reference(motion))
 

@@ -18,9 +18,18 @@ STOP_AND_MEASURE_S = 0.02
 class Motion:
     """Shaft angle and conditions, one row a reading, in the order in which they were taken.
 
-    All arrays have the shape ``(n,)``. ``columns`` names what the bench recorded itself
-    (``time_s``, ``direction``, ``speed_rpm``, ``turn``, ``temperature_c``, ``vx``): what was not recorded
-    is inferred where the rows allow it (direction from their order, speed from dense time stamps), else zero.
+    Made by :meth:`from_angle`, or from a recording by :meth:`twin.Sweep.motion`.
+
+    Attributes
+    ----------
+    shaft_rad : ndarray
+        Shaft angle [rad], (n,), unwrapped.
+    time_s, direction, speed_rad_s, turn, temperature_c : ndarray
+        Time [s], +1 or -1, signed speed [rad/s], number of the turn or sweep from 0, temperature [C]; (n,) each.
+    columns : frozenset of str
+        What the bench recorded itself: ``time_s``, ``direction``, ``speed_rpm``, ``turn``, ``temperature_c``, ``vx``.
+        What was not recorded is inferred where the rows allow it (direction from their order, speed from dense time
+        stamps), else zero, and 25 C.
     """
 
     shaft_rad: Array
@@ -50,9 +59,29 @@ class Motion:
         temperature_c: Array | None = None,
         has_channels: bool = False,
     ) -> Motion:
-        """Complete a motion from what is known of it; angles may be wrapped [rad], time in s.
+        """Complete a motion from what is known of it.
 
-        A missing temperature reading (NaN) is taken from its neighbours in row order.
+        Parameters
+        ----------
+        shaft_rad : ndarray
+            Shaft angle [rad], (n,), wrapped or not.
+        time_s, direction, speed_rad_s, turn, temperature_c : ndarray, optional
+            What was recorded beside it, (n,) each; a speed may be unsigned. A missing temperature (NaN) is taken from
+            its neighbours in row order.
+        has_channels : bool, optional
+            Whether the two channels are recorded too.
+
+        Returns
+        -------
+        Motion
+            With direction, speed and all else that was not recorded inferred, or at its default.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from twin import Motion
+        >>> Motion.from_angle(np.radians([0.0, 120.0, 240.0, 0.0, 120.0]))
+        Motion(5 readings, 1.333 turns, recorded: the angle alone)
         """
         wrapped = np.asarray(shaft_rad, dtype=np.float64)
         n = wrapped.size

@@ -31,9 +31,24 @@ movement."""
 class Sweep:
     """The used rows of a recording, all columns of shape (n,), in the order in which they were taken.
 
-    ``rejected`` maps the numbers of unusable rows (first reading = 1) to the reason, ``row_numbers`` (n,) are those of
-    the others (none given: they follow one another), ``set_aside`` counts usable rows that this part of a recording
-    does not hold. ``rows`` counts all three.
+    Made by :meth:`read`, :meth:`from_columns` or a simulation (:meth:`twin.Chain.simulate`); the constructor itself
+    checks nothing.
+
+    Attributes
+    ----------
+    reference_deg, measured_deg : ndarray
+        What the reference and the sensor read [deg], (n,); any range, wrapped or not.
+    time_s, direction, speed_rpm, turn, temperature_c, vx, vy : ndarray or None
+        Further columns (n,), None where not recorded: time [s], +1 or -1, speed, number of the turn or sweep,
+        temperature [C] (NaN where missing), and the two channels in any unit.
+    rejected : mapping of int to str
+        Numbers of the rows that cannot be used (first reading = 1), and why.
+    name : str
+        Of the file, or of the kind of thing the columns came from.
+    row_numbers : ndarray or None
+        Numbers (n,) of the used rows; None: they follow one another.
+    set_aside : int
+        Usable rows of the recording that this part of it does not hold.
     """
 
     reference_deg: Array
@@ -68,7 +83,18 @@ class Sweep:
         return np.arange(1, len(self) + 1) if self.row_numbers is None else self.row_numbers
 
     def part(self, rows: IntArray) -> Self:
-        """The recording with these usable rows (m,) alone."""
+        """The recording with some of its used rows alone.
+
+        Parameters
+        ----------
+        rows : ndarray
+            Places (m,) of the rows among the used ones, from 0.
+
+        Returns
+        -------
+        Sweep
+            These rows under their own numbers; the others are counted in ``set_aside``.
+        """
         columns: dict[str, Any] = {name: values[rows] for name, values in self.columns.items()}
         aside = self.set_aside + len(self) - rows.size
         return replace(self, **columns, row_numbers=self.numbers[rows], set_aside=aside)
@@ -81,9 +107,33 @@ class Sweep:
 
     @classmethod
     def from_columns(cls, columns: Mapping[str, Array], *, name: str = "sweep") -> Self:
-        """Check the columns (each (n,), in the units of their names) and leave out rows with missing cells.
+        """Check the columns and leave out rows with missing cells.
 
-        Raises SweepError where they cannot be used as a sweep.
+        Parameters
+        ----------
+        columns : mapping of str to ndarray
+            Columns of the file format by name, (n,) each, in the units of their names; NaN where a cell is missing.
+            Others are ignored.
+        name : str, optional
+            What messages call it.
+
+        Returns
+        -------
+        Sweep
+            The rows that can be used; the others stand in ``rejected``.
+
+        Raises
+        ------
+        SweepError
+            Where they cannot be used as a sweep.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from twin import Sweep
+        >>> angle_deg = np.arange(0.0, 360.0, 10.0)
+        >>> Sweep.from_columns({"reference_deg": angle_deg, "measured_deg": angle_deg + 30.0})
+        Sweep('sweep', 36 readings, columns reference_deg, measured_deg)
         """
         for needed in REQUIRED:
             if needed not in columns:
@@ -131,15 +181,48 @@ class Sweep:
 
     @classmethod
     def read(cls, path: str | Path) -> Self:
-        """Read a sweep file (CSV, also .gz; Parquet with pyarrow installed). Raises SweepError."""
+        """Read a sweep file and check it.
+
+        Parameters
+        ----------
+        path : str or Path
+            CSV, ``.csv.gz``, or Parquet where pyarrow is installed.
+
+        Returns
+        -------
+        Sweep
+            The rows that can be used, named after the file.
+
+        Raises
+        ------
+        SweepError
+            Where the file cannot be read or used: which line and column, what was found, expected, and to do.
+        """
         return cls.from_columns(read_columns(Path(path)), name=Path(path).name)
 
     def write(self, path: str | Path) -> None:
-        """Write the used rows as CSV (gzip where the name ends in .gz), beside and then renamed."""
+        """Write the used rows as CSV, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; one that ends in ``.gz`` is compressed.
+
+        Raises
+        ------
+        twin.errors.UserError
+            Where it cannot be written.
+        """
         write_columns(Path(path), self.columns)
 
     def motion(self) -> Motion:
-        """The conditions of each reading, with the reference's reading as shaft angle."""
+        """The conditions of each reading, with the reference's reading as shaft angle.
+
+        Returns
+        -------
+        Motion
+            What was not recorded is inferred where the rows allow it, see :meth:`Motion.from_angle`.
+        """
         return Motion.from_angle(
             radians(self.reference_deg),
             time_s=self.time_s,

@@ -134,6 +134,22 @@ class Chain:
         """
         return replace(self, values={key: params for key, params in self.values.items() if key not in keys})
 
+    def mirrored(self) -> Chain:
+        """The chain that counts the other way on both sides and reads the same.
+
+        A parameter that has no such value (:meth:`twin.effect.Effect.mirrors`) is kept: its effect then reads
+        otherwise, and that is all by which an angle tells the two chains apart.
+        """
+        values = {key: find(key, self.effects).mirrored(params) for key, params in self.values.items()}
+        magnet = None if self.magnet is None else replace(self.magnet, placement=self.magnet.placement.mirrored())
+        return replace(
+            self,
+            values=values,
+            magnet=magnet,
+            sensor_sense=-self.sensor_sense,
+            output_sense=-self.output_sense,
+        )
+
     # ---- running --------------------------------------------------------------------------------------------------
 
     def active(self, acts_on: ActsOn) -> Iterator[tuple[str, Effect, Parameters]]:

@@ -257,6 +257,11 @@ class Effect:
             return 0.0
         return TAU / self.attainable(values).size if self.stair is None else self.stair(values)
 
+    @property
+    def zeroes_turns(self) -> bool:
+        """Whether each turn has a zero of its own in it, by which the reference reads too much."""
+        return self.acts_on == "reference" and bool(self.roles("per turn"))
+
     def spread_of_turns(self, values: Parameters) -> dict[str, float]:
         """Random parameters that the turns' own values tell: from these another record draws its turns."""
         told = self.derived(values) if self.roles("per turn") else {}

@@ -16,7 +16,7 @@ and angles counted right-handed about z. Lengths are in mm, angles of tilts in d
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -77,6 +77,15 @@ class Placement:
     def stray_mT(self) -> Array:
         """Stray field in the stator's frame (..., 3) [mT]."""
         return _vector(self.stray_x_mT, self.stray_y_mT, self.stray_z_mT)
+
+    def mirrored(self) -> Placement:
+        """The placement seen in a mirror along the x axis: the field's y changes sign where the shaft turns back.
+
+        A mirror turns the sense of a magnetisation too, which the counted angle leaves as it was: so does the stray
+        field keep its x and z.
+        """
+        turned = ("sensor_y_mm", "sensor_tilt_x_deg", "magnet_y_mm", "magnet_tilt_x_deg", "stray_y_mT")
+        return replace(self, **{name: -np.asarray(getattr(self, name))[()] for name in turned})
 
     def sensor_mm(self, magnet: Magnet) -> Array:
         """The sensor in the stator's frame (..., 3) [mm]."""

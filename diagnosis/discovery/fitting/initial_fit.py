@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, Setting, evaluate, free_of, solve, tidy
+from diagnosis.discovery.fitting.joint_fit import (
+    BASELINE,
+    ZERO_ANGLE,
+    Fit,
+    Free,
+    Setting,
+    evaluate,
+    free_of,
+    solve,
+    tidy,
+)
 from diagnosis.discovery.fitting.noise_model import noise_family
 from diagnosis.discovery.fitting.observations import Evidence
 from twin.angles import Array, wrap
@@ -36,12 +45,7 @@ def senses_of_channels(sweep: Sweep) -> tuple[int, int] | None:
 
 def mirrored(chain: Chain) -> Chain:
     """The chain that counts the other way on both sides: the same readings but for the quadratic term."""
-    values: dict[str, dict[str, Any]] = {key: dict(params) for key, params in chain.values.items()}
-    for params in values.values():
-        for name in params:
-            if name.startswith("y_") or name in ("beta_deg", "deg_per_K", "zero_deg"):
-                params[name] = -params[name]
-    return replace(chain, values=values, sensor_sense=-chain.sensor_sense, output_sense=-chain.output_sense)
+    return chain.mirrored()
 
 
 def first_fit(evidence: Evidence, start: Chain, given: Chain | None) -> Fit:
@@ -50,21 +54,20 @@ def first_fit(evidence: Evidence, start: Chain, given: Chain | None) -> Fit:
     turns = int(evidence.motion.turn.max(initial=0)) + 1
     if given is None:
         return solve(evaluate(awake(start), BASELINE, evidence, setting))
-    free: list[Free] = [BASELINE[0]]
-    chain = start
-    rezeroed = "reference_rezero" in chain.values and turns > 1
-    chain = chain.without("reference_rezero")
-    if rezeroed:
-        free += free_of(find("reference_rezero"), "reference_rezero", turns=turns, channels=False)
-    chain = chain.with_values({"zero": {"zero_deg": 0.0, **chain.values.get("zero", {})}})
+    each_turn = {key: effect for key in start.values if (effect := find(key, start.effects)).zeroes_turns}
+    chain = start.without(*each_turn)
+    chain = chain.with_values({ZERO_ANGLE.key: {ZERO_ANGLE.name: 0.0, **chain.values.get(ZERO_ANGLE.key, {})}})
     chain = aligned(chain, evidence.motion, evidence.measured)
-    if rezeroed:
+    free: list[Free] = [ZERO_ANGLE]
+    if each_turn and turns > 1:
         # Each turn's zero from its own readings: zeros that all begin alike would be held there by their own scatter.
         motion = chain.shaft(evidence.motion)
         off = wrap(evidence.measured - chain.readings(motion))
         sense = chain.sensor_sense * chain.output_sense
-        zeros = [-sense * np.degrees(np.median(off[motion.turn == turn])) for turn in range(turns)]
-        chain = chain.with_values({"reference_rezero": {"zeros_deg": np.array(zeros), "spread_deg": 0.0}})
+        zeros = np.array([-sense * np.degrees(np.median(off[motion.turn == turn])) for turn in range(turns)])
+        for key, effect in each_turn.items():
+            chain = chain.with_values({key: {**effect.null(), effect.roles("per turn")[0]: zeros}})
+            free += free_of(effect, key, turns=turns, channels=False)
     fit = solve(evaluate(chain, tuple(free), evidence, setting))
     return solve(evaluate(fit.chain, fit.free, evidence, setting))
 
@@ -82,9 +85,9 @@ def awake(chain: Chain) -> Chain:
 
 def aligned(chain: Chain, recorded: Motion, measured: Array) -> Chain:
     """The chain with its zero turned so that its readings agree with the measured ones (n,) on average."""
-    zero = float(chain.values["zero"]["zero_deg"])
+    zero = float(chain.values[ZERO_ANGLE.key][ZERO_ANGLE.name])
     for _ in range(2):
         off = np.angle(np.mean(np.exp(1j * (measured - chain.readings(chain.shaft(recorded))))))
         zero += float(np.degrees(off)) * chain.output_sense
-        chain = chain.with_values({"zero": {"zero_deg": zero}})
+        chain = chain.with_values({ZERO_ANGLE.key: {ZERO_ANGLE.name: zero}})
     return tidy(chain)

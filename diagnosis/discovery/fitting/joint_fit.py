@@ -10,9 +10,11 @@ from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_model import NoiseFamily, observables_to_cosine, to_rows
 from diagnosis.discovery.fitting.observations import Evidence
 from twin.angles import Array, wrap
+from twin.baseline import FACTORS
 from twin.catalogue import find
 from twin.chain import Chain
 from twin.effect import Effect
+from twin.mechanics.zero import ZERO
 
 
 @dataclass(frozen=True)
@@ -24,14 +26,9 @@ class Free:
     turn: int | None = None
 
 
-BASELINE = (
-    Free("zero", "zero_deg"),
-    Free("offset", "x_percent"),
-    Free("offset", "y_percent"),
-    Free("gain_mismatch", "ratio"),
-    Free("phase", "beta_deg"),
-    Free("quadratic_nonlinearity", "q_percent"),
-)
+ZERO_ANGLE = Free(ZERO.name, "zero_deg")
+BASELINE = (ZERO_ANGLE, *(Free(f.key, f.param) for f in FACTORS if f.effect is not ZERO))
+"""The paper's error model, always fitted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -290,6 +287,6 @@ def tidy(chain: Chain) -> Chain:
                 for turned in effect.roles("strength"):
                     params[turned] = -float(params[turned])
                 params[phases[0]] = float(params[phases[0]]) + 180.0
-        for name in (*phases, *(("zero_deg",) if key == "zero" else ())):
+        for name in (*phases, *((ZERO_ANGLE.name,) if key == ZERO_ANGLE.key else ())):
             params[name] = float(-((-float(params[name]) + 180.0) % 360.0 - 180.0))
     return replace(chain, values=values)

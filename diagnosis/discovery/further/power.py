@@ -21,28 +21,13 @@ from diagnosis.discovery.fitting.noise_model import noise_family, to_cosine
 from diagnosis.discovery.fitting.subsample import stretches
 from diagnosis.discovery.further.measurements import MENU, Measurement, Recording
 from twin.angles import Array
-from twin.catalogue import base_name, find
+from twin.catalogue import find
 from twin.chain import Chain
 
 ENOUGH_SIGMA = 5.0
 LEAST_SIGMA = 3.0
 MOST_PLANNED = 4_000
 _ITERATIONS = 4
-_FIELD_POWERS = {
-    ("saturation", "k_percent"): 2.0,
-    ("quadratic_nonlinearity", "q_percent"): 1.0,
-    ("offset", "x_percent"): -1.0,
-    ("offset", "y_percent"): -1.0,
-    ("offset_drift", "x_percent_per_K"): -1.0,
-    ("offset_drift", "y_percent_per_K"): -1.0,
-    ("mains_pickup", "x_percent"): -1.0,
-    ("mains_pickup", "y_percent"): -1.0,
-    ("adc_stuck_bit", "step_percent"): -1.0,
-    ("clipping", "level_percent"): -1.0,
-    ("stray_field", "bx_mT"): -1.0,
-    ("stray_field", "by_mT"): -1.0,
-}
-"""Power of the magnet's field by which a parameter changes, all being counted in amplitudes of the channels."""
 
 _family = lru_cache(maxsize=2)(noise_family)
 """A plan is asked of several rivals one after the other."""
@@ -82,7 +67,7 @@ def _worth_it(fit: Fit, rivals: Mapping[str, Fit], planned: tuple[Recording, ...
     if len(planned) == 1:
         return True
     changing = [
-        {free for free in one.free if _at_field(free.key, free.name, one.chain, planned[1]) != 1.0}
+        {free.key for free in one.free if find(free.key, one.chain.effects).follows_field}
         for one in (fit, *rivals.values())
     ]
     return all(own != changing[0] for own in changing[1:])
@@ -205,19 +190,12 @@ def _planned_chain(chain: Chain, recording: Recording, turns: int) -> Chain:
 def _at_field(key: str, name: str, chain: Chain, recording: Recording) -> float:
     """Factor by which a parameter changes from the present air gap to the recording's.
 
-    Assumed, because a recording at one air gap cannot show it: saturation goes with the square of the field (it is the
-    next odd term of the magnetisation curve), a quadratic term with the field, voltages and stray fields against it.
-    A harmonic of order n + 1 in the magnetisation turns the field by order n; its field falls with the distance from
-    the magnet's centre n powers faster than the dipole's, and so does the angle it turns by. The rest stays.
+    As its effect declares it, because a recording at one air gap cannot show it.
     """
-    if recording.field == 1.0:
-        return 1.0
-    power = _FIELD_POWERS.get((base_name(key), name))
-    if power is not None:
-        return float(recording.field**power)
-    if (base_name(key), name) == ("magnet_harmonic", "amplitude_deg"):
-        return float(recording.distance ** -float(chain.values[key]["order"]))
-    return 1.0
+    effect = find(key, chain.effects)
+    values = {**effect.null(), **chain.values[key]}
+    factor = effect.field_factor(name, values, field_ratio=recording.field, distance_ratio=recording.distance)
+    return float(factor)
 
 
 def _mounting(part: Fit) -> Array:

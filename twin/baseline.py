@@ -1,0 +1,47 @@
+"""The paper's error model in the twin's parameters: the six that an angle shows, always fitted, never a discovery."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from twin.effect import Effect
+from twin.hall.gain_mismatch import GAIN_MISMATCH
+from twin.hall.offset import OFFSET
+from twin.hall.phase import PHASE
+from twin.hall.quadratic_nonlinearity import QUADRATIC_NONLINEARITY
+from twin.mechanics.zero import ZERO
+
+
+@dataclass(frozen=True, kw_only=True)
+class Factor:
+    """One of the six: its name and unit in answers, the effect and parameter that carry it in a chain.
+
+    The answer's figure is ``scale`` times the parameter.
+    """
+
+    name: str
+    effect: Effect
+    param: str
+    scale: float = 1.0
+    unit: str = "1"
+
+    @property
+    def key(self) -> str:
+        """The effect's key in a chain's values."""
+        return self.effect.name
+
+    @property
+    def null(self) -> float:
+        """The parameter of an ideal sensor."""
+        return self.effect.params[self.param].null
+
+
+FACTORS = (
+    Factor(name="Vx_over_Ax", effect=OFFSET, param="x_percent", scale=0.01),
+    Factor(name="Vy_over_Ay", effect=OFFSET, param="y_percent", scale=0.01),
+    Factor(name="gain_ratio", effect=GAIN_MISMATCH, param="ratio"),
+    Factor(name="beta_deg", effect=PHASE, param="beta_deg", unit="deg"),
+    Factor(name="quad", effect=QUADRATIC_NONLINEARITY, param="q_percent", scale=0.01),
+    Factor(name="zero_deg", effect=ZERO, param="zero_deg", unit="deg"),
+)
+"""In the order of the model's points."""

@@ -128,10 +128,7 @@ def example_of(effect: Effect, motion: Motion) -> Example:
         away = [abs(shape.get(level, null) - null) for shape in grid]
         middle = dict(grid[int(np.argmax(away))]) if grid else {}
     if effect.line is not None and effect.line.clock != "channels":
-        low, high = effect.line.limits(motion)
-        tried = np.linspace(low, high, 201)
-        tried = np.concatenate([tried, np.unique(np.round(tried))])
-        inside = tried[effect.line.within(tried) & (tried >= low) & (tried <= high)]
+        inside = effect.line.some(motion)
         middle[effect.line.param] = float(inside[inside.size // 3]) if inside.size else effect.null()[effect.line.param]
     strengths: dict[str, Any] = {}
     shapes: dict[str, float] = {}

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.angles import TAU, Array
+from twin.drawing import by_declaration
 from twin.motion import Motion
 
 ActsOn = Literal["shaft", "field", "channels", "angle", "reference"]
@@ -41,9 +42,6 @@ Parameters = Mapping[str, Any]
 BoolArray = NDArray[np.bool_]
 Drawing = Callable[[Array, Array, Motion], Mapping[str, Array]]
 """strength [deg] (k,), uniform numbers (k, 4), motion -> parameters (k,) of an effect of about that strength."""
-
-YARDSTICK_DEG = 0.1
-"""Angle error that a strength of its typical size makes, about its amplitude."""
 
 
 class Forward(Protocol):
@@ -104,6 +102,13 @@ class Line:
     limits: Callable[[Motion], tuple[float, float]]
     within: Callable[[Array], BoolArray]
     multiples: tuple[int, ...] = ()
+
+    def some(self, motion: Motion) -> Array:
+        """Orders, frequencies or weights (m,) of the effect, ascending, over all its limits, whole ones among them."""
+        low, high = self.limits(motion)
+        tried = np.linspace(low, high, 201)
+        tried = np.concatenate([tried, np.unique(np.round(tried))])
+        return np.sort(tried[self.within(tried) & (tried >= low) & (tried <= high)])
 
 
 class FindMarks(Protocol):
@@ -269,19 +274,19 @@ class Effect:
 
     # ---- what becomes of it elsewhere ---------------------------------------------------------------------------
 
-    def field_factor(self, name: str, values: Parameters, *, field_ratio: Any, distance_ratio: float = 1.0) -> Any:
+    def field_factor(self, name: str, values: Parameters, *, field_ratio: Any, distance_ratio: Any = 1.0) -> Any:
         """What a parameter is multiplied by at so many times the present field and distance of the magnet.
 
-        ``field_ratio`` may be an array; so is then the factor.
+        Either may be an array; so is then the factor.
         """
         param = self.params[name]
         factor = field_ratio**param.field_power
         return factor if param.distance_power is None else factor * distance_ratio ** param.distance_power(values)
 
     @property
-    def follows_field(self) -> bool:
-        """Whether any of its parameters changes with the magnet's field."""
-        return any(p.field_power != 0.0 or p.distance_power is not None for p in self.params.values())
+    def follow_field(self) -> tuple[str, ...]:
+        """The parameters that change with the magnet's field or its distance."""
+        return tuple(n for n, p in self.params.items() if p.field_power != 0.0 or p.distance_power is not None)
 
     def mirror(self, name: str) -> int:
         """What a parameter is multiplied by (-1, 1) in the mirrored chain; 0: no value of it reads the same there.
@@ -314,23 +319,6 @@ class Effect:
         return all(self.mirror(name) != 0 for name in self.params)
 
     def draw(self, strength_deg: Array, uniform: Array, motion: Motion) -> dict[str, Array]:
-        """Parameters (k,) of the effect at strengths [deg] (k,) from uniform numbers (k, 4), for training sweeps.
-
-        Strengths by their yardstick, of either sign where physics allows both; several share it as a vector does.
-        """
-        names = self.roles("strength")
-        turn = TAU * uniform[:, 0]
-        shares: tuple[Array, ...] = (np.where(uniform[:, 0] < 0.5, -1.0, 1.0),)
-        if len(names) == 2:
-            shares = (np.cos(turn), np.sin(turn))
-        elif len(names) != 1:
-            # Of unit length on average, and any two of them uncorrelated.
-            shares = tuple(np.sqrt(2.0 / len(names)) * np.cos(turn * (1 + place)) for place in range(len(names)))
-        drawn: dict[str, Array] = {}
-        for name, share in zip(names, shares, strict=True):
-            param = self.params[name]
-            lowest = param.lower if param.allowed is None else param.allowed[0]
-            signed = share if lowest < param.null else np.abs(share)
-            drawn[name] = param.null + strength_deg / YARDSTICK_DEG * param.typical * signed
-        drawn |= dict.fromkeys(self.roles("phase"), 360.0 * uniform[:, 1])
+        """Parameters (k,) of the effect at strengths [deg] (k,) from uniform numbers (k, 4), for training sweeps."""
+        drawn = by_declaration(self, strength_deg, uniform, motion)
         return drawn if self.drawing is None else {**drawn, **self.drawing(strength_deg, uniform, motion)}

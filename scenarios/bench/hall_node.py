@@ -13,19 +13,16 @@ from scenarios.bench.messages import CHANNEL_LIMIT, Frame
 from scenarios.bench.node import Node
 from scenarios.bench.world import World
 from twin.angles import TAU, Array
-from twin.catalogue import base_name
+from twin.catalogue import find, output_grid
 from twin.chain import Chain
 from twin.errors import UserError
 from twin.link.frames import COUNT_BITS, SPI_WORD_BITS, Bytes, angle_words, spi_frames, spi_words, word_angles
-
-RECORD_WIDE = ("zero_drift", "reference_rezero", "bus_glitch", "unnamed_drift")
-"""Effects defined by the record as a whole: no node can play them reading by reading."""
 
 
 def check_playable(chain: Chain) -> None:
     """Raise UserError for a twin whose readings depend on the length of the record."""
     for key in chain.values:
-        if base_name(key) in RECORD_WIDE:
+        if find(key, chain.effects).record_wide:
             raise UserError(
                 f"{key}: is defined over a whole record, which a node on the bus does not know; "
                 "leave it out of the twin (faults of the bus: --fault)"
@@ -34,7 +31,8 @@ def check_playable(chain: Chain) -> None:
 
 def word_bits(chain: Chain) -> int:
     """Length of the sensor's angle word: what the twin says, else the link's."""
-    bits = int(float(chain.values.get("output_quantisation", {}).get("bits", 0)))
+    grid = output_grid(chain.effects)
+    bits = 0 if grid is None else int(float(chain.values.get(grid.name, {}).get(grid.roles("level")[0], 0)))
     return bits if 0 < bits <= SPI_WORD_BITS else SPI_WORD_BITS
 
 

@@ -37,7 +37,7 @@ def _by_row(effect: Effect, streams: Sequence[np.random.Generator]) -> Forward:
             counts = np.broadcast_to(np.ravel(values[level]), (batch,))
             for count in np.unique(counts[rows]):
                 alike = rows & (counts == count)
-                out[alike] = effect.forward(out[alike], motion, {level: float(count)}, None)
+                out[alike] = effect.forward(out[alike], motion, {**_of_rows(values, alike), level: float(count)}, None)
             return out
         if not random:
             out[rows] = effect.forward(out[rows], motion, _of_rows(values, rows), None)

@@ -10,11 +10,12 @@ import pytest
 
 from scenarios.commands.protocol import Protocol
 from scenarios.studies.machines import Machines
-from scenarios.studies.training.draw import YARDSTICK_DEG, Ranges
+from scenarios.studies.training.draw import Ranges
 from scenarios.studies.training.job import Training
 from scenarios.studies.training.recipe import parameter_names, recipe_of
 from scenarios.studies.training.run import generate
 from tests.scenarios.study_jobs import content
+from twin.drawing import YARDSTICK_DEG
 from twin.errors import UserError
 
 BENCH = Protocol(turns=2, points=40, both_directions=True, speeds_rpm=(60.0,))

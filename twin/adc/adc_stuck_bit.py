@@ -8,7 +8,8 @@ import numpy as np
 
 from twin.adc.adc_quantisation import FULL_SCALE
 from twin.angles import Array
-from twin.effect import YARDSTICK_DEG, BoolArray, Effect, Line, Param, Parameters
+from twin.drawing import YARDSTICK_DEG
+from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
 HARMONICS = 6

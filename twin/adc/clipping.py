@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from twin.angles import Array
-from twin.effect import YARDSTICK_DEG, Effect, Param, Parameters
+from twin.drawing import YARDSTICK_DEG
+from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from twin.angles import Array, channels_of
 from twin.limits import OutOfRangeError
 from twin.magnet.field import Series, series_of
@@ -40,6 +42,11 @@ class Assembly:
         """Field [mT] on the axis, untilted, without stray field, at 25 C."""
         ideal = Placement(air_gap_mm=self.placement.air_gap_mm)
         return float(series_of(self.magnet, ideal, temperature_c=NOMINAL_C).coefficients[0, 1])
+
+    @property
+    def distance_mm(self) -> Any:
+        """From the centre of the untilted magnet to the sensing plane, along the shaft."""
+        return np.asarray(self.placement.air_gap_mm) + 0.5 * np.asarray(self.magnet.height_mm)
 
     def channels(self, angle_rad: Array, motion: Motion) -> Array:
         """x and y (..., 2, n) of nominal amplitude 1 at the field angles [rad] (..., 2, n), by the magnet's field.

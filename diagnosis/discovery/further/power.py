@@ -67,7 +67,7 @@ def _worth_it(fit: Fit, rivals: Mapping[str, Fit], planned: tuple[Recording, ...
     if len(planned) == 1:
         return True
     changing = [
-        {free.key for free in one.free if find(free.key, one.chain.effects).follows_field}
+        {free.key for free in one.free if find(free.key, one.chain.effects).follow_field}
         for one in (fit, *rivals.values())
     ]
     return all(own != changing[0] for own in changing[1:])

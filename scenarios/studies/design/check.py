@@ -48,10 +48,9 @@ def design_twin(study: DesignStudy, row: Array, which: float) -> Chain:
         Magnet(shape=magnet.shape, grade=name, **own),
         Placement(**{key: float(np.ravel(value)[0]) for key, value in vars(place).items() if np.ndim(value)}),
     )
-    ratio = assembly.nominal_mT / chain.magnet.nominal_mT
     values = {
         key: {name: float(value) for name, value in params.items()}
-        for key, params in scaled_values(chain, ratio).items()
+        for key, params in scaled_values(chain, assembly).items()
     }
     return replace(chain, values=values, magnet=assembly)
 

@@ -10,28 +10,19 @@ from typing import Any
 import numpy as np
 
 from twin.angles import Array, channels_of
+from twin.catalogue import find
 from twin.chain import Chain
 from twin.effect import BoolArray
 from twin.magnet.assembly import NOMINAL_C, Assembly
 from twin.magnet.field import Series, basis, series_by_group
 from twin.magnet.placement import Placement, designs_of
+from twin.mechanics.zero import ZERO
 from twin.motion import Motion
 
 TOLERANCE = 1e-7
 """Of the field's series, relative to the smallest |B|: 6e-6 deg."""
-
-FIELD_POWER: dict[str, tuple[float, tuple[str, ...]]] = {
-    "offset": (-1.0, ("x_percent", "y_percent")),
-    "offset_drift": (-1.0, ("x_percent_per_K", "y_percent_per_K")),
-    "mains_pickup": (-1.0, ("x_percent", "y_percent")),
-    "noise": (-1.0, ("rms_deg",)),
-    "hysteresis": (-1.0, ("lag_deg",)),
-    "quadratic_nonlinearity": (1.0, ("q_percent",)),
-    "saturation": (2.0, ("k_percent",)),
-}
-"""How an effect's strength goes with the field: what the plates, the pickup and the concentrator's remanence add is
-constant in mT, so relative to the signal it falls; non-linearities grow by their order. The rest does not change; the
-converter's range is taken to follow the signal, as parts with automatic gain do."""
+_CONVERTER = "adc"
+"""Stage of the effects that are counted in the converter's range."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,13 +113,25 @@ def _each(part: Any, count: int, designs: int) -> Any:
     return replace(part, **changes)
 
 
-def scaled_values(chain: Chain, ratio: Array | float) -> dict[str, dict[str, Any]]:
-    """The chain's parameters at ``ratio`` (designs,) times the field that they were stated at; see FIELD_POWER."""
-    values: dict[str, dict[str, Any]] = {}
+def scaled_values(chain: Chain, magnet: Assembly) -> dict[str, dict[str, Any]]:
+    """The chain's parameters, stated at its own magnet, at the field and distance of another or of many (designs,).
+
+    They go with both as their effects declare. The converter's range alone is taken to follow the signal: its gain is
+    set for the field, by hand or by itself.
+    """
+    assert chain.magnet is not None
+    ratios = {
+        "field_ratio": magnet.nominal_mT / chain.magnet.nominal_mT,
+        "distance_ratio": magnet.distance_mm / chain.magnet.distance_mm,
+    }
+    scaled: dict[str, dict[str, Any]] = {}
     for key, params in chain.values.items():
-        power, names = FIELD_POWER.get(key, (0.0, ()))
-        values[key] = {name: value * ratio**power if name in names else value for name, value in params.items()}
-    return values
+        effect = find(key, chain.effects)
+        values = {**effect.null(), **params}
+        follows = () if effect.stage == _CONVERTER else effect.follow_field
+        factors = {name: effect.field_factor(name, values, **ratios) for name in follows if name in params}
+        scaled[key] = {name: value * factors.get(name, 1.0) for name, value in params.items()}
+    return scaled
 
 
 def errors_deg(chain: Chain, designs: Designs, motion: Motion) -> Array:
@@ -136,20 +139,18 @@ def errors_deg(chain: Chain, designs: Designs, motion: Motion) -> Array:
 
     ``chain`` has a magnet: its nominal field is what the chain's parameters are stated at.
     """
-    assert chain.magnet is not None
-    ratio = designs.nominal_mT / chain.magnet.nominal_mT
-    own = replace(chain, values=scaled_values(chain, ratio), magnet=designs)
+    own = replace(chain, values=scaled_values(chain, designs), magnet=designs)
     return _zeroed(own.error(motion), motion)
 
 
 def cause_errors(chain: Chain, designs: Designs, motion: Motion) -> Iterator[tuple[str, Array]]:
     """Cause and its error alone (designs, n) [deg]: the magnet's field first, then each effect on an ideal field."""
-    assert chain.magnet is not None
     bare = replace(chain, values={}, magnet=designs)
     yield "field", _zeroed(bare.error(motion), motion)
-    values = scaled_values(chain, designs.nominal_mT / chain.magnet.nominal_mT)
-    for key, params in values.items():
-        if key in ("noise", "adc_quantisation", "zero"):
+    for key, params in scaled_values(chain, designs).items():
+        effect = find(key, chain.effects)
+        # Taken off like the zero, or no part of an expected reading.
+        if effect is ZERO or effect.footprint == "spread":
             continue
         alone = replace(chain, values={key: params}, magnet=None)
         error = np.broadcast_to(alone.error(motion), (designs.count, len(motion)))

@@ -18,6 +18,7 @@ from twin.chain import Chain
 from twin.effect import BoolArray
 from twin.extensions import effects_with
 from twin.files import from_dict
+from twin.hall.noise import NOISE
 from twin.magnet.assembly import NOMINAL_C
 from twin.motion import Motion
 
@@ -87,7 +88,7 @@ class DesignStudy:
         low, high = _field_span(designs, demand)
         # The signal is weakest, and the noise largest in the angle, where the field is.
         weakest = low / self.chain.magnet.nominal_mT
-        noise = self.chain.values.get("noise", {}).get("rms_deg", 0.0) / weakest
+        noise = self.chain.values.get(NOISE.name, {}).get("rms_deg", 0.0) / weakest
         figures = {
             "field_mT": designs.nominal_mT,
             "field_low_mT": low,

@@ -15,25 +15,20 @@ import numpy as np
 
 from scenarios.commands.protocol import Protocol
 from scenarios.studies.study_folder import StudyFolder
-from scenarios.studies.training.draw import BASELINE_UNIFORMS, CAUSE_UNIFORMS, baseline_values, parameters_of
+from scenarios.studies.training.draw import BASELINE_UNIFORMS, CAUSE_UNIFORMS, baseline_values
 from twin.angles import Array
+from twin.baseline import FACTORS
 from twin.catalogue import find
 from twin.chain import Chain
 from twin.effect import Effect
+from twin.hall.noise import NOISE
 from twin.motion import Motion
 from twin.sweep import Sweep
 
 BASELINE, CLEAN = "baseline", "clean"
 SLOTS = 6
 """Parameters a row has room for: the baseline's six, or a cause's strength in the first."""
-PARAMETERS = (
-    ("offset", "x_percent"),
-    ("offset", "y_percent"),
-    ("gain_mismatch", "ratio"),
-    ("phase", "beta_deg"),
-    ("quadratic_nonlinearity", "q_percent"),
-    ("zero", "zero_deg"),
-)
+PARAMETERS = tuple((factor.key, factor.param) for factor in FACTORS)
 """The baseline's, in the order of diagnosis.error_model.model.NAMES and in the twin's units."""
 _TO_TWIN = np.array([100.0, 100.0, 1.0, np.degrees(1.0), 100.0, np.degrees(1.0)])
 
@@ -149,11 +144,11 @@ class Grid:
 
 def simulate(cell: Cell, motion: Motion, rng: np.random.Generator) -> tuple[Chain, Sweep]:
     """A device of the cell, and a sweep of it."""
-    chain = Chain().with_effect("noise", rms_deg=cell.noise_deg)
+    chain = Chain().with_effect(NOISE.name, rms_deg=cell.noise_deg)
     baseline = baseline_values(rng.random((1, BASELINE_UNIFORMS)), chain)
     chain = chain.with_values(_single(baseline))
     if cell.cause not in (BASELINE, CLEAN):
-        drawn = parameters_of(find(cell.cause), np.array([cell.amplitude_deg]), rng.random((1, CAUSE_UNIFORMS)), motion)
+        drawn = find(cell.cause).draw(np.array([cell.amplitude_deg]), rng.random((1, CAUSE_UNIFORMS)), motion)
         chain = chain.with_effect(cell.cause, **{name: float(value[0]) for name, value in drawn.items()})
     return chain, chain.simulate(motion, seed=int(rng.integers(2**31)))
 

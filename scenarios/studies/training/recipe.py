@@ -87,7 +87,8 @@ def simulate_block(recipe: Recipe, numbers: range) -> Block:
 
 def recipe_of(twin: str, *, protocol: Protocol, ranges: Ranges, causes: Sequence[str] = (), seed: int = 0) -> Recipe:
     """The recipe for a twin or preset; without ``causes`` all that the protocol can show. Raises UserError."""
-    visible = drawable(protocol.motion())
+    effects = effects_with()
+    visible = drawable(protocol.motion(), effects)
     for name in causes:
         if name not in visible:
             raise UserError(f"cause {name!r} cannot be drawn with this protocol; expected among {', '.join(visible)}")
@@ -96,7 +97,7 @@ def recipe_of(twin: str, *, protocol: Protocol, ranges: Ranges, causes: Sequence
         require_within(name, [low, high], 1e-6, 5.0, "deg")
         require_within(name, high, low, 5.0, "deg")
     require_within("most-causes", ranges.most, 0, len(visible), whole=True)
-    chain = stripped(read_twin_or_preset(twin, effects=effects_with()), chosen)
+    chain = stripped(read_twin_or_preset(twin, effects=effects), chosen)
     return Recipe(twin=to_dict(chain), protocol=protocol, ranges=ranges, causes=chosen, seed=seed)
 
 

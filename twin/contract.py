@@ -3,60 +3,25 @@
 from __future__ import annotations
 
 import itertools
-import re
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
-from typing import Any, get_args
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from twin.angles import TAU, Array, wrap
-from twin.catalogue import STAGES, in_order
+from twin.angles import Array, wrap
+from twin.catalogue import in_order
 from twin.chain import Chain
-from twin.effect import ActsOn, Effect, Footprint, Param, Role
+from twin.declaration import undeclared
+from twin.effect import Effect, Param, Role
+from twin.example import Example, example_of, full_motion, permuted, signal_for
 from twin.motion import Motion
 
 ROUNDING_RAD = 1e-12
 """Rounding that is allowed: a double near 4 pi carries about 1e-15, a few operations and the arctangent add to it."""
-NEEDS = frozenset(
-    {
-        *("time_s", "direction", "speed_rpm", "turn", "temperature_c", "vx"),
-        *("both directions", "two speeds", "moving shaft", "one turn", "several turns", "two temperatures"),
-        *("two turns", "two air gaps"),
-    }
-)
-"""What :attr:`twin.motion.Motion.provides` may hold, and two air gaps, which no single sweep provides."""
-NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
-"""Names of effects: lower-case words joined by underscores."""
-_PHASE_DEG = 35.0
-_ACTING: tuple[Role, ...] = ("strength", "level", "per turn", "random")
+_OFF_AXIS_RAD = 0.01234
+_TWO = frozenset({"two air gaps"})
 _SMOOTH: tuple[Role, ...] = ("strength", "level")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Example:
-    """Parameters at which an effect is checked: ``strengths`` make it vanish at their null, ``shapes`` are all others.
-
-    ``memory``: what it does depends on the order of the readings. ``origin``: the values from which strengths are
-    scaled, where these are not null. ``power``: the error grows as this power of the strengths.
-    """
-
-    strengths: Mapping[str, Any]
-    shapes: Mapping[str, float]
-    memory: bool = False
-    power: float = 1.0
-    origin: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def params(self) -> dict[str, Any]:
-        """All parameters of the example."""
-        return {**self.strengths, **self.shapes}
-
-    def scaled(self, factor: float, null: Mapping[str, float]) -> dict[str, Any]:
-        """The parameters with their strengths' distance from the origin scaled."""
-        start = {**null, **self.origin}
-        moved = {name: start[name] + factor * (value - start[name]) for name, value in self.strengths.items()}
-        return {**moved, **self.shapes}
 
 
 @dataclass(frozen=True)
@@ -64,12 +29,14 @@ class Promise:
     """One promise.
 
     ``broken`` returns in words what is wrong, or "" where the promise is kept; ``unasked`` returns why the promise does
-    not apply to an effect, or "" where it does.
+    not apply to an effect, or "" where it does. An effect that breaks a promise which is not ``binding`` is loaded all
+    the same: it acts as it should, and only what is declared about it is missing or wrong.
     """
 
     name: str
     broken: Callable[[Effect, Example, Motion], str]
     unasked: Callable[[Effect, Example], str] = lambda effect, case: ""
+    binding: bool = True
 
 
 @dataclass(frozen=True)
@@ -82,81 +49,14 @@ class Result:
     promise: str
     kept: bool | None
     said: str = ""
-
-
-def full_motion(points: int = 120) -> Motion:
-    """Two turns in both directions at two speeds and two temperatures, everything recorded: all effects can be seen."""
-    steps = np.arange(2 * points)
-    angle = TAU / points * steps
-    rows: dict[str, list[Array]] = {}
-    clock, leg = 0.0, 0
-    for temperature in (20.0, 60.0):
-        for rpm in (60.0, 300.0):
-            for way in (1.0, -1.0):
-                one = {
-                    "shaft_rad": angle if way > 0 else angle[::-1],
-                    "time_s": clock + 60.0 / rpm / points * steps,
-                    "direction": np.full(steps.size, way),
-                    "speed_rad_s": np.full(steps.size, way * rpm * TAU / 60.0),
-                    "turn": 2 * leg + steps // points,
-                    "temperature_c": np.full(steps.size, temperature),
-                }
-                for name, values in one.items():
-                    rows.setdefault(name, []).append(values)
-                clock, leg = clock + 60.0 / rpm / points * steps.size + 0.5, leg + 1
-    columns: dict[str, Any] = {name: np.concatenate(parts) for name, parts in rows.items()}
-    return Motion.from_angle(**columns, has_channels=True)
-
-
-def permuted(motion: Motion, order: np.ndarray[Any, Any]) -> Motion:
-    """The same readings in another order."""
-    arrays = [item.name for item in fields(motion) if item.name != "columns"]
-    return replace(motion, **{name: getattr(motion, name)[order] for name in arrays})
-
-
-def example_of(effect: Effect, motion: Motion) -> Example:
-    """An example from the declaration alone: each strength at its typical size, shapes from the middle of their grid.
-
-    A level is taken where its grid is farthest from null: nearer it may do nothing yet.
-
-    Whether the effect has a memory is not declared, so that it is taken to have one.
-    """
-    grid = list(effect.shapes(motion))
-    middle = dict(grid[len(grid) // 2]) if grid else {}
-    for level in effect.roles("level"):
-        null = effect.params[level].null
-        away = [abs(shape.get(level, null) - null) for shape in grid]
-        middle = dict(grid[int(np.argmax(away))]) if grid else {}
-    if effect.line is not None and effect.line.clock != "channels":
-        inside = effect.line.some(motion)
-        middle[effect.line.param] = float(inside[inside.size // 3]) if inside.size else effect.null()[effect.line.param]
-    strengths: dict[str, Any] = {}
-    shapes: dict[str, float] = {}
-    for name, param in effect.params.items():
-        if param.role == "phase":
-            shapes[name] = min(max(_PHASE_DEG, param.lower), param.upper)
-        elif param.role == "shape":
-            shapes[name] = middle.get(name, param.null)
-        elif param.role == "per turn":
-            if not effect.roles("random"):
-                turns = int(motion.turn.max(initial=0)) + 1
-                strengths[name] = param.null + param.typical * np.where(np.arange(turns) % 3, 1.0, -0.5)
-        else:
-            strengths[name] = middle.get(name, _typical(param))
-    return Example(strengths=strengths, shapes=shapes, memory=True)
-
-
-def _typical(param: Param) -> float:
-    value = param.null + param.typical if param.null + param.typical <= param.upper else param.null - param.typical
-    value = value if not param.counts else max(round(value), round(param.null) + 1)
-    return float(max(value, param.lower))
+    binding: bool = True
 
 
 def check(effect: Effect, *, example: Example | None = None, motion: Motion | None = None) -> Iterator[Result]:
     """Check every promise in turn; an exception in the effect's own code breaks the promise that was being checked."""
     motion = motion or full_motion()
     with np.errstate(all="ignore"):
-        said = _undeclared(effect)
+        said = undeclared(effect)
         yield Result("is declared and documented", not said, said)
         if said:
             return
@@ -174,87 +74,14 @@ def check(effect: Effect, *, example: Example | None = None, motion: Motion | No
                 said = promise.broken(effect, case, motion)
             except Exception as error:
                 said = _raised(error)
-            yield Result(promise.name, not said, said)
+            yield Result(promise.name, not said, said, promise.binding)
 
 
 def _raised(error: Exception) -> str:
     return f"its code raises {type(error).__name__}: {error}"
 
 
-# ---- the declaration --------------------------------------------------------------------------------------------
-
-
-def _undeclared(effect: Effect) -> str:
-    """What is missing or wrong in a declaration, in words."""
-    if not NAME.fullmatch(effect.name):
-        return f"name is {effect.name!r}; expected lower-case words joined by underscores"
-    for name, value, known in (
-        ("stage", effect.stage, STAGES),
-        ("acts_on", effect.acts_on, get_args(ActsOn)),
-        ("footprint", effect.footprint, get_args(Footprint)),
-    ):
-        if value not in known:
-            return f"{name} is {value!r}; expected one of {', '.join(known)}"
-    for name, text in (("source", effect.source), ("signature", effect.signature)):
-        if not isinstance(text, str) or len(text.strip()) < (11 if name == "source" else 1):
-            return f"{name} is {text!r}; expected a few words: where it is defined, what it does to the error"
-    for need in effect.needs:
-        unknown = [part for part in need.split("|") if part not in NEEDS]
-        if unknown:
-            return f"needs {unknown[0]!r}, which no sweep provides; expected among {', '.join(sorted(NEEDS))}"
-    if not any(effect.roles(role) for role in _ACTING):
-        return "has no strength: no parameter that makes it vanish at its null"
-    return next(filter(None, (_unclear(name, param) for name, param in effect.params.items())), "") or _unsearchable(
-        effect
-    )
-
-
-def _unclear(name: str, param: Param) -> str:
-    """What is wrong with a parameter's declaration, in words."""
-    if re.search(r"_\d+$", name) or not name.isidentifier():
-        return f"parameter {name!r}: expected a name that ends in its unit and in no number after an underscore"
-    if not str(param.unit).strip():
-        return f'{name} has no unit; give one ("1" for a pure number)'
-    if not str(param.doc).strip():
-        return f"{name} has no doc; say in a few words what it is"
-    if param.role not in get_args(Role):
-        return f"{name}: role is {param.role!r}; expected one of {', '.join(get_args(Role))}"
-    if not np.isfinite([param.null, param.lower, param.upper]).all() or not param.typical > 0.0:
-        return f"{name}: null, lower, upper and typical must be finite, and typical positive"
-    return ""
-
-
-def _unsearchable(effect: Effect) -> str:
-    """What keeps an effect from being searched for, in words."""
-    named = [*effect.zoomed, *effect.fitted_shapes, *effect.channel_shapes]
-    named += [effect.line.param] if effect.line is not None else []
-    for name in named:
-        if name not in effect.params:
-            return f"zoomed, fitted_shapes or line name {name!r}, which is no parameter"
-    if effect.line is not None and effect.line.clock != "channels" and len(effect.roles("phase")) != 1:
-        return "has a line but not one parameter of role 'phase'"
-    missing = {
-        "mean": not any(effect.roles(role) for role in ("strength", "level", "per turn")) and "a strength or a level",
-        "spread": (effect.spread is None or not effect.roles("random")) and "`spread` and a parameter of role 'random'",
-        "values": (effect.attainable is None or not effect.roles("level")) and "`attainable` and a level",
-        "sequence": effect.marks is None and "`marks`",
-    }[effect.footprint]
-    # The baseline's noise is not searched for, and a burst by code of its own.
-    exempt = effect.baseline or effect.name.startswith("unnamed_")
-    return f"footprint {effect.footprint!r} needs {missing}" if missing and not exempt else ""
-
-
 # ---- what it does -----------------------------------------------------------------------------------------------
-
-
-def signal_for(effect: Effect, motion: Motion) -> Array:
-    """A signal of the kind that the effect acts on, with the parts that differ from channel to channel."""
-    angle = np.stack([motion.shaft_rad, motion.shaft_rad + 0.01])
-    if effect.acts_on in ("shaft", "field"):
-        return angle
-    if effect.acts_on == "channels":
-        return np.stack([np.cos(angle[0]), np.sin(angle[1])])
-    return motion.shaft_rad[None]
 
 
 def _chain(effect: Effect, **params: Any) -> Chain:
@@ -299,8 +126,8 @@ def _unseeded(effect: Effect, case: Example, motion: Motion) -> str:
     if any(values.tobytes() != two.columns[name].tobytes() for name, values in one.columns.items()):
         return "two sweeps of one seed differ; draw from `rng` only"
     same = all(np.array_equal(values, other.columns[name]) for name, values in one.columns.items())
-    # The converter's rounding is the one "random" role that draws no numbers.
-    if same == bool(effect.roles("random")) and effect.name != "adc_quantisation":
+    # The baseline's rounding is the one "random" role that draws no numbers.
+    if same == bool(effect.roles("random")) and not effect.baseline:
         return (
             "has a parameter of role 'random' but sweeps of different seeds are the same"
             if same
@@ -370,6 +197,77 @@ def _lost_shapes(effect: Effect, case: Example, motion: Motion) -> str:
     return ""
 
 
+def _misread_in_the_mirror(effect: Effect, case: Example, motion: Motion) -> str:
+    # Off the axes: on them an angle lies on the edge of quantisers, and falls to either side by rounding.
+    motion = replace(motion, shaft_rad=motion.shaft_rad + _OFF_AXIS_RAD)
+    worst = max(_mirror_error(effect, case, motion, *senses) for senses in itertools.product((1, -1), (1, -1)))
+    if not effect.mirrors:
+        return "declares mirror=0 although it reads the same counted the other way" if worst <= ROUNDING_RAD else ""
+    if worst <= ROUNDING_RAD:
+        return ""
+    turned = [name for name, param in effect.params.items() if _turned_fits(effect, case, motion, name, param)]
+    cure = f"declare mirror={-effect.mirror(turned[0])} for {turned[0]}" if turned else _NO_MIRROR
+    return f"reads otherwise by {np.degrees(worst):.2g} deg when both sides count the other way; {cure}"
+
+
+_NO_MIRROR = "declare mirror=-1 for what then changes sign, or mirror=0 for what no value sets right"
+
+
+def _turned_fits(effect: Effect, case: Example, motion: Motion, name: str, param: Param) -> bool:
+    other: Any = -effect.mirror(name)
+    params = {**effect.params, name: replace(param, mirror=other)}
+    return _mirror_error(replace(effect, params=params), case, motion, 1, 1) <= ROUNDING_RAD
+
+
+def _mirror_error(effect: Effect, case: Example, motion: Motion, sensor: int, output: int) -> float:
+    """Largest difference [rad] between the readings of a chain and of the one that counts the other way."""
+    chain = replace(_chain(effect, **case.params), sensor_sense=sensor, output_sense=output)
+    return float(np.max(np.abs(wrap(chain.readings(motion) - chain.mirrored().readings(motion)))))
+
+
+def _foresees(effect: Effect, case: Example, motion: Motion) -> str:
+    values = {**effect.null(), **case.params}
+    # So early that neither the fastest nor the warmest reading has come.
+    first = np.arange(len(motion) // 4)
+    whole = effect.forward(signal_for(effect, motion), motion, values, None)[..., first]
+    begun = motion.part(first)
+    same = np.max(np.abs(effect.forward(signal_for(effect, begun), begun, values, None) - whole)) <= ROUNDING_RAD
+    if same == effect.record_wide:
+        return (
+            "declares record_wide although no reading depends on those to come"
+            if same
+            else "what it does to a reading depends on those to come; declare record_wide=True"
+        )
+    return ""
+
+
+def _drawn_astray(effect: Effect, case: Example, motion: Motion) -> str:
+    strength = np.geomspace(0.02, 0.3, 16)
+    drawn = effect.draw(strength, np.random.default_rng(4).random((strength.size, 4)), motion)
+    for name, values in drawn.items():
+        param = effect.params.get(name)
+        if param is None:
+            return f"draws {name!r}, which is no parameter"
+        array = np.asarray(values)
+        if array.shape != strength.shape:
+            return f"draws {name} of shape {array.shape}; expected {strength.shape}, one value a sweep"
+        lowest, highest = param.allowed or (param.lower, param.upper)
+        if not np.all((array >= lowest) & (array <= highest)):
+            return f"draws {name} outside [{lowest:g}, {highest:g}]"
+    if all(np.any(effect.params[name].null == values) for name, values in drawn.items() if _acts(effect, name)):
+        return "is drawn at its null; give a `drawing`"
+    return ""
+
+
+def _acts(effect: Effect, name: str) -> bool:
+    return effect.params[name].role in (*_SMOOTH, "random")
+
+
+def _not_drawn(effect: Effect, case: Example) -> str:
+    # What only two recordings show is no label of one sweep.
+    return "is no cause of a training sweep" if effect.baseline or effect.kind or _TWO & effect.needs else ""
+
+
 def _only_random(effect: Effect, case: Example) -> str:
     smooth = any(effect.params[name].role in _SMOOTH for name in case.strengths)
     return "" if smooth else "acts at random, or in each turn on its own"
@@ -393,4 +291,7 @@ PROMISES = (
     Promise("half the strength, half the error", _bent, _no_strength),
     Promise("does not care for the order of the readings", _unordered, _memory),
     Promise("refuses what is out of range", _boundless),
+    Promise("reads the same counted the other way", _misread_in_the_mirror, _only_random, binding=False),
+    Promise("says whether it needs the whole record", _foresees, _only_random, binding=False),
+    Promise("is drawn within its range", _drawn_astray, _not_drawn, binding=False),
 )

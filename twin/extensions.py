@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from twin.catalogue import CATALOGUE, in_order
-from twin.contract import check, full_motion
+from twin.contract import check
 from twin.effect import Effect
 from twin.errors import UserError
+from twin.example import full_motion
 
 GROUP = "halltwin.effects"
 """Entry points of this group name an :class:`Effect` or a sequence of them."""
@@ -86,7 +87,7 @@ def refuse_broken(effect: Effect, where: str) -> None:
     """Raise EffectError where the effect may not take part: it breaks a promise, or is of a kind that is not loaded."""
     said = unfit(effect)
     if not said:
-        broken = next((r for r in check(effect, motion=full_motion()) if r.kept is False), None)
+        broken = next((r for r in check(effect, motion=full_motion()) if r.kept is False and r.binding), None)
         said = "" if broken is None else f"{broken.said} (promise: {broken.promise})"
     if said:
         raise EffectError(f"{where}: effect '{effect.name}': {said}; mend it, halltwin check-effect shows all promises")

@@ -81,6 +81,8 @@ _EFFECT = """EFFECT = Effect(
     # Units stand at the end of names. At its null a strength does nothing; lower and upper bound it; typical is the
     # size that makes about 0.1 deg. Roles: "strength" where none is given, "phase" in deg, "shape" for what is tried on
     # the grid `shapes` (orders, widths), "level" for a strength that is tried there, "random" for the size of noise.
+    # Where they apply: allowed=(low, high) for what physics allows, field_power=-1.0 for what falls with the magnet's
+    # field, mirror=-1 for what changes sign when sensor and output count the other way.
     params={{
 {params}
     }},
@@ -270,7 +272,7 @@ def _tone(structure: Mapping[str, Any], sweep: Mapping[str, Any]) -> Parts:
             "    shares = np.linspace(-0.02, 0.02, 2 * count + 1)\n"
             '    return [{"frequency_Hz": FREQUENCY_HZ * (1.0 + float(share))} for share in shares]\n\n'
         ),
-        declared=_fitted("frequency_Hz"),
+        declared=_fitted("frequency_Hz") + _RECORD_WIDE,
     )
 
 
@@ -287,6 +289,7 @@ def _drift(structure: Mapping[str, Any], sweep: Mapping[str, Any]) -> Parts:
         + "return signal + amplitude_rad * wave",
         needs=("time_s",),
         signature="a slow movement of the zero",
+        declared=_RECORD_WIDE,
     )
 
 
@@ -318,6 +321,7 @@ def _local(structure: Mapping[str, Any], sweep: Mapping[str, Any]) -> Parts:
 
 
 _SHAPE = ', role="shape"'
+_RECORD_WIDE = "# A reading depends on the length of the record: no node on a bus can play it.\nrecord_wide=True,\n"
 
 
 def _noise(structure: Mapping[str, Any], sweep: Mapping[str, Any]) -> Parts:

@@ -14,7 +14,8 @@ from diagnosis.report.answer import SCHEMA
 from diagnosis.report.wording import structure_words
 from scenarios.commands.effect_skeleton import skeleton
 from twin.catalogue import find
-from twin.contract import NAME, check
+from twin.contract import check
+from twin.declaration import NAME
 from twin.effect import Effect
 from twin.errors import UserError
 from twin.extensions import RESERVED, effects_of, effects_with, unfit

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin import contract
+from twin import example
 from twin.angles import TAU, Array
 from twin.motion import Motion
 
@@ -20,8 +20,8 @@ Signature = Callable[[Motion, Params], Array]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Example(contract.Example):
-    """An example of :mod:`twin.contract` with the error that it must leave, worked out apart from the code.
+class Example(example.Example):
+    """An example of :mod:`twin.example` with the error that it must leave, worked out apart from the code.
 
     ``kinks``: the effect's slope jumps, so a few readings near the jumps may follow another branch at half the
     strength: the share of the readings for which that is allowed.

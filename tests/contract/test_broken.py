@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from twin.angles import Array
-from twin.contract import Example, check
-from twin.effect import Effect, Forward, Line, Param, Parameters
+from twin.contract import check
+from twin.effect import Effect, Forward, Line, Marks, Param, Parameters
+from twin.example import Example
 from twin.motion import Motion
 
 STRENGTH = Param(unit="deg", null=0.0, lower=-9.0, upper=9.0, doc="amplitude")
@@ -96,6 +97,53 @@ BROKEN: Mapping[str, tuple[str, dict[str, Any]]] = {
     ),
     "no batch": ("one call each", {"forward": acting(lambda s, m, a, r: s + a if np.ndim(a) == 0 else s)}),
     "bent": ("half the strengths do 0.25 of the error", {"forward": acting(lambda s, m, a, r: s + 50.0 * a * a)}),
+    "mirror that is none": ("mirror is 2", {"params": {"amplitude_deg": replace(STRENGTH, mirror=2)}}),  # type: ignore[arg-type]
+    "allows what is out of range": (
+        "amplitude_deg: allowed is (0.0, 99.0)",
+        {"params": {"amplitude_deg": replace(STRENGTH, allowed=(0.0, 99.0))}},
+    ),
+    "infinite power of the field": (
+        "field_power and scatter must be finite",
+        {"params": {"amplitude_deg": replace(STRENGTH, field_power=np.inf)}},
+    ),
+    "multiples that are none": (
+        "line.multiples are (1, 2)",
+        {
+            "line": Line(
+                param="order", clock="channels", limits=lambda m: (1, 9), within=lambda o: o > 0, multiples=(1, 2)
+            )
+        },
+    ),
+    "grid without angles": ("output_grid needs `attainable`", {"output_grid": True}),
+    "words for nothing": ("words name 'width_deg'", {"words": "{amplitude_deg} deg, {width_deg:4} deg wide"}),
+    "tells of nothing": (
+        "marks.told tells of 'count'",
+        {"marks": Marks(find=lambda *_, **__: (np.zeros(1, bool), 0.0), told=lambda touched, n: {"count": (1.0, 0.0)})},
+    ),
+    "changes sign in the mirror": (
+        "reads otherwise by 0.2 deg when both sides count the other way; declare mirror=-1 for amplitude_deg",
+        {"acts_on": "angle", "stage": "link", "params": {**SOUND.params, "amplitude_deg": replace(STRENGTH, mirror=1)}},
+    ),
+    "has no mirror": (
+        "or mirror=0 for what no value sets right",
+        {"acts_on": "channels", "forward": acting(lambda s, m, a, r: s + a * s**2)},
+    ),
+    "needs no mirror": (
+        "declares mirror=0 although it reads the same",
+        {"params": {**SOUND.params, "amplitude_deg": replace(STRENGTH, mirror=0)}},
+    ),
+    "foresees": (
+        "depends on those to come; declare record_wide=True",
+        {"forward": acting(lambda s, m, a, r: s + a * m.time_s / m.time_s[-1])},
+    ),
+    "foresees nothing": ("declares record_wide although", {"record_wide": True}),
+    "draws what is not there": ("draws 'width_deg'", {"drawing": lambda s, u, m: {"width_deg": s}}),
+    "draws out of range": (
+        "draws amplitude_deg outside [-9, 9]",
+        {"drawing": lambda s, u, m: {"amplitude_deg": 99 * s}},
+    ),
+    "draws one for all": ("of shape (); expected (16,)", {"drawing": lambda s, u, m: {"amplitude_deg": np.array(1.0)}}),
+    "draws nothing": ("is drawn at its null", {"drawing": lambda s, u, m: {"amplitude_deg": 0.0 * s}}),
     "raises": ("raises ZeroDivisionError", {"forward": acting(lambda s, m, a, r: s + 1 / 0 if np.any(a) else s)}),
 }
 

@@ -9,8 +9,9 @@ from tests.contract.examples import EXAMPLES, Example
 from twin.angles import Array, wrap
 from twin.catalogue import CATALOGUE
 from twin.chain import Chain
-from twin.contract import PROMISES, ROUNDING_RAD, Promise, check, full_motion
+from twin.contract import PROMISES, ROUNDING_RAD, Promise, check
 from twin.effect import Effect
+from twin.example import full_motion
 
 MOTION = full_motion()
 
@@ -35,12 +36,12 @@ def test_says_where_it_comes_from(effect: Effect) -> None:
     assert declared.kept, declared.said
 
 
-@pytest.mark.parametrize("promise", PROMISES, ids=lambda promise: promise.name.replace(" ", "_").replace(",", ""))
-@each_effect
+@pytest.mark.parametrize(
+    ("effect", "promise"),
+    [(e, p) for p in PROMISES for e in CATALOGUE if not p.unasked(e, EXAMPLES[e.name])],
+    ids=lambda case: case.name.replace(" ", "_").replace(",", ""),
+)
 def test_keeps_its_promises(effect: Effect, promise: Promise) -> None:
-    unasked = promise.unasked(effect, example(effect))
-    if unasked:
-        pytest.skip(unasked)
     assert promise.broken(effect, example(effect), MOTION) == ""
 
 
@@ -50,12 +51,12 @@ def test_keeps_them_on_an_example_made_from_its_declaration(effect: Effect) -> N
     assert [result for result in check(effect, motion=MOTION) if result.kept is False] == []
 
 
-@each_effect
+# The others leave their mark on the spread, the values or single readings: see test_footprints.
+@pytest.mark.parametrize("effect", [e for e in CATALOGUE if EXAMPLES[e.name].signature], ids=lambda effect: effect.name)
 def test_leading_signature(effect: Effect) -> None:
     """What the signature leaves over falls at least twice as fast as the effect itself when the amplitude halves."""
     case = example(effect)
-    if case.signature is None:
-        pytest.skip("leaves its mark on the spread, the values or single readings: see test_footprints")
+    assert case.signature is not None
     left, size = [], []
     for factor in (1.0, 0.5):
         params = {**effect.null(), **case.scaled(factor, effect.null())}

@@ -9,8 +9,8 @@ from scenarios.commands.protocol import Protocol
 from twin.angles import TAU, wrap
 from twin.catalogue import find
 from twin.chain import Chain
-from twin.contract import full_motion
 from twin.cordic.cordic_truncation import attainable
+from twin.example import full_motion
 
 MOTION = full_motion()
 LONG = Protocol(turns=40, points=360, channels=False).motion()

@@ -67,6 +67,16 @@ def refused(*arguments: str | Path) -> str:
     return ended.err
 
 
+def test_what_is_told_of_an_effect_binds_no_one(tmp_path: Path) -> None:
+    """A file without the later declarations is loaded as ever; what is missing in it is said where it is checked."""
+    path = written(tmp_path, "time_frequency")
+    path.write_text(path.read_text().replace("record_wide=True,", ""))
+    assert "belt_splice" in halltwin("causes", "--markdown", "--effects", path).out
+    ended = halltwin("check-effect", path)
+    assert ended.code == 2
+    assert "record_wide=True" in " ".join(ended.out.split())
+
+
 # ---- the skeleton -----------------------------------------------------------------------------------------------
 
 

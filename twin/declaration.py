@@ -1,0 +1,105 @@
+"""What an effect has to declare, and what is wrong with a declaration, in words."""
+
+from __future__ import annotations
+
+import re
+from string import Formatter
+from typing import get_args
+
+import numpy as np
+
+from twin.catalogue import STAGES
+from twin.effect import ActsOn, Effect, Footprint, Param, Role
+
+NEEDS = frozenset(
+    {
+        *("time_s", "direction", "speed_rpm", "turn", "temperature_c", "vx"),
+        *("both directions", "two speeds", "moving shaft", "one turn", "several turns", "two temperatures"),
+        *("two turns", "two air gaps"),
+    }
+)
+"""What :attr:`twin.motion.Motion.provides` may hold, and two air gaps, which no single sweep provides."""
+NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+"""Names of effects: lower-case words joined by underscores."""
+_ACTING: tuple[Role, ...] = ("strength", "level", "per turn", "random")
+
+
+def undeclared(effect: Effect) -> str:
+    """What is missing or wrong in a declaration, in words; "" where nothing is."""
+    if not NAME.fullmatch(effect.name):
+        return f"name is {effect.name!r}; expected lower-case words joined by underscores"
+    for name, value, known in (
+        ("stage", effect.stage, STAGES),
+        ("acts_on", effect.acts_on, get_args(ActsOn)),
+        ("footprint", effect.footprint, get_args(Footprint)),
+    ):
+        if value not in known:
+            return f"{name} is {value!r}; expected one of {', '.join(known)}"
+    for name, text in (("source", effect.source), ("signature", effect.signature)):
+        if not isinstance(text, str) or len(text.strip()) < (11 if name == "source" else 1):
+            return f"{name} is {text!r}; expected a few words: where it is defined, what it does to the error"
+    for need in effect.needs:
+        unknown = [part for part in need.split("|") if part not in NEEDS]
+        if unknown:
+            return f"needs {unknown[0]!r}, which no sweep provides; expected among {', '.join(sorted(NEEDS))}"
+    if not any(effect.roles(role) for role in _ACTING):
+        return "has no strength: no parameter that makes it vanish at its null"
+    unclear = next(filter(None, (_unclear(name, param) for name, param in effect.params.items())), "")
+    return unclear or _unsearchable(effect) or _untold(effect)
+
+
+def _unclear(name: str, param: Param) -> str:
+    """What is wrong with a parameter's declaration, in words."""
+    if re.search(r"_\d+$", name) or not name.isidentifier():
+        return f"parameter {name!r}: expected a name that ends in its unit and in no number after an underscore"
+    if not str(param.unit).strip():
+        return f'{name} has no unit; give one ("1" for a pure number)'
+    if not str(param.doc).strip():
+        return f"{name} has no doc; say in a few words what it is"
+    if param.role not in get_args(Role):
+        return f"{name}: role is {param.role!r}; expected one of {', '.join(get_args(Role))}"
+    if not np.isfinite([param.null, param.lower, param.upper]).all() or not param.typical > 0.0:
+        return f"{name}: null, lower, upper and typical must be finite, and typical positive"
+    if param.mirror not in (None, -1, 0, 1):
+        return f"{name}: mirror is {param.mirror!r}; expected -1, 1, or 0 where no value reads the same"
+    low, high = param.allowed or (param.lower, param.upper)
+    if not param.lower <= low <= param.null <= high <= param.upper:
+        return f"{name}: allowed is {param.allowed}; expected a range within [lower, upper] that holds the null"
+    if not np.isfinite(param.field_power) or not 0.0 <= param.scatter < np.inf:
+        return f"{name}: field_power and scatter must be finite, and scatter not negative"
+    return ""
+
+
+def _unsearchable(effect: Effect) -> str:
+    """What keeps an effect from being searched for, in words."""
+    named = [*effect.zoomed, *effect.fitted_shapes, *effect.channel_shapes]
+    named += [effect.line.param] if effect.line is not None else []
+    for name in named:
+        if name not in effect.params:
+            return f"zoomed, fitted_shapes or line name {name!r}, which is no parameter"
+    if effect.line is not None and effect.line.clock != "channels" and len(effect.roles("phase")) != 1:
+        return "has a line but not one parameter of role 'phase'"
+    missing = {
+        "mean": not any(effect.roles(role) for role in ("strength", "level", "per turn")) and "a strength or a level",
+        "spread": (effect.spread is None or not effect.roles("random")) and "`spread` and a parameter of role 'random'",
+        "values": (effect.attainable is None or not effect.roles("level")) and "`attainable` and a level",
+        "sequence": effect.marks is None and "`marks`",
+    }[effect.footprint]
+    # The baseline's noise is not searched for, and a burst by code of its own.
+    exempt = effect.baseline or effect.name.startswith("unnamed_")
+    return f"footprint {effect.footprint!r} needs {missing}" if missing and not exempt else ""
+
+
+def _untold(effect: Effect) -> str:
+    """What keeps an effect from being told to a person, in words."""
+    if effect.output_grid and effect.attainable is None:
+        return "output_grid needs `attainable`: the angles of the grid"
+    if effect.line is not None and any(times < 2 for times in effect.line.multiples):
+        return f"line.multiples are {effect.line.multiples}; expected whole numbers from 2"
+    told = {} if effect.marks is None else effect.marks.told(1, 100)
+    strange = next((name for name in told if name not in effect.params), None)
+    if strange is not None:
+        return f"marks.told tells of {strange!r}, which is no parameter"
+    known = {*effect.params, *effect.figures(effect.null()), "largest_deg"}
+    strange = next((name for _, name, _, _ in Formatter().parse(effect.words) if name and name not in known), None)
+    return f"words name {strange!r}, which is neither a parameter nor a figure" if strange is not None else ""

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from twin import drawing
 from twin.angles import Array, wrap
 from twin.catalogue import in_order
 from twin.chain import Chain
@@ -243,7 +244,7 @@ def _foresees(effect: Effect, case: Example, motion: Motion) -> str:
 
 def _drawn_astray(effect: Effect, case: Example, motion: Motion) -> str:
     strength = np.geomspace(0.02, 0.3, 16)
-    drawn = effect.draw(strength, np.random.default_rng(4).random((strength.size, 4)), motion)
+    drawn = drawing.drawn(effect, strength, np.random.default_rng(4).random((strength.size, 4)), motion)
     for name, values in drawn.items():
         param = effect.params.get(name)
         if param is None:

@@ -3,35 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from twin.angles import TAU, Array, radians
+from twin.effect import Effect, Param
 from twin.motion import Motion
-
-if TYPE_CHECKING:
-    from twin.effect import Effect, Param
 
 YARDSTICK_DEG = 0.1
 """Angle error that a parameter of its typical size makes, about its amplitude."""
 
 
-def by_declaration(effect: Effect, strength_deg: Array, uniform: Array, motion: Motion) -> dict[str, Array]:
-    """Parameters (k,) of an effect at strengths [deg] (k,), from uniform numbers (k, 4).
+def drawn(effect: Effect, strength_deg: Array, uniform: Array, motion: Motion) -> dict[str, Array]:
+    """Parameters (k,) of an effect at strengths [deg] (k,), from uniform numbers (k, 4): see its ``drawing``."""
+    declared = by_declaration(effect, strength_deg, uniform, motion)
+    return declared if effect.drawing is None else {**declared, **effect.drawing(strength_deg, uniform, motion)}
 
-    What acts goes by its yardstick, of either sign where physics allows both; several strengths share it as a vector
-    does. Phases are even over the turn, shapes one of those that a search tries.
+
+def by_declaration(effect: Effect, strength_deg: Array, uniform: Array, motion: Motion) -> dict[str, Array]:
+    """The parameters that an effect is drawn with where it has no ``drawing``.
+
+    A strength, level or size of noise is drawn in units of its typical size, with either sign where physics allows
+    both; several strengths share the size as components of a vector. Phases are uniform over the turn, and shapes are
+    among those that a search tries.
     """
-    drawn = _shapes(effect, uniform[:, 2], motion)
+    found = _shapes(effect, uniform[:, 2], motion)
     size = strength_deg / YARDSTICK_DEG
     names = effect.roles("strength")
     for name, share in zip(names, _shares(uniform[:, 0], len(names)), strict=True):
-        drawn[name] = _acting(effect.params[name], size, share)
+        found[name] = _acting(effect.params[name], size, share)
     for name in (*effect.roles("level"), *effect.roles("random")):
-        drawn.setdefault(name, _acting(effect.params[name], size, np.ones(size.size)))
-    drawn |= dict.fromkeys(effect.roles("phase"), 360.0 * uniform[:, 1])
-    return drawn
+        found.setdefault(name, _acting(effect.params[name], size, np.ones(size.size)))
+    found |= dict.fromkeys(effect.roles("phase"), 360.0 * uniform[:, 1])
+    return found
 
 
 def _acting(param: Param, size: Array, share: Array) -> Array:
@@ -41,7 +45,8 @@ def _acting(param: Param, size: Array, share: Array) -> Array:
         share = np.abs(share)
     elif highest == param.null:
         share = -np.abs(share)
-    return np.asarray(np.clip(param.null + size * param.typical * share, lowest, highest))
+    value = param.null + size * param.typical * share
+    return np.asarray(np.clip(np.round(value) if param.counts else value, lowest, highest))
 
 
 def _shares(uniform: Array, count: int) -> tuple[Array, ...]:
@@ -57,13 +62,13 @@ def _shapes(effect: Effect, uniform: Array, motion: Motion) -> dict[str, Array]:
     """Shapes, and levels that are tried with them: one row of the grid, one line of those that a spectrum looks at."""
     grid = [shape for shape in effect.shapes(motion) if shape]
     rows = whole(uniform, 0, len(grid) - 1).astype(np.int64)
-    drawn = {name: np.array([shape[name] for shape in grid])[rows] for name in (grid[0] if grid else ())}
+    found = {name: np.array([shape[name] for shape in grid])[rows] for name in (grid[0] if grid else ())}
     if effect.line is not None and effect.params[effect.line.param].role == "shape":
         lines = effect.line.some(motion)
         if not lines.size:
-            return drawn
-        drawn[effect.line.param] = lines[whole(uniform, 0, lines.size - 1).astype(np.int64)]
-    return drawn
+            return found
+        found[effect.line.param] = lines[whole(uniform, 0, lines.size - 1).astype(np.int64)]
+    return found
 
 
 def span(uniform: Array, low: float, high: float) -> Array:

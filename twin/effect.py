@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.angles import TAU, Array
-from twin.drawing import by_declaration
 from twin.motion import Motion
 
 ActsOn = Literal["shaft", "field", "channels", "angle", "reference"]
@@ -194,7 +193,7 @@ class Effect:
     ``record_wide`` what it does to a reading depends on readings still to come (the record's length, middle or
     extremes), so that it cannot be played reading by reading.
     ``handicap``  log likelihood [nats] that it must gain beyond others, where a plainer description exists.
-    ``drawing``   for training sweeps: parameters in place of those that :meth:`draw` takes from the declaration alone.
+    ``drawing``   for training sweeps: parameters in place of those that :func:`twin.drawing.by_declaration` takes.
     ``kind``      for structure without a name: what kind it is, in one word of the answer's vocabulary.
     ``words``     the same in words: a format string over the answer's figures, ``{order:4}`` for four digits;
     ``largest_deg`` stands for the largest of the figures in degrees.
@@ -317,8 +316,3 @@ class Effect:
     def mirrors(self) -> bool:
         """Whether every parameter has a value with which the mirrored chain reads the same."""
         return all(self.mirror(name) != 0 for name in self.params)
-
-    def draw(self, strength_deg: Array, uniform: Array, motion: Motion) -> dict[str, Array]:
-        """Parameters (k,) of the effect at strengths [deg] (k,) from uniform numbers (k, 4), for training sweeps."""
-        drawn = by_declaration(self, strength_deg, uniform, motion)
-        return drawn if self.drawing is None else {**drawn, **self.drawing(strength_deg, uniform, motion)}

@@ -20,6 +20,7 @@ from twin.angles import Array
 from twin.baseline import FACTORS
 from twin.catalogue import find
 from twin.chain import Chain
+from twin.drawing import drawn
 from twin.effect import Effect
 from twin.hall.noise import NOISE
 from twin.motion import Motion
@@ -148,8 +149,9 @@ def simulate(cell: Cell, motion: Motion, rng: np.random.Generator) -> tuple[Chai
     baseline = baseline_values(rng.random((1, BASELINE_UNIFORMS)), chain)
     chain = chain.with_values(_single(baseline))
     if cell.cause not in (BASELINE, CLEAN):
-        drawn = find(cell.cause).draw(np.array([cell.amplitude_deg]), rng.random((1, CAUSE_UNIFORMS)), motion)
-        chain = chain.with_effect(cell.cause, **{name: float(value[0]) for name, value in drawn.items()})
+        uniform = rng.random((1, CAUSE_UNIFORMS))
+        params = drawn(find(cell.cause), np.array([cell.amplitude_deg]), uniform, motion)
+        chain = chain.with_effect(cell.cause, **{name: float(value[0]) for name, value in params.items()})
     return chain, chain.simulate(motion, seed=int(rng.integers(2**31)))
 
 

@@ -2,7 +2,7 @@
 
 Each sweep brings one row of uniform numbers, so that what is drawn for it depends on its own stream alone. Strengths
 are in degrees of angle error, about its amplitude. How a cause is drawn at a strength is its own affair:
-:meth:`twin.effect.Effect.draw`.
+:func:`twin.drawing.drawn`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from twin.angles import Array
 from twin.baseline import FACTORS
 from twin.catalogue import CATALOGUE, find, unnamed
 from twin.chain import Chain
-from twin.drawing import log_span
+from twin.drawing import drawn, log_span
 from twin.effect import BoolArray, Effect
 from twin.hall.noise import NOISE
 from twin.motion import Motion
@@ -82,8 +82,8 @@ def draw(uniforms: Array, base: Chain, causes: tuple[str, ...], motion: Motion, 
         kept = {**effect.null(), **base.values.get(name, {})}
         alike = [key for key in kept if effect.params[key].role != "per turn"]
         params = {key: np.full(batch, kept[key], dtype=np.float64) for key in alike}
-        for key, drawn in effect.draw(strength[rows, column], own[rows, column], motion).items():
-            params[key][rows] = drawn
+        for key, value in drawn(effect, strength[rows, column], own[rows, column], motion).items():
+            params[key][rows] = value
         values[name] = params
     return Draw(values, labels, strength, noise, np.searchsorted(_SPLIT, head[:, 2], side="right").astype(np.float64))
 

@@ -124,17 +124,17 @@ TWIN: tuple[Mutation, ...] = (
     ),
     Mutation(
         "design.saturation_grows_with_the_field",
-        "scenarios/studies/design/field.py",
-        '"saturation": (2.0, ("k_percent",))',
-        '"saturation": (1.0, ("k_percent",))',
+        "twin/concentrator/saturation.py",
+        "field_power=2.0",
+        "field_power=1.0",
         (f"{_DESIGN}::test_a_causes_error_goes_with_its_power_of_the_field",),
         short=True,
     ),
     Mutation(
         "design.quadratic_term_keeps_its_share",
-        "scenarios/studies/design/field.py",
-        '"quadratic_nonlinearity": (1.0, ("q_percent",))',
-        '"quadratic_nonlinearity": (0.0, ("q_percent",))',
+        "twin/hall/quadratic_nonlinearity.py",
+        "field_power=1.0",
+        "field_power=0.0",
         (f"{_DESIGN}::test_a_causes_error_goes_with_its_power_of_the_field",),
     ),
 )

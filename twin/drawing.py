@@ -39,7 +39,7 @@ def by_declaration(effect: Effect, strength_deg: Array, uniform: Array, motion: 
 
 
 def _acting(param: Param, size: Array, share: Array) -> Array:
-    """So many times the typical size from null, in a direction that physics allows."""
+    """A value so many typical sizes away from null, on a side that physics allows."""
     lowest, highest = param.allowed or (param.lower, param.upper)
     if lowest == param.null:
         share = np.abs(share)
@@ -72,12 +72,12 @@ def _shapes(effect: Effect, uniform: Array, motion: Motion) -> dict[str, Array]:
 
 
 def span(uniform: Array, low: float, high: float) -> Array:
-    """Even from low to high."""
+    """Uniform between low and high."""
     return np.asarray(low + (high - low) * uniform)
 
 
 def log_span(uniform: Array, low: float, high: float) -> Array:
-    """Even in the logarithm, from low to high."""
+    """Uniform in the logarithm, between low and high."""
     return np.asarray(low * (high / low) ** uniform)
 
 

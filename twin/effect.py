@@ -40,13 +40,31 @@ Role = Literal["strength", "level", "phase", "shape", "per turn", "random"]
 Parameters = Mapping[str, Any]
 BoolArray = NDArray[np.bool_]
 Drawing = Callable[[Array, Array, Motion], Mapping[str, Array]]
-"""strength [deg] (k,), uniform numbers (k, 4), motion -> parameters (k,) of an effect of about that strength."""
+"""Draws an effect's parameters for training sweeps.
+
+Called with strengths [deg] (k,), uniform numbers (k, 4) and a motion, it returns parameters (k,) by name at which the
+effect is about that strong.
+"""
 
 
 class Forward(Protocol):
-    """signal ``(..., k, n)``, motion, parameters (scalars or ``(batch, 1, 1)``), generator -> signal of that shape.
+    """What an effect does to its signal.
 
-    Without a generator the effect acts in expectation: what is random then does nothing.
+    Parameters
+    ----------
+    signal : array, (..., k, n)
+        The signal that the effect acts on, as :data:`ActsOn` describes it.
+    motion : Motion
+        What the shaft does at each of the n readings.
+    values : mapping
+        Every parameter by name: scalars, or arrays (batch, 1, 1).
+    rng : numpy.random.Generator or None
+        Draws what is random; without it the effect acts in expectation, and what is random does nothing.
+
+    Returns
+    -------
+    array
+        The changed signal, of the same shape; the one handed in stays as it is.
     """
 
     def __call__(self, signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array: ...
@@ -54,18 +72,34 @@ class Forward(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Param:
-    """One parameter: ``lower <= null <= upper``, in the unit its name ends with.
+    """One parameter of an effect.
 
-    ``typical``   the size at which the effect is about 0.1 deg: the yardstick for numerical derivatives.
-    ``counts``    marks whole numbers (bits, orders, iterations).
-    ``allowed``   lowest and highest value that physics allows, where a fit is given more room (none: ``lower``,
-    ``upper``); what is drawn for training lies within.
-    ``field_power`` the parameter goes with this power of the magnet's field at the sensor, everything else kept (same
-    device, same gain): 0 for angles, -1 for what is constant in volts or millitesla but counted in amplitudes.
-    ``distance_power`` parameters -> power of the distance from the magnet's centre that it goes with besides.
-    ``mirror``    what it is multiplied by in the chain that counts the other way on both sides and yet reads the same
-    (see :meth:`Effect.mirrored`); 0: no value of it does that. None: as the role and the signal have it.
-    ``scatter``   half width within which devices of one kind differ, about the value of the twin that stands for them.
+    Attributes
+    ----------
+    unit : str
+        Its unit, in which its name ends; ``"1"`` for a pure number.
+    null, lower, upper : float
+        ``lower <= null <= upper``: at null a strength does nothing; the others bound what a fit may try.
+    doc : str
+        What it is, in a few words.
+    role : str
+        What it is to a fit: see :data:`Role`.
+    typical : float
+        The size at which the effect is about 0.1 deg: the yardstick for numerical derivatives.
+    counts : bool
+        Whether it is a whole number (bits, orders, iterations).
+    allowed : tuple of float, optional
+        Lowest and highest value that physics allows, where a fit is given more room; training sweeps keep to it.
+    field_power : float
+        Power of the magnet's field at the sensor with which it changes, device and gain kept: 0 for angles, -1 for what
+        is constant in volts or millitesla but counted in amplitudes of the channels.
+    distance_power : callable, optional
+        From the effect's parameters to the power of the distance from the magnet's centre with which it also changes.
+    mirror : {-1, 0, 1}, optional
+        What it is multiplied by in the mirrored chain (see :meth:`Effect.mirrored`); 0: no value of it reads the same
+        there. Not given: what follows from its role and from the signal that the effect acts on.
+    scatter : float
+        Half width of the range over which devices of one kind differ in it.
     """
 
     unit: str
@@ -89,11 +123,12 @@ class Param:
 
 @dataclass(frozen=True, kw_only=True)
 class Line:
-    """A periodic shape in the shaft angle (orders), in time (Hz) or in the channels' value (a bit's weight, %).
+    """A periodic shape: found by a periodogram instead of a grid.
 
-    It is screened by one spectrum instead of a grid. ``limits`` maps a motion to the lowest and highest order or
-    frequency worth looking at; ``within`` says of an array of them which belong to the effect. ``multiples`` are the
-    whole numbers of times its order or frequency at which the same source shows again.
+    ``param`` is the parameter that holds its order, frequency or weight; ``clock`` is what it is periodic in: the shaft
+    angle (orders), time (Hz), or a channel's value (a bit's weight, %). ``limits`` maps a motion to the lowest and
+    highest order, frequency or weight worth looking at; ``within`` maps an array of these to a mask of those that belong
+    to the effect; ``multiples`` are multiples of it at which the same source shows again.
     """
 
     param: str
@@ -113,8 +148,8 @@ class Line:
 class FindMarks(Protocol):
     """Finds the single readings that an effect of the footprint "sequence" has touched.
 
-    measured [rad] (n,), residual [rad] (n,), noise [rad], step of the output grid [rad] or 0, motion ->
-    (mask of the touched rows, log of the probability that chance alone marks as many).
+    From readings and residual [rad] (n,), the RMS of the noise [rad], the step of the output's grid [rad] (0: none) and
+    the motion to a mask (n,) of the touched readings and the log probability that chance alone marks as many.
     """
 
     def __call__(
@@ -124,13 +159,21 @@ class FindMarks(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Marks:
-    """How an effect of the footprint "sequence" is looked for and what is told of it; called, it does ``find``.
+    """How an effect of the footprint "sequence" is looked for, and what is said of it. Called, it does ``find``.
 
-    ``told``      rows touched, readings -> the parameters that say so, each with its standard deviation.
-    ``early``     its marks show before anything else is known, and would pass for structure: looked for first, and once
-    more in what is left at the end. Others are looked for at the end alone, on rows that no other effect has claimed.
-    ``false_alarm`` probability of a false alarm at which it is listed; None: that of every other cause.
-    ``rows_listed`` whether the answer names each touched row.
+    Attributes
+    ----------
+    find : FindMarks
+        Finds the touched readings.
+    told : callable
+        From the number of touched readings and of all readings to the parameters, each with its standard deviation.
+    early : bool
+        Whether its marks would pass for structure unless they are looked for first; they are looked for once more in
+        what is left at the end. Others are looked for at the end alone, on readings that no other effect has claimed.
+    false_alarm : float, optional
+        Probability of a false alarm at which it is listed; not given: that of every other cause.
+    rows_listed : bool
+        Whether the answer names each touched row.
     """
 
     find: FindMarks
@@ -174,30 +217,65 @@ def _no_figures(values: Parameters) -> Mapping[str, float]:
 class Effect:
     """One physical effect: what it does, what it needs to be seen, and where its definition comes from.
 
-    ``needs``     names of :attr:`Motion.provides` without which it is invisible; ``"a|b"`` means a or b.
-    ``shapes``    the values of the shape parameters worth trying on a motion (a grid fine enough to climb from).
-    ``zoomed``    the shape and level parameters that are searched more finely around the grid's best point.
-    ``fitted_shapes`` those that a fit may move smoothly from there; ``channel_shapes`` those that it may move where the
-    channels are recorded, because an angle alone does not show them.
-    ``begin``     parameters of a first-order fit -> those that an exact fit sets out from.
-    ``line``      for sinusoids: the shape parameter that is found by a spectrum.
-    ``derived``   parameters -> further figures to report: value, low, high, unit.
-    ``angle_only`` parameters -> low and high of those that an angle alone leaves open, as others make up for them.
-    ``spread``    for the footprint "spread": angle (n,), parameters -> added variance of the angle [rad^2].
-    ``attainable`` for the footprint "values": parameters -> all angles [rad] a reading can take.
-    ``stair``     for the footprint "values": parameters -> mean step [rad] between attainable angles, else counted.
-    ``output_grid`` its attainable angles are the grid of the output word, which the readings themselves tell.
-    ``marks``     for the footprint "sequence": see :class:`Marks`.
-    ``baseline``  part of the paper's error model: always fitted, never a discovery.
-    ``repeatable`` a second instance beside the first makes sense: sources of their own, each with its own parameters.
-    ``record_wide`` what it does to a reading depends on readings still to come (the record's length, middle or
-    extremes), so that it cannot be played reading by reading.
-    ``handicap``  log likelihood [nats] that it must gain beyond others, where a plainer description exists.
-    ``drawing``   for training sweeps: parameters in place of those that :func:`twin.drawing.by_declaration` takes.
-    ``kind``      for structure without a name: what kind it is, in one word of the answer's vocabulary.
-    ``words``     the same in words: a format string over the answer's figures, ``{order:4}`` for four digits;
-    ``largest_deg`` stands for the largest of the figures in degrees.
-    ``figures``   parameters -> further figures of structure without a name.
+    Attributes
+    ----------
+    name, stage : str
+        Its name in the catalogue, and the part of the device or bench where it sits.
+    acts_on : str
+        The signal that it changes: see :data:`ActsOn`.
+    params : mapping of str to Param
+        Its parameters; names end in their units.
+    forward : Forward
+        What it does to its signal.
+    source, signature : str
+        Where its definition can be looked up; what it does to the error, to leading order.
+    needs : frozenset of str
+        Names of :attr:`Motion.provides` without which it is invisible; ``"a|b"`` means a or b.
+    footprint : str
+        Where it shows: see :data:`Footprint`.
+    baseline : bool
+        Whether it is part of the paper's error model: always fitted, never a discovery.
+    shapes : callable
+        From a motion to the values of its shape parameters that a search tries: a grid fine enough for a fit to start.
+    zoomed : tuple of str
+        Shape and level parameters that are searched more finely around the grid's best point.
+    fitted_shapes, channel_shapes : tuple of str
+        Those that a fit then moves smoothly: always; only where the channels are recorded, as an angle does not show
+        them.
+    begin : callable
+        From the parameters of a first-order fit to those that an exact fit starts from.
+    line : Line, optional
+        For periodic shapes: the shape parameter is found by a periodogram.
+    derived : callable
+        From the parameters to further figures to report: value, low, high, unit.
+    angle_only : callable
+        From the parameters to low and high of those that an angle alone leaves open.
+    spread : callable, optional
+        For the footprint "spread": from the angle (n,) and the parameters to the added variance of the angle [rad^2].
+    attainable : callable, optional
+        For the footprint "values": from the parameters to all angles [rad] that a reading can take.
+    stair : callable, optional
+        For the footprint "values": from the parameters to the mean step [rad] between these; not given: counted.
+    output_grid : bool
+        Whether its attainable angles are the grid of the output's word, which the readings themselves show.
+    marks : Marks, optional
+        For the footprint "sequence": how the touched readings are found.
+    repeatable : bool
+        Whether a second instance beside the first makes sense: another source with parameters of its own.
+    record_wide : bool
+        Whether what it does to a reading depends on readings still to come (the record's length, middle or extremes),
+        so that it cannot be simulated reading by reading.
+    handicap : float
+        Log likelihood [nats] that it must gain beyond others, where a plainer description exists.
+    drawing : Drawing, optional
+        For training sweeps: parameters in place of those that :func:`twin.drawing.by_declaration` takes.
+    kind : str
+        For structure without a name: its kind, a word of the answer's vocabulary.
+    words : str
+        The same as a sentence: a format string over the answer's figures, with ``{order:4}`` for four digits and
+        ``largest_deg`` for the largest of the figures in degrees.
+    figures : callable
+        From the parameters to further figures of structure without a name.
     """
 
     name: str
@@ -256,25 +334,25 @@ class Effect:
         return tuple(sorted(need for need in self.needs if not any(part in provides for part in need.split("|"))))
 
     def stair_rad(self, values: Parameters) -> float:
-        """Mean step [rad] between the angles that a reading can take; 0 where the effect leaves all of them."""
+        """Mean step [rad] between the angles that a reading can take; 0 where it can take any."""
         if self.attainable is None or self.is_null(values):
             return 0.0
         return TAU / self.attainable(values).size if self.stair is None else self.stair(values)
 
     @property
     def zeroes_turns(self) -> bool:
-        """Whether each turn has a zero of its own in it, by which the reference reads too much."""
+        """Whether it gives the reference a zero of its own in each turn."""
         return self.acts_on == "reference" and bool(self.roles("per turn"))
 
     def spread_of_turns(self, values: Parameters) -> dict[str, float]:
-        """Random parameters that the turns' own values tell: from these another record draws its turns."""
+        """Random parameters as the turns' own values show them: another record's turns are drawn with these."""
         told = self.derived(values) if self.roles("per turn") else {}
         return {name: told[name][0] for name in self.roles("random") if name in told}
 
     # ---- what becomes of it elsewhere ---------------------------------------------------------------------------
 
     def field_factor(self, name: str, values: Parameters, *, field_ratio: Any, distance_ratio: Any = 1.0) -> Any:
-        """What a parameter is multiplied by at so many times the present field and distance of the magnet.
+        """What a parameter is multiplied by where the magnet's field and distance are multiplied by these ratios.
 
         Either may be an array; so is then the factor.
         """

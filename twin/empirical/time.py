@@ -1,4 +1,4 @@
-"""Unnamed structure over time: a tone, and a drift that is not one-sided."""
+"""Unnamed structure over time: a tone, and a slow drift that need not go one way."""
 
 from __future__ import annotations
 

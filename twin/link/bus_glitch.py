@@ -50,14 +50,14 @@ def marks(measured: Array, residual: Array, noise: float, step: float, motion: M
 
 
 def _together(total: float, count: int) -> float:
-    """Log probability that ``count`` even p-values have so small a product, exp(-total): Fisher's method."""
+    """Log probability that ``count`` uniform p-values have a product of exp(-total) or less: Fisher's method."""
     terms = np.arange(count)
     logs = terms * np.log(max(total, 1e-300)) - np.cumsum(np.log(np.maximum(terms, 1)))
     return float(np.logaddexp.reduce(logs)) - total
 
 
 def told(touched: int, readings: int) -> Mapping[str, tuple[float, float]]:
-    """How many words: each is known."""
+    """How many words were hit: known exactly."""
     return {"count": (float(touched), 0.0)}
 
 

@@ -127,8 +127,8 @@ class Line:
 
     ``param`` is the parameter that holds its order, frequency or weight; ``clock`` is what it is periodic in: the shaft
     angle (orders), time (Hz), or a channel's value (a bit's weight, %). ``limits`` maps a motion to the lowest and
-    highest order, frequency or weight worth looking at; ``within`` maps an array of these to a mask of those that belong
-    to the effect; ``multiples`` are multiples of it at which the same source shows again.
+    highest order, frequency or weight worth looking at; ``within`` maps an array of these to a mask of those that
+    belong to the effect; ``multiples`` are multiples of it at which the same source shows again.
     """
 
     param: str

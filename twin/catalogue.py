@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copyreg
+import pickle
 from collections.abc import Iterable
+from typing import Any
 
 from twin import adc, concentrator, cordic, empirical, hall, link, magnet, mechanics, reference
 from twin.effect import Effect
@@ -57,3 +60,13 @@ def find(key: str, effects: tuple[Effect, ...] = CATALOGUE) -> Effect:
             return effect
     known = ", ".join(sorted(effect.name for effect in effects))
     raise KeyError(f"no effect named '{name}'; known: {known}")
+
+
+def _pickled(effect: Effect) -> str | tuple[Any, ...]:
+    """An effect of the catalogue by its name, since some of its functions cannot be pickled; others as they are."""
+    if any(effect is known for known in CATALOGUE):
+        return find, (effect.name,)
+    return effect.__reduce_ex__(pickle.HIGHEST_PROTOCOL)
+
+
+copyreg.pickle(Effect, _pickled)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import json
+import pickle
 import subprocess
 import sys
 from collections.abc import Callable
@@ -16,6 +17,7 @@ import pytest
 
 from diagnosis import Cause, Diagnoses, Diagnosis, Explanation, diagnose, diagnose_many, explain
 from tests.command_line import halltwin
+from twin.catalogue import CATALOGUE
 from twin.chain import Chain
 from twin.errors import UserError
 from twin.extensions import EffectError, effects_of
@@ -118,6 +120,12 @@ def test_a_result_cannot_be_changed() -> None:
     for result, name in ((bench(), "discovery"), (bench().causes[0], "name"), (turns()[0], "findings")):
         with pytest.raises(dataclasses.FrozenInstanceError):
             setattr(result, name, None)
+
+
+def test_a_result_can_be_handed_to_another_process() -> None:
+    for result in (bench(), turns()):
+        assert pickle.loads(pickle.dumps(result)).to_dict() == result.to_dict()
+    assert pickle.loads(pickle.dumps(Chain())).effects == CATALOGUE
 
 
 def test_the_width_of_a_summary_is_kept() -> None:

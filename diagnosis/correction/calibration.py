@@ -20,6 +20,7 @@ from diagnosis.error_model.model import Readings, twin_values
 from diagnosis.error_model.result import BaselineFit
 from twin.angles import Array
 from twin.chain import Chain
+from twin.empirical.orders import UNNAMED_ORDER
 
 ORDERS = np.arange(3, 33)
 _FALLS = (0.5, 1.0, 2.0, 3.0)
@@ -64,7 +65,7 @@ def calibrate(reference_rad: Array, measured_rad: Array, *, rng: np.random.Gener
         if amplitude > _SMALLEST_DEG:
             phase = float(np.degrees(np.arctan2(c, s)))
             chain = chain.with_effect(
-                f"unnamed_order#{order}", order=float(order), amplitude_deg=amplitude, phase_deg=phase
+                f"{UNNAMED_ORDER.name}#{order}", order=float(order), amplitude_deg=amplitude, phase_deg=phase
             )
     return Calibration(chain, fit)
 

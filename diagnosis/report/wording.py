@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
+
+from twin.catalogue import CATALOGUE
 
 BASELINE_LABELS = {
     "Vx_over_Ax": ("offset x", "%", 100.0),
@@ -140,34 +144,27 @@ def parameter_line(parameters: Mapping[str, Any]) -> str:
 
 
 def structure_words(structure: Mapping[str, Any]) -> str:
-    """A structure without a name in words."""
-
-    def of(name: str, digits: int = 3) -> str:
-        return plain(structure.get(name), digits)
-
-    kind = structure["kind"]
-    amplitude = f"amplitude {of('amplitude_deg')} deg"
-    order = f"order {of('order', 4)}"
-    words = {
-        "order": f"{order} in the shaft angle (cycles per turn), {amplitude}",
-        "direction": f"{order} whose sign turns with the direction, {amplitude}",
-        "temperature": f"{order} that scales with temperature, {amplitude} at the one farthest from 25 C",
-        "speed": f"{order} that scales with speed, {amplitude} at the highest one",
-        "time_frequency": f"{of('frequency_Hz', 4)} Hz in time, which the shaft angle does not carry, {amplitude}",
-        "local": (
-            f"a bump at {of('centre_deg', 4)} deg of the shaft, {of('height_deg')} deg high, "
-            f"sigma {of('width_deg')} deg"
-        ),
-        "noise": f"rows {of('first_row')} to {of('last_row')} scatter by {of('rms_deg')} deg RMS beyond the noise",
-        "drift": f"a slow movement of the zero, {plain(_largest(structure))} deg at most in one mode",
-    }
-    if kind in words:
-        return words[kind]
+    """A structure without a name in words: those that the effect of its kind has for it."""
+    figures = {name: _Figure(value) for name, value in {**structure, "largest_deg": _largest(structure)}.items()}
+    for effect in CATALOGUE:
+        if effect.kind and effect.kind == structure["kind"]:
+            return effect.words.format_map(defaultdict(lambda: _Figure(None), figures))
     return ", ".join(f"{label(name)} {plain(value)}" for name, value in structure.items() if name != "kind")
 
 
+@dataclass(frozen=True)
+class _Figure:
+    """A figure as it stands in a sentence: its format is the number of significant digits, 3 where none is given."""
+
+    value: Any
+
+    def __format__(self, digits: str) -> str:
+        return plain(self.value, int(digits or 3))
+
+
 def _largest(structure: Mapping[str, Any]) -> float:
-    return max((abs(value) for name, value in structure.items() if name.endswith("_deg")), default=0.0)
+    sizes = (value for name, value in structure.items() if name.endswith("_deg"))
+    return max((abs(value) for value in sizes if value is not None), default=0.0)
 
 
 def verdict_words(answer: Mapping[str, Any]) -> str:

@@ -177,7 +177,7 @@ class Chain:
             if acts_on == "shaft":
                 after = self.sensor_sense * signal
             elif acts_on == "field":
-                after = self._driven(signal, motion)
+                after = self.driven(signal, motion)
             elif acts_on == "channels":
                 after = np.arctan2(signal[..., 1:, :], signal[..., :1, :])
             else:
@@ -185,7 +185,7 @@ class Chain:
             yield Step(f"after {acts_on}", None, sense, signal, after)
             signal = after
 
-    def _driven(self, angle: Array, motion: Motion) -> Array:
+    def driven(self, angle: Array, motion: Motion) -> Array:
         """The channels in a field at these angles [rad] (..., 2, n): the magnet's field, or cosine and sine."""
         if self.magnet is None:
             return channels_of(np.cos(angle[..., :1, :]), np.sin(angle[..., 1:, :]))

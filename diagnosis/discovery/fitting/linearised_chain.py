@@ -88,7 +88,7 @@ class Linear:
             elif step.effect is None:
                 points.append((place, Insertion(step.after, sense)))
                 if step.key == "after field":
-                    sense = sense * np.stack([-np.sin(step.before[0]), np.cos(step.before[1])])
+                    sense = sense * _slope_of_channels(self.chain, step.before, self.motion)
                 elif step.key == "after shaft":
                     sense = self.chain.sensor_sense * sense
                 else:
@@ -211,6 +211,13 @@ def _through(effect: Effect, before: Array, motion: Motion, values: Parameters, 
         slope = (effect.forward(moved, motion, values, None) - plain) / _STEP
         out[:, channel] = np.einsum("okn,kn->on", sense, slope)
     return out
+
+
+def _slope_of_channels(chain: Chain, angle: Array, motion: Motion) -> Array:
+    """Derivative (2, n) of the driven channels with respect to the field angles (2, n) [rad]."""
+    if chain.magnet is None:
+        return np.stack([-np.sin(angle[0]), np.cos(angle[1])])
+    return np.asarray((chain.driven(angle + _STEP, motion) - chain.driven(angle - _STEP, motion)) / (2.0 * _STEP))
 
 
 def is_staircase(effect: Effect) -> bool:

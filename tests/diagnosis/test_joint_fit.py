@@ -1,0 +1,144 @@
+"""The joint fit against scipy's least squares, which is handed the whole chain and differentiates it by itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.fft import dct
+from scipy.optimize import least_squares
+
+from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Setting, evaluate, free_of, solve
+from diagnosis.discovery.fitting.noise_model import noise_family
+from diagnosis.discovery.fitting.observations import collect
+from scenarios.commands.protocol import Protocol
+from tests.twin.test_mirror import MISPLACED
+from twin.angles import Array, wrap
+from twin.catalogue import find
+from twin.chain import Chain
+from twin.magnet.assembly import Assembly
+
+NOISE_DEG = 0.02
+AWAY = 3.0
+"""Standard deviations, in each parameter, from which the fits set out."""
+DEVICE = {
+    "offset": {"x_percent": 0.8, "y_percent": -0.5},
+    "gain_mismatch": {"ratio": 1.01},
+    "phase": {"beta_deg": 0.3},
+    "quadratic_nonlinearity": {"q_percent": 0.3},
+    "zero": {"zero_deg": 30.0},
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """Causes beside the device's own, whether channels are recorded, and the member of the noise family in force.
+
+    ``neglected``: slope over the shaft of the reference's error, which the linearised chain leaves out.
+    """
+
+    causes: dict[str, dict[str, float]]
+    channels: bool = False
+    member: int = 0
+    magnet: Assembly | None = None
+    neglected: float = 0.0
+
+
+CASES = {
+    "baseline": Case(causes={}),
+    "baseline with radius": Case(causes={}, channels=True),
+    "baseline in coloured noise": Case(causes={}, member=3),
+    "behind a misplaced magnet": Case(causes={}, channels=True, magnet=MISPLACED),
+    "saturation and hysteresis": Case(
+        causes={"saturation": {"k_percent": 0.8}, "hysteresis": {"lag_deg": 0.1, "memory_deg": 12.0}}
+    ),
+    "eccentric reference": Case(
+        causes={"reference_eccentricity": {"amplitude_deg": 0.3, "phase_deg": 40.0}},
+        channels=True,
+        neglected=float(np.radians(0.3)),
+    ),
+    "tone of the mains": Case(
+        causes={"mains_pickup": {"frequency_Hz": 50.1, "x_percent": 0.4, "y_percent": 0.2, "phase_deg": 30.0}},
+        channels=True,
+    ),
+    "drift and bump": Case(
+        causes={
+            "zero_drift": {"amplitude_deg": 0.4, "time_constant_s": 2.0},
+            "unnamed_bump": {"centre_deg": 100.0, "width_deg": 10.0, "height_deg": 0.15},
+        }
+    ),
+    "clipping": Case(causes={"clipping": {"level_percent": 99.0}}, channels=True),
+}
+
+
+def started(case: Case) -> tuple[Fit, Array]:
+    """A fit that sets out from a chain off the truth, and the standard deviations (P,) at the truth."""
+    motion = Protocol(turns=2, points=180, both_directions=True, speeds_rpm=(300.0,), channels=case.channels).motion()
+    chain = Chain(sensor_sense=-1, magnet=case.magnet)
+    for key, params in {**DEVICE, **case.causes}.items():
+        chain = chain.with_effect(key, **params)
+    evidence = collect(chain.with_effect("noise", rms_deg=NOISE_DEG).simulate(motion, seed=3))
+    assert evidence.usable.all()
+    free = [*BASELINE]
+    for key in case.causes:
+        free += free_of(find(key), key, turns=1, channels=case.channels)
+    setting = Setting(
+        noise_family(len(evidence)),
+        member=case.member,
+        radius_member=case.member,
+        radius_weight=1.0 if case.channels else 0.0,
+    )
+    true = evaluate(chain, tuple(free), evidence, setting)
+    deviation = np.sqrt(np.diag(true.covariance()))
+    off = AWAY * np.random.default_rng(5).choice([-1.0, 1.0], size=len(free))
+    return evaluate(at(true, values_of(true) + off * deviation), true.free, evidence, setting), deviation
+
+
+def values_of(fit: Fit) -> Array:
+    """Values (P,) of the free parameters."""
+    return np.array([float(fit.chain.values[free.key][free.name]) for free in fit.free])
+
+
+def at(fit: Fit, values: Array) -> Chain:
+    """The fit's chain with its free parameters at these values (P,)."""
+    found: dict[str, dict[str, Any]] = {key: dict(params) for key, params in fit.chain.values.items()}
+    for free, value in zip(fit.free, values, strict=True):
+        found[free.key][free.name] = float(value)
+    return replace(fit.chain, values=found)
+
+
+def misfit(fit: Fit, values: Array) -> Array:
+    """Whitened residuals of angle and radius, from the chain's own readings and channels."""
+    evidence, chain = fit.evidence, at(fit, values)
+    shaft = chain.shaft(evidence.motion)
+    parts = [wrap(evidence.measured - chain.readings(shaft))]
+    if evidence.log_radius is not None:
+        x, y = chain.channels(shaft)
+        radius = evidence.log_radius - np.log(np.hypot(x, y))
+        parts.append(radius - np.mean(radius))
+    root = 1.0 / np.sqrt(fit.setting.family.spectra[fit.setting.member])
+    return np.concatenate([root * dct(part, type=2, norm="ortho") for part in parts]) / np.radians(NOISE_DEG)
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_the_optimum_is_that_of_least_squares(case: Case) -> None:
+    """The solver ends where a step gains less than 1e-7 of the cost: sqrt(1e-7 N) of a standard deviation from the end.
+
+    Where the reference errs, a share of the derivative is left out, and with it that share of a deviation.
+    """
+    fit, deviation = started(case)
+    found, start = values_of(solve(fit)), values_of(fit)
+    oracle = least_squares(
+        lambda u: misfit(fit, start + u * deviation),
+        np.zeros(len(start)),
+        jac="3-point",
+        xtol=1e-12,
+        ftol=1e-12,
+        gtol=1e-12,
+    )
+    away = np.abs((found - start) / deviation - oracle.x)
+    rows = len(fit.evidence) * fit.evidence.observables
+    assert np.max(np.abs(oracle.x)) > 0.5 * AWAY
+    assert np.max(away) < np.sqrt(1e-7 * rows) + case.neglected

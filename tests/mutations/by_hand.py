@@ -139,4 +139,50 @@ TWIN: tuple[Mutation, ...] = (
     ),
 )
 
-BY_HAND: tuple[Mutation, ...] = (*ERROR_MODEL, *FACTORS, *TWIN)
+_LINEAR = "diagnosis/discovery/fitting/linearised_chain.py"
+_DERIVATIVE = "tests/diagnosis/test_derivatives.py::test_derivative"
+
+FITTING: tuple[Mutation, ...] = (
+    Mutation(
+        "linearised_chain.ideal_field_in_place_of_the_magnet",
+        _LINEAR,
+        "    if chain.magnet is None:\n",
+        "    if True:\n",
+        (f"{_DERIVATIVE}[zero.zero_deg-misplaced_magnet]",),
+        short=True,
+    ),
+    Mutation(
+        "linearised_chain.sensor_sense_left_out",
+        _LINEAR,
+        "sense = self.chain.sensor_sense * sense",
+        "pass",
+        (f"{_DERIVATIVE}[backlash.half_width_deg-behind_others]",),
+        short=True,
+    ),
+    Mutation(
+        "linearised_chain.reference_leads",
+        _LINEAR,
+        "return -start * moved",
+        "return start * moved",
+        (f"{_DERIVATIVE}[index_slip.step_deg-alone]",),
+        short=True,
+    ),
+    Mutation(
+        "effect.amplitude_keeps_its_phase_in_the_mirror",
+        "twin/effect.py",
+        "found[phases[0]] = phase_deg - np.copysign(180.0, phase_deg)",
+        "found[phases[0]] = phase_deg",
+        ("tests/twin/test_mirror.py::test_an_amplitude_stays_one",),
+        short=True,
+    ),
+    Mutation(
+        "placement.stray_field_not_mirrored",
+        "twin/magnet/placement.py",
+        '"magnet_tilt_x_deg", "stray_y_mT")',
+        '"magnet_tilt_x_deg")',
+        ("tests/twin/test_mirror.py::test_all_effects_at_once",),
+        short=True,
+    ),
+)
+
+BY_HAND: tuple[Mutation, ...] = (*ERROR_MODEL, *FACTORS, *TWIN, *FITTING)

@@ -20,12 +20,14 @@ from diagnosis.explanation import Cause, Estimate, Explanation
 from diagnosis.input_checks import Columns, SweepLike
 
 if TYPE_CHECKING:
+    from diagnosis.discovery.settings import DiscoverySettings
     from diagnosis.error_model.fit import fit_baseline
     from diagnosis.error_model.result import BaselineFit
     from diagnosis.factors.findings import Findings
 
 _LOADED_WHEN_USED = {
     "BaselineFit": "diagnosis.error_model.result",
+    "DiscoverySettings": "diagnosis.discovery.settings",
     "Findings": "diagnosis.factors.findings",
     "fit_baseline": "diagnosis.error_model.fit",
 }
@@ -37,6 +39,7 @@ __all__ = [
     "Columns",
     "Diagnoses",
     "Diagnosis",
+    "DiscoverySettings",
     "Estimate",
     "Explanation",
     "Findings",

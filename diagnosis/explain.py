@@ -12,7 +12,8 @@ from diagnosis.input_checks import SweepLike, as_sweep, checked_seed
 if TYPE_CHECKING:
     import numpy as np
 
-    from diagnosis.discovery.pipeline import Discovery
+    from diagnosis.discovery.result import Discovery
+    from diagnosis.discovery.settings import DiscoverySettings
     from twin.chain import Chain
     from twin.effect import Effect
     from twin.sweep import Sweep
@@ -26,6 +27,7 @@ def explain(
     *,
     twin: str | os.PathLike[str] | Chain | None = None,
     effects: OwnEffects = (),
+    settings: DiscoverySettings | None = None,
     seed: int = 0,
 ) -> Explanation:
     """Say what the simulation gets wrong about a measured sweep, by name, with proof; or that nothing is wrong.
@@ -46,6 +48,8 @@ def explain(
     effects : str, os.PathLike, Effect, or a sequence of these, optional
         Causes of your own, which are searched beside the catalogue and the installed ones: Python files that
         declare them, or :class:`twin.Effect` objects.
+    settings : DiscoverySettings, optional
+        Every threshold of the search, the probability of a false alarm first of all; the project's own if not given.
     seed : int, optional
         Seed of everything random, 0 or more: the same sweep and seed give the same answer, bit for bit.
 
@@ -96,11 +100,16 @@ def explain(
     given = _given(twin, searched)
     read = as_sweep(sweep)
     with one_blas_thread():
-        return Explanation(_discovery(read, given=given, effects=searched, rng=rng))
+        return Explanation(_discovery(read, given=given, effects=searched, settings=settings, rng=rng))
 
 
 def _discovery(
-    sweep: Sweep, *, given: Chain | None, effects: tuple[Effect, ...], rng: np.random.Generator
+    sweep: Sweep,
+    *,
+    given: Chain | None,
+    effects: tuple[Effect, ...],
+    settings: DiscoverySettings | None,
+    rng: np.random.Generator,
 ) -> Discovery:
     """The search, from the fitted error model or from a given twin."""
     from dataclasses import replace
@@ -109,12 +118,12 @@ def _discovery(
 
     from diagnosis.discovery.fitting.initial_fit import senses_of_channels
     from diagnosis.discovery.fitting.subsample import searched_part
-    from diagnosis.discovery.pipeline import discover
+    from diagnosis.discovery.pipeline import State, discover
     from diagnosis.error_model.fit import fit_baseline
 
     sweep = searched_part(sweep)
     if given is not None:
-        return discover(sweep, start=given, given=given, effects=effects, rng=rng)
+        return discover(State.of(sweep, given, given=given, settings=settings, rng=rng))
     fit = fit_baseline(
         np.radians(sweep.reference_deg),
         np.radians(sweep.measured_deg),
@@ -122,7 +131,7 @@ def _discovery(
         senses=senses_of_channels(sweep),
         robust=True,
     )
-    return discover(sweep, start=replace(fit.chain(), effects=effects), effects=effects, rng=rng)
+    return discover(State.of(sweep, replace(fit.chain(), effects=effects), settings=settings, rng=rng))
 
 
 def _searched(own: OwnEffects, twin: str | os.PathLike[str] | Chain | None) -> tuple[Effect, ...]:

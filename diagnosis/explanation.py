@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from diagnosis.discovery.pipeline import Discovery
+    from diagnosis.discovery.result import Discovery
     from twin.chain import Chain
     from twin.sweep import Sweep
 

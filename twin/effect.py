@@ -170,8 +170,6 @@ class Marks:
     early : bool
         Whether its marks would pass for structure unless they are looked for first; they are looked for once more in
         what is left at the end. Others are looked for at the end alone, on readings that no other effect has claimed.
-    false_alarm : float, optional
-        Probability of a false alarm at which it is listed; not given: that of every other cause.
     rows_listed : bool
         Whether the answer names each touched row.
     """
@@ -179,7 +177,6 @@ class Marks:
     find: FindMarks
     told: Callable[[int, int], Mapping[str, tuple[float, float]]]
     early: bool = False
-    false_alarm: float | None = None
     rows_listed: bool = False
 
     def __call__(

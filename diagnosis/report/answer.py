@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.discovery.finding import Named
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.marks.row_masks import raw_residual
-from diagnosis.discovery.pipeline import Discovery
-from diagnosis.discovery.proof.cause import Named
+from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
 from twin.angles import wrap_deg
 from twin.catalogue import base_name, find

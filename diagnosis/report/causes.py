@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from diagnosis.discovery.pipeline import Discovery
-from diagnosis.discovery.proof.cause import Named
+from diagnosis.discovery.finding import Named
+from diagnosis.discovery.result import Discovery
 from diagnosis.report.data import Readings, binned, share_deg, unexplained_by
 from diagnosis.report.pictures import ANGLE, angle_bins, ways
 from diagnosis.report.svg import Axis, Layer, Plot

@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.marks.row_masks import raw_residual
-from diagnosis.discovery.pipeline import Discovery
+from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import angle_error_deg
 from twin.angles import TAU, Array, wrap
 from twin.effect import BoolArray

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnosis.discovery.pipeline import Discovery
+from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import angle_error_deg
 from diagnosis.report.plotting import drawing
 from twin.angles import Array

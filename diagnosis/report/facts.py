@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
-from diagnosis.discovery.pipeline import Discovery
+from diagnosis.discovery.result import Discovery
 from twin.angles import Array, wrap
 from twin.sweep import Sweep
 

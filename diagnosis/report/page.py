@@ -7,8 +7,8 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from diagnosis.discovery.pipeline import Discovery
-from diagnosis.discovery.proof.cause import Named
+from diagnosis.discovery.finding import Named
+from diagnosis.discovery.result import Discovery
 from diagnosis.report import causes as cause_pictures
 from diagnosis.report import pictures as drawn
 from diagnosis.report import tables

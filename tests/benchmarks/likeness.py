@@ -17,8 +17,8 @@ import numpy as np
 
 from diagnosis import explain
 from diagnosis.discovery.fitting.noise_colour import Colour
-from diagnosis.discovery.pipeline import Discovery
 from diagnosis.discovery.proof.predictive_check import Likeness, likeness
+from diagnosis.discovery.result import Discovery
 from diagnosis.discovery.search.likelihood_ratio import drop
 from tests.hidden.scoring import verdict
 from tests.hidden.sets import Job, jobs

@@ -17,7 +17,7 @@ from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.further.measurements import MENU, Recording
 from diagnosis.discovery.further.power import ENOUGH_SIGMA, best, expected, separation_sigma
-from diagnosis.discovery.pipeline import Discovery
+from diagnosis.discovery.result import Discovery
 from tests.hidden.generator import draw
 from tests.hidden.motion import Motion
 from twin import motion as twin_motion

@@ -16,8 +16,8 @@ import pytest
 from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.fitting.noise_colour import Colour, colour_of
-from diagnosis.discovery.pipeline import Discovery
 from diagnosis.discovery.proof.predictive_check import SWEEPS, likeness
+from diagnosis.discovery.result import Discovery
 from diagnosis.discovery.search.likelihood_ratio import drop, settle
 from tests.hidden.generator import draw
 

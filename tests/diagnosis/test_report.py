@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from diagnosis import explain
-from diagnosis.discovery.pipeline import Discovery
+from diagnosis.discovery.result import Discovery
 from diagnosis.report.data import noise_level, spectrum
 from diagnosis.report.page import page, write_report
 from diagnosis.report.svg import MOST_POINTS, Axis, Layer, Plot, thinned

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from diagnosis.discovery.pipeline import discover
+from diagnosis.discovery.pipeline import State, discover
 from diagnosis.factors.findings import quantify
 from twin.sweep import Sweep
 
@@ -33,7 +33,7 @@ def objects() -> dict[str, Any]:
     """What a person meets on the way from a sweep to its causes."""
     sweep = Sweep.read(BENCH)
     findings = quantify(sweep)
-    found = discover(sweep, start=findings.fit.chain())
+    found = discover(State.of(sweep, findings.fit.chain()))
     return {
         "sweep": sweep,
         "motion": sweep.motion(),

@@ -11,7 +11,7 @@ from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.further.measurements import FINEST_DEG, MENU, Recording
 from diagnosis.discovery.further.power import Option, advice, best, expected, separation_sigma
-from diagnosis.discovery.pipeline import Discovery
+from diagnosis.discovery.result import Discovery
 from scenarios.commands.protocol import Protocol
 from twin.chain import Chain
 from twin.motion import Motion

@@ -75,8 +75,7 @@ BUS_GLITCH = Effect(
     },
     forward=forward,
     footprint="sequence",
-    # Only those that stand far out are found: one that is missed would be left among the wild readings.
-    marks=Marks(find=marks, told=told, false_alarm=0.01, rows_listed=True),
+    marks=Marks(find=marks, told=told, rows_listed=True),
     record_wide=True,
     drawing=drawing,
     source="definition: one bit of the angle word, so an error of 360/2^k deg",

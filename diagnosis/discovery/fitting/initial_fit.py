@@ -19,6 +19,7 @@ from diagnosis.discovery.fitting.joint_fit import (
 )
 from diagnosis.discovery.fitting.noise_model import noise_family
 from diagnosis.discovery.fitting.observations import Evidence
+from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
 from twin.catalogue import find
 from twin.chain import Chain
@@ -48,12 +49,23 @@ def mirrored(chain: Chain) -> Chain:
     return chain.mirrored()
 
 
-def first_fit(evidence: Evidence, start: Chain, given: Chain | None) -> Fit:
-    """The fit that the search sets out from: the baseline, or a given twin with its zeros set free."""
-    setting = Setting(noise_family(len(evidence)), radius_weight=1.0 if evidence.observables == 2 else 0.0)
+def unfitted(evidence: Evidence, start: Chain, settings: DiscoverySettings) -> Fit:
+    """A chain held against the observations as it is, nothing fitted."""
+    weight = 1.0 if evidence.observables == 2 else 0.0
+    setting = Setting(noise_family(len(evidence)), radius_weight=weight, settings=settings)
+    return evaluate(start, (), evidence, setting)
+
+
+def baseline_fit(fit: Fit) -> Fit:
+    """The paper's error model, all six factors free."""
+    return solve(evaluate(awake(fit.chain), BASELINE, fit.evidence, fit.setting))
+
+
+def fit_of_given(fit: Fit) -> Fit:
+    """A given twin with only its zeros free: the zero, and each turn's own where the reference finds it anew."""
+    evidence, setting = fit.evidence, fit.setting
     turns = int(evidence.motion.turn.max(initial=0)) + 1
-    if given is None:
-        return solve(evaluate(awake(start), BASELINE, evidence, setting))
+    start = fit.chain
     each_turn = {key: effect for key in start.values if (effect := find(key, start.effects)).zeroes_turns}
     chain = start.without(*each_turn)
     chain = chain.with_values({ZERO_ANGLE.key: {ZERO_ANGLE.name: 0.0, **chain.values.get(ZERO_ANGLE.key, {})}})

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_model import NoiseFamily, observables_to_cosine, to_rows
 from diagnosis.discovery.fitting.observations import Evidence
+from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
 from twin.baseline import FACTORS
 from twin.catalogue import find
@@ -51,6 +52,7 @@ class Setting:
     radius_trusted: bool = False
     coarse: bool = False
     slopes: bool = False
+    settings: DiscoverySettings = field(default_factory=DiscoverySettings)
 
     @property
     def plausible(self) -> tuple[int, ...]:
@@ -81,6 +83,11 @@ class Fit:
     def __repr__(self) -> str:
         left = np.degrees(np.sqrt(np.mean(self.residual[0][self.evidence.usable] ** 2)))
         return f"Fit({self.chain!r}, {len(self.free)} free parameters, {self.rows} rows, {left:.4g} deg RMS)"
+
+    @property
+    def settings(self) -> DiscoverySettings:
+        """The thresholds by which the fit is judged."""
+        return self.setting.settings
 
     @property
     def rows(self) -> int:

@@ -94,6 +94,11 @@ def collect(sweep: Sweep) -> Evidence:
     )
 
 
+def of_readings(row_rms_deg: float, evidence: Evidence) -> float:
+    """RMS [deg] over single readings, from that over rows which average several of them."""
+    return float(np.hypot(row_rms_deg, np.degrees(np.sqrt(evidence.within))))
+
+
 def block_length(motion: Motion) -> int:
     """Readings that are averaged into one row: 1 but for long records far denser than any structure searched for."""
     if np.mean(_stands_still(motion)) >= 0.4:

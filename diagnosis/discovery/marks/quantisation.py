@@ -1,4 +1,4 @@
-"""Quantisers as causes: the output's grid, and the finite set of angles of a truncated CORDIC."""
+"""Quantisation: the grid that all readings lie on, the finite set of a truncated CORDIC, and when either is a cause."""
 
 from __future__ import annotations
 
@@ -7,36 +7,92 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.discovery.finding import Named
+from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
-from diagnosis.discovery.marks import footprints
+from diagnosis.discovery.marks.outliers import local_residual, robust_rms
 from diagnosis.discovery.marks.stairs import reblurred, stair_step, without_stairs
-from diagnosis.discovery.proof.cause import Named
-from diagnosis.discovery.search.screening import log_probability
-from twin.angles import TAU
+from diagnosis.discovery.settings import DiscoverySettings
+from twin.angles import TAU, Array
+from twin.catalogue import output_grid
+from twin.chain import Chain
 from twin.effect import Effect
 from twin.sweep import Sweep
 
-STAIRS_GAIN = 25.0
-"""Twice the log likelihood, five sigma, that the output's stairs must gain to be named."""
+_MISSED_NATS = 4.0
+"""What a reading outside the set speaks against it: other errors of the link are one in fifty (e^-4)."""
 
 
-def with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | None, found: list[Named]) -> Fit:
-    """The fit with the stairs that the set of values shows: a truncated CORDIC, the output's grid."""
+def grid_bits(measured: Array, settings: DiscoverySettings) -> int | None:
+    """The smallest word length (6 to 20 bits) on whose grid all readings (n,) [rad] lie; None: no such grid."""
+    words = np.unique(np.round(measured % TAU, 9)).size
+    if words < settings.fewest_words:
+        # A few angles lie on a coarse grid by the bench's choice, not by the word's length.
+        return None
+    for bits in range(6, 21):
+        step = TAU / 2.0**bits
+        off = float(np.max(np.abs(measured / step - np.round(measured / step)))) * step
+        # As many digits as files have: six decimals of a degree, or three.
+        if any(off < digits < step / 12.0 for digits in (np.radians(1.2e-6), np.radians(6e-4))):
+            return bits
+    return None
+
+
+def finite_set(
+    measured: Array, effect: Effect, tried: Sequence[float], *, step: float, settings: DiscoverySettings
+) -> tuple[float, float]:
+    """Which level's set of attainable angles holds the readings (n,) [rad].
+
+    ``step`` is the output grid [rad] that the set is rounded to. Chance is the share of the grid's cells that are in
+    the set, to the power of the different words. Returns the level and the log of that chance; (0, 0): none.
+    """
+    assert effect.attainable is not None
+    name = effect.roles("level")[0]
+    resolution = step if step > 0.0 else np.radians(2e-4)
+    cells = round(TAU / resolution)
+    words = np.round(measured / resolution).astype(np.int64) % cells
+    distinct = np.unique(words).size
+    best = (0.0, 0.0)
+    for level in tried:
+        allowed = np.unique(np.round(effect.attainable({name: level}) / resolution).astype(np.int64) % cells)
+        share = allowed.size / cells
+        missed = int(np.count_nonzero(~np.isin(words, allowed)))
+        if share > settings.set_share or missed > settings.set_missed * words.size:
+            continue
+        log_p = (distinct - missed) * np.log(share) + missed * _MISSED_NATS
+        if log_p < best[1]:
+            best = (float(level), float(log_p))
+    return best
+
+
+def with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | None) -> tuple[Fit, tuple[Named, ...]]:
+    """The fit with the stairs that the set of values shows, and those of them that are causes by that alone.
+
+    ``bits`` is the word length on whose grid all readings lie, if there is one. The grid becomes part of the model
+    where it is not small against the noise; a finite set of angles is a cause.
+    """
     step = TAU / 2.0**bits if bits is not None else 0.0
-    chain = fit.chain
+    chain, grid, settings = fit.chain, output_grid(effects), fit.settings
     measured = np.radians(sweep.measured_deg)
+    found: list[Named] = []
     for effect in effects:
-        if effect.footprint != "values" or effect.name == "output_quantisation" or effect.name in chain.values:
+        if effect.footprint != "values" or effect is grid or effect.name in chain.values:
             continue
         name = effect.roles("level")[0]
         tried = [shape[name] for shape in effect.shapes(fit.evidence.motion)]
-        value, log_p = footprints.finite_set(measured, effect, step, tried, name)
-        if value and log_p < np.log(1e-6):
-            chain = chain.with_values({effect.name: {name: value}})
+        level, log_p = finite_set(measured, effect, tried, step=step, settings=settings)
+        if level and log_p < settings.effect_log_p(len(tried)):
+            chain = chain.with_values({effect.name: {name: level}})
             found.append(Named((effect.name,), log_p, -2.0 * log_p))
-    sigma = footprints.robust_rms(footprints.local_residual(fit.residual[0]))
-    if bits is not None and step / np.sqrt(12.0) > 0.1 * sigma and "output_quantisation" not in chain.values:
-        chain = chain.with_values({"output_quantisation": {"bits": float(bits)}})
+    if grid is not None and bits is not None and grid.name not in chain.values:
+        sigma = robust_rms(local_residual(fit.residual[0]))
+        if step / np.sqrt(12.0) > settings.stairs_in_noise * sigma:
+            chain = chain.with_values({grid.name: {grid.roles("level")[0]: float(bits)}})
+    return _blurred(fit, chain, step), tuple(found)
+
+
+def _blurred(fit: Fit, chain: Chain, step: float) -> Fit:
+    """The fit with a chain that has stairs, their blur found from what is left."""
     coarse = stair_step(chain, step)
     if coarse == 0.0:
         return fit
@@ -47,16 +103,16 @@ def with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | N
     return solve(reblurred(fit, step))
 
 
-def quantisation(fit: Fit, bits: int | None, step: float, found: list[Named]) -> None:
-    """The output's grid is a cause where its noise exceeds half of what is left otherwise, and its stairs are seen.
+def grid_as_cause(fit: Fit, grid: Effect, step: float) -> Named | None:
+    """The output's grid as a cause: where its noise exceeds half of what is left otherwise, and its stairs are seen.
 
     Noise ahead of the grid blurs the stairs; where it blurs them away, nothing is gained by knowing them.
     """
-    if bits is None or "output_quantisation" not in fit.chain.values or fit.setting.blur <= 0.0 or found:
-        return
+    blur, settings = fit.setting.blur, fit.settings
+    if grid.name not in fit.chain.values or blur <= 0.0 or step / np.sqrt(12.0) <= settings.stairs_cause_share * blur:
+        return None
     use = fit.evidence.usable
-    plain = without_stairs(fit, "output_quantisation")[use]
+    plain = without_stairs(fit, grid.name)[use]
     gain = int(use.sum()) * float(np.log(np.mean(plain**2) / np.mean(fit.residual[0][use] ** 2)))
-    if step / np.sqrt(12.0) > 0.5 * fit.setting.blur and gain > STAIRS_GAIN:
-        log_p = float(log_probability(np.array(gain), 1, int(use.sum())))
-        found.append(Named(("output_quantisation",), log_p, gain))
+    log_p = float(log_probability(np.array(gain), 1, int(use.sum())))
+    return Named((grid.name,), log_p, gain) if gain > 0.0 and log_p < settings.footprint_log_p else None

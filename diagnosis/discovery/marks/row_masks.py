@@ -8,33 +8,36 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.observations import Evidence
-from diagnosis.discovery.marks import footprints
+from diagnosis.discovery.marks.outliers import spikes
+from diagnosis.discovery.marks.spread import row_scale
 from diagnosis.discovery.marks.stairs import stair_step
 from twin.angles import Array, wrap
 from twin.effect import BoolArray
 from twin.sweep import Sweep
 
-FALLEN_OUT = 0.2
-"""Change of the log of the channels' amplitude that no cause makes."""
+_PASSES = 4
+"""The set is stable after one or two; a row at the edge could come and go."""
 
 
-def mask_spikes(fit: Fit, step: float, also: BoolArray | None = None) -> tuple[Evidence, Fit]:
-    """The fit without the rows that stand out alone; fitted anew where there are any, until the set is stable."""
-    for _ in range(4):
-        mask, _sigma = footprints.spikes(fit.residual[0], fit.evidence.motion, max(step, stair_step(fit.chain, step)))
-        usable = ~mask & fit.evidence.sure
+def mask_spikes(fit: Fit, step: float, also: BoolArray) -> Fit:
+    """The fit without the rows that stand out alone, fitted anew until their set is stable.
+
+    ``step`` [rad] is that of the output's grid; raw rows in ``also`` (n_raw,) stay out too.
+    """
+    settings, motion = fit.settings, fit.evidence.motion
+    for _ in range(_PASSES):
+        mask = spikes(fit.residual[0], motion, max(step, stair_step(fit.chain, step)), settings)
+        usable = ~mask & fit.evidence.sure & ~rows_of(fit.evidence, also)
         if fit.evidence.observables == 2:
             # Channels that fall out say nothing true about the radius: alone for a reading, or by more than any cause
             # would change it.
             radius = fit.residual[1]
-            alone, _ = footprints.spikes(radius, fit.evidence.motion, 0.0)
-            usable &= ~alone & (np.abs(radius - np.median(radius)) < FALLEN_OUT)
-        if also is not None:
-            usable &= ~rows_of(fit.evidence, also)
+            alone = spikes(radius, motion, 0.0, settings)
+            usable &= ~alone & (np.abs(radius - np.median(radius)) < settings.fallen_out)
         if np.array_equal(usable, fit.evidence.usable):
             break
         fit = solve(evaluate(fit.chain, fit.free, fit.evidence.masked(usable), fit.setting))
-    return fit.evidence, fit
+    return fit
 
 
 def rows_of(evidence: Evidence, raw: BoolArray) -> BoolArray:
@@ -44,6 +47,7 @@ def rows_of(evidence: Evidence, raw: BoolArray) -> BoolArray:
 
 
 def without_rows(fit: Fit, raw: BoolArray) -> Fit:
+    """The fit without the marked raw rows (n_raw,)."""
     rows = rows_of(fit.evidence, raw)
     if not np.any(rows & fit.evidence.usable):
         return fit
@@ -51,7 +55,8 @@ def without_rows(fit: Fit, raw: BoolArray) -> Fit:
 
 
 def scaled(fit: Fit, variance: Array) -> Fit:
-    evidence = replace(fit.evidence, scale=footprints.row_scale(fit.evidence, variance))
+    """The fit with its rows weighed by a variance (n,)."""
+    evidence = replace(fit.evidence, scale=row_scale(fit.evidence, variance))
     return solve(evaluate(fit.chain, fit.free, evidence, fit.setting))
 
 

@@ -8,16 +8,31 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.linearised_chain import Linear, is_staircase
-from diagnosis.discovery.marks import footprints
 from twin.angles import Array, wrap
 from twin.chain import Chain
 
 
+def blur_behind(rms: float, step: float) -> float:
+    """RMS of the noise ahead of a quantiser, from the RMS of readings about their blurred expectation [rad]."""
+    if step <= 0.0 or rms <= 0.0:
+        return rms
+    ratio = np.geomspace(0.02, 3.0, 60)
+    phases = (np.arange(64) + 0.5) / 64
+    nodes = np.sort(np.random.default_rng(0).standard_normal(400))
+    words = np.round(phases[None, :, None] + ratio[:, None, None] * nodes)
+    spread = np.sqrt(np.mean(np.var(words, axis=-1), axis=-1))
+    if rms / step > spread[-1]:
+        return float(np.sqrt(max(rms**2 - step**2 / 12.0, 0.0)))
+    return float(np.interp(rms / step, spread, ratio) * step)
+
+
 def stair_step(chain: Chain, step: float) -> float:
-    """Step [rad] of the coarsest stairs in the chain: the output grid, or the CORDIC's mean spacing."""
-    iterations = float(chain.values.get("cordic_truncation", {}).get("iterations", 0.0))
-    grid = step if "output_quantisation" in chain.values else 0.0
-    return max(grid, 2.0 * float(np.arctan(2.0 ** (1.0 - iterations))) if iterations else 0.0)
+    """Step [rad] of the coarsest stairs in the chain: the output grid's (``step``), or the mean one of a finite set."""
+    steps = [0.0]
+    for _, effect, values in chain.active("angle"):
+        if effect.footprint == "values":
+            steps.append(step if effect.output_grid else effect.stair_rad(values))
+    return max(steps)
 
 
 def reblurred(fit: Fit, step: float) -> Fit:
@@ -26,7 +41,7 @@ def reblurred(fit: Fit, step: float) -> Fit:
     if coarse <= 0.0:
         return fit
     rms = float(np.sqrt(np.mean(fit.residual[0][fit.evidence.usable] ** 2)))
-    blur = footprints.blur_behind(rms, coarse)
+    blur = blur_behind(rms, coarse)
     if fit.setting.blur > 0.0 and abs(blur / fit.setting.blur - 1.0) < 0.1:
         return fit
     return evaluate(fit.chain, fit.free, fit.evidence, replace(fit.setting, blur=blur))

@@ -12,25 +12,26 @@ from twin.angles import TAU, Array, IntArray, wrap
 from twin.catalogue import base_name
 from twin.effect import BoolArray
 
-FOLDS = 4
-BLOCKS_A_TURN = 3
+_FEWEST_ROWS = 8
+"""A fold whose other rows are fewer is not held out: the baseline alone has six parameters."""
 
 
 def folds(fit: Fit) -> IntArray:
-    """Fold (n,) of each row: thirds of a turn of travel, dealt out so that every third is held out in some turn.
+    """Fold (n,) of each row: blocks of a part of a turn of travel, dealt out so that every part is held out in
+    some turn.
 
-    A third is shorter than a turn, so that each turn's own zero can be fitted from the rest of it.
+    A block is shorter than a turn, so that each turn's own zero can be fitted from the rest of it.
     """
-    motion = fit.evidence.motion
-    block = np.floor(motion.travel_rad / TAU * BLOCKS_A_TURN + 1e-9).astype(np.int64)
-    if block.max(initial=0) < 2 * FOLDS:
-        block = np.floor(np.arange(len(motion)) * (3 * FOLDS) / max(len(motion), 1)).astype(np.int64)
-    return np.asarray(block % FOLDS, dtype=np.int64)
+    motion, count = fit.evidence.motion, fit.settings.folds
+    block = np.floor(motion.travel_rad / TAU * fit.settings.blocks_a_turn + 1e-9).astype(np.int64)
+    if block.max(initial=0) < 2 * count:
+        block = np.floor(np.arange(len(motion)) * (3 * count) / max(len(motion), 1)).astype(np.int64)
+    return np.asarray(block % count, dtype=np.int64)
 
 
 def scattered(fit: Fit) -> IntArray:
     """Fold (n,) of each row where neighbours share none: for what is narrower than a block, in white noise."""
-    return np.arange(len(fit.evidence), dtype=np.int64) % FOLDS
+    return np.arange(len(fit.evidence), dtype=np.int64) % fit.settings.folds
 
 
 def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray) -> list[Array]:
@@ -45,9 +46,9 @@ def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray) -> list[Ar
         present = set(keys[:count])
         stages.append(([k for k in keys if k not in present], [*base_free, *(f for f in fit.free if f.key in present)]))
     residuals = [np.full(len(fit.evidence), np.nan) for _ in stages]
-    for number in range(FOLDS):
+    for number in range(fit.settings.folds):
         held = fold == number
-        if not np.any(held & use) or np.count_nonzero(use & ~held) < 8:
+        if not np.any(held & use) or np.count_nonzero(use & ~held) < _FEWEST_ROWS:
             continue
         evidence = fit.evidence.masked(use & ~held)
         for place, (absent, free) in enumerate(stages):

@@ -1,101 +1,134 @@
-"""Which causes stay: judged once more in the final fit, and proven on readings that no fit has seen."""
+"""Selection: which causes stay, judged once more in the final fit and proven on readings that no fit has seen."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from diagnosis.discovery.finding import Named
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.noise_colour import colour_of
-from diagnosis.discovery.proof.cause import Named
 from diagnosis.discovery.proof.cross_validation import folds, held_out_residuals, rms_deg, scattered
 from diagnosis.discovery.proof.family_wise import FamilyWise, family_wise
 from diagnosis.discovery.search.likelihood_ratio import drop, settle, take_out
-from diagnosis.discovery.search.stepwise import Cause, judge
-from twin.angles import Array
-from twin.catalogue import base_name
+from diagnosis.discovery.search.rivals import Judged, judge
+from twin.angles import Array, IntArray
+from twin.catalogue import base_name, output_grid
 from twin.effect import Effect
 
-SLACK = 1.004
-LOST = 1.5
-"""Growth of the held-out RMS with a cause above which its fit has not seen what it is about."""
-LISTED_LOG_P = float(np.log(0.003))
-"""Log of the family-wise probability below which a cause is listed."""
-NO_DOUBT_LOG_P = -40.0
-"""Log probability of the F test below which no simulation of a size that can be afforded says more."""
+
+@dataclass(frozen=True, eq=False)
+class Proof:
+    """The causes of a fit, strongest first, and what each gains on held-out readings.
+
+    ``fold`` (n,) is that of each row, ``held`` the held-out residuals (n,) [rad] of the baseline and after each cause,
+    ``weighed_deg`` their RMS with the rows weighed by their noise; ``family`` calibrates the probabilities, where any
+    of the causes leaves a doubt, and ``effects`` are those that were searched for.
+    """
+
+    fit: Fit
+    effects: tuple[Effect, ...]
+    causes: tuple[Judged, ...]
+    fold: IntArray
+    held: tuple[Array, ...]
+    weighed_deg: tuple[float, ...]
+    family: FamilyWise | None
+
+    @property
+    def ordered(self) -> tuple[str, ...]:
+        """Keys of the causes, strongest first."""
+        return tuple(cause.key for cause in self.causes)
+
+    def by_chance(self, cause: Judged) -> float:
+        """Log of the family-wise probability of a cause: calibrated, or the F test's where that leaves no doubt."""
+        if self.family is None:
+            return cause.log_p + float(np.log(max(len(self.effects), 1)))
+        return self.family.log_p(base_name(cause.key), cause.log_p)
+
+    def entries(self) -> tuple[Named, ...]:
+        """The causes as entries of the answer, with their held-out figures over all rows in use."""
+        use = self.fit.evidence.usable
+        figures = [rms_deg(residual, use) for residual in self.held]
+        return tuple(
+            Named(
+                (cause.key,),
+                cause.log_p,
+                cause.gain,
+                cause.rivals,
+                family_log_p=self.by_chance(cause),
+                before_deg=before,
+                after_deg=after,
+            )
+            for cause, (before, after) in zip(self.causes, itertools.pairwise(figures), strict=True)
+        )
 
 
-def prove(
-    fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.random.Generator
-) -> tuple[Fit, list[Named], list[Array]]:
-    """Entries with their held-out figures; what gains nothing on readings it never saw is no cause.
+def select(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.random.Generator) -> Proof:
+    """Drop causes one after the other until every one that is left is proven.
 
     ``rng`` draws the sweeps on which the family-wise probabilities are calibrated.
     """
-    effects = [e for e in effects if e.visible_in(fit.evidence.motion.provides)]
-    keys = list(keys)
+    visible = tuple(effect for effect in effects if effect.visible_in(fit.evidence.motion.provides))
+    kept = list(keys)
     while True:
-        views = _views(fit) if keys else []
-        causes = sorted((_judged(views, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
-        use = fit.evidence.usable
-        ordered = [cause.key for cause in causes]
-        fold = folds(fit)
-        held = held_out_residuals(fit, ordered, fold)
-        weighed = [rms_deg(residual / fit.evidence.scale, use) for residual in held]
-        if fit.setting.member == 0 and _lost(weighed):
-            # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere.
-            fold = scattered(fit)
-            held = held_out_residuals(fit, ordered, fold)
-            weighed = [rms_deg(residual / fit.evidence.scale, use) for residual in held]
-        idle = None
-        family = _calibrated(fit, effects, causes, rng)
-        for place, key in enumerate(ordered):
-            if _by_chance(family, causes[place], effects) > LISTED_LOG_P:
-                # Or what was added after it has taken over what it was added for.
-                idle = key
-                break
-            if weighed[place + 1] < weighed[place]:
-                continue
-            # Not the last step: its turn may come only with what was added after it.
-            alone = held_out_residuals(fit, [*(k for k in ordered if k != key), key], fold)
-            # The RMS counts correlated noise in full: a strong cause that leaves it as it is shows elsewhere.
-            slack = SLACK if causes[place].log_p < np.log(1e-10) else 1.0
-            before, after = (rms_deg(residual / fit.evidence.scale, use) for residual in alone[-2:])
-            if after >= slack * before:
-                idle = key
-                break
+        proof = prove(fit, visible, kept, rng=rng)
+        idle = next((cause.key for place, cause in enumerate(proof.causes) if not _proven(proof, place)), None)
         if idle is None:
-            break
+            return proof
         fit, _ = settle(drop(fit, idle))
-        keys.remove(idle)
-    figures = [rms_deg(residual, use) for residual in held]
-    entries = [
-        Named(
-            (cause.key,),
-            cause.log_p,
-            cause.gain,
-            cause.rivals,
-            family_log_p=_by_chance(family, cause, effects),
-            before_deg=figures[place],
-            after_deg=figures[place + 1],
-        )
-        for place, cause in enumerate(causes)
-    ]
-    return fit, entries, held
+        kept.remove(idle)
 
 
-def _lost(rms: Sequence[float]) -> bool:
-    """Whether any step makes the held-out RMS much worse."""
-    return any(after > LOST * before for before, after in itertools.pairwise(rms))
+def prove(fit: Fit, effects: tuple[Effect, ...], keys: Sequence[str], *, rng: np.random.Generator) -> Proof:
+    """Judge the causes of a fit, hold them out, and calibrate their probabilities."""
+    views = _views(fit, effects) if keys else []
+    causes = sorted((_judged(views, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
+    ordered = [cause.key for cause in causes]
+    fold = folds(fit)
+    held, weighed = _held_out(fit, ordered, fold)
+    if fit.setting.member == 0 and _lost(weighed, fit.settings.heldout_lost):
+        # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere.
+        fold = scattered(fit)
+        held, weighed = _held_out(fit, ordered, fold)
+    family = _calibrated(fit, effects, causes, rng)
+    return Proof(fit, effects, tuple(causes), fold, tuple(held), tuple(weighed), family)
+
+
+def _proven(proof: Proof, place: int) -> bool:
+    """Whether the cause at this place stands out of chance, and gains on readings that no fit has seen."""
+    fit, cause, settings = proof.fit, proof.causes[place], proof.fit.settings
+    if proof.by_chance(cause) > settings.footprint_log_p:
+        # Or what was added after it has taken over what it was added for.
+        return False
+    if proof.weighed_deg[place + 1] < proof.weighed_deg[place]:
+        return True
+    # Not the last step: its turn may come only with what was added after it.
+    last = [*(key for key in proof.ordered if key != cause.key), cause.key]
+    _, weighed = _held_out(fit, last, proof.fold)
+    # The RMS counts correlated noise in full: a strong cause that leaves it as it is shows elsewhere.
+    slack = settings.heldout_slack if cause.log_p < settings.beyond_doubt_log_p else 1.0
+    return weighed[-1] < slack * weighed[-2]
+
+
+def _held_out(fit: Fit, keys: Sequence[str], fold: IntArray) -> tuple[list[Array], list[float]]:
+    """Held-out residuals (n,) [rad] as the causes are added one by one, and their RMS [deg] with weighed rows."""
+    held = held_out_residuals(fit, keys, fold)
+    return held, [rms_deg(residual / fit.evidence.scale, fit.evidence.usable) for residual in held]
+
+
+def _lost(rms: Sequence[float], most: float) -> bool:
+    """Whether any step makes the held-out RMS so many times worse."""
+    return any(after > most * before for before, after in itertools.pairwise(rms))
 
 
 def _calibrated(
-    fit: Fit, effects: Sequence[Effect], causes: Sequence[Cause], rng: np.random.Generator
+    fit: Fit, effects: Sequence[Effect], causes: Sequence[Judged], rng: np.random.Generator
 ) -> FamilyWise | None:
     """The scores that the effects reach on sweeps without any of the causes; None where none of these is in doubt."""
-    if all(cause.log_p < NO_DOUBT_LOG_P for cause in causes):
+    if all(cause.log_p < fit.settings.no_simulation_log_p for cause in causes):
         return None
     baseline = fit
     for cause in causes:
@@ -103,24 +136,17 @@ def _calibrated(
     return family_wise(solve(baseline), fit, colour_of(fit), effects, rng=rng)
 
 
-def _by_chance(family: FamilyWise | None, cause: Cause, effects: Sequence[Effect]) -> float:
-    """Log of the family-wise probability of a cause: calibrated, or the F test's where that leaves no doubt."""
-    if family is None:
-        return cause.log_p + float(np.log(max(len(effects), 1)))
-    return family.log_p(base_name(cause.key), cause.log_p)
-
-
-def _views(fit: Fit) -> list[Fit]:
+def _views(fit: Fit, effects: Sequence[Effect]) -> list[Fit]:
     """The fit; on coloured noise also the fit without the output's stairs.
 
     A slow noise shifts whole runs of readings against the stairs, which a cause may then seem to set right.
     """
-    if fit.setting.member == 0 or "output_quantisation" not in fit.chain.values:
+    grid = output_grid(fit.chain.effects)
+    if fit.setting.member == 0 or grid is None or grid.name not in fit.chain.values:
         return [fit]
-    chain = fit.chain.without("output_quantisation")
-    return [fit, settle(solve(evaluate(chain, fit.free, fit.evidence, fit.setting)))[0]]
+    return [fit, settle(solve(evaluate(fit.chain.without(grid.name), fit.free, fit.evidence, fit.setting)))[0]]
 
 
-def _judged(views: Sequence[Fit], key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Cause:
+def _judged(views: Sequence[Fit], key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Judged:
     """The cause as the least favourable view judges it."""
     return max((judge(view, key, effects, keys) for view in views), key=lambda cause: cause.log_p)

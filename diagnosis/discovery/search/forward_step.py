@@ -11,7 +11,6 @@ from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.noise_choice import either
 from diagnosis.discovery.fitting.noise_model import NoiseFamily
 from diagnosis.discovery.search.likelihood_ratio import (
-    SWAP_MARGIN,
     Trial,
     degrees,
     handicap,
@@ -24,38 +23,33 @@ from diagnosis.discovery.search.screening import Base, Candidate, screen, screen
 from twin.catalogue import base_name, find, unnamed
 from twin.effect import Effect
 
-FAIR_SHARE = 0.15
-"""Share of a cause's first gain that another effect must reach to be tried in its place later."""
-REPEATABLE = frozenset({"drive_ripple", "magnet_harmonic"})
-MOST_TOGETHER = 3
-"""So many causes at once are looked for where none stands out alone."""
+_HIGHEST_SHARE = 0.9
+"""Highest order looked at as a multiple, as a share of the points a turn."""
 
 
 def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
     """Every effect that may still be added, at its best shape, best first after the handicap."""
     present = {base_name(key) for key in keys}
-    open_to = [e for e in effects if e.name not in present or e.name in REPEATABLE or unnamed(e.name)]
+    open_to = [e for e in effects if e.name not in present or e.repeatable or unnamed(e.name)]
     found = screen(base, open_to)
     found += multiples(base, effects, keys)
     return sorted(found, key=lambda c: c.log_p + handicap(c.effect, base.fit))
 
 
 def multiples(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
-    """A drive's ripple comes with its multiples, also where these alias to other orders."""
+    """The multiples at which a line that is in the fit already may show again, also where these alias."""
     found = []
+    # Near the number of points a turn an order is a slow function of the row: no line is told from it.
+    highest = _HIGHEST_SHARE * base.fit.evidence.motion.points_per_turn
     for effect in effects:
-        if effect.name != "drive_ripple":
+        if effect.line is None or not effect.line.multiples:
             continue
         for key in keys:
-            if base_name(key) != effect.name:
-                continue
-            order = float(base.fit.chain.values[key]["order"])
-            # Near the number of points a turn an order is a slow function of the row: no ripple is told from it.
-            highest = 0.9 * base.fit.evidence.motion.points_per_turn
-            shapes = [{"order": order * k} for k in (2, 3, 4, 5) if order * k < highest]
-            candidate = screen_one(base, effect, shapes=shapes)
-            if candidate is not None:
-                found.append(candidate)
+            if base_name(key) == effect.name:
+                order = float(base.fit.chain.values[key][effect.line.param])
+                shapes = [{effect.line.param: order * k} for k in effect.line.multiples if order * k < highest]
+                candidate = screen_one(base, effect, shapes=shapes)
+                found += [candidate] if candidate is not None else []
     return found
 
 
@@ -77,7 +71,9 @@ def best_addition(
     if not ranked:
         return None
     top = ranked[0].log_p + handicap(ranked[0].effect, fit)
-    near = [c for c in ranked if c.log_p + handicap(c.effect, base.fit) < top + max(8.0, -0.1 * top)][:5]
+    settings = fit.settings
+    reach = max(settings.contender_nats, -settings.contender_share * top)
+    near = [c for c in ranked if c.log_p + handicap(c.effect, base.fit) < top + reach][: settings.most_contenders]
     trials = [Trial.of(fit, c) for c in near]
     # All are judged by the same noises: those that any of them leaves.
     members = either(*(t.members for t in trials))
@@ -86,7 +82,7 @@ def best_addition(
     if score > threshold:
         return None
     trial, chosen = trials[place], trials[place].candidate
-    fair = {c.effect.name: c.effect for c in ranked if c.gain > FAIR_SHARE * chosen.gain}
+    fair = {c.effect.name: c.effect for c in ranked if c.gain > fit.settings.fair_share * chosen.gain}
     return Step(
         trial.fit,
         {trial.key: list(fair.values())},
@@ -112,7 +108,7 @@ def best_together(
     trial, white = settle(solve(evaluate(fit.chain, fit.free, fit.evidence, setting)))
     added: dict[str, Sequence[Effect]] = {}
     terms, log_looks = 0, 0.0
-    for depth in range(MOST_TOGETHER):
+    for depth in range(fit.settings.most_together):
         step = best_addition(trial, white, effects, [*keys, *added], threshold)
         if step is None:
             return None
@@ -143,6 +139,6 @@ def retuned(fit: Fit, keys: Sequence[str]) -> Fit:
         if again is None:
             continue
         trial = Trial.of(removed, again)
-        if likelihood(trial.fit, fit.setting.plausible) > likelihood(fit) + SWAP_MARGIN:
+        if likelihood(trial.fit, fit.setting.plausible) > likelihood(fit) + fit.settings.swap_log_odds:
             fit = trial.fit
     return fit

@@ -9,20 +9,18 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, tidy
 from diagnosis.discovery.fitting.noise_choice import plausible_members, radius_noise
-from diagnosis.discovery.search.screening import Base, Candidate, log_probability
+from diagnosis.discovery.search.screening import Base, Candidate
 from twin.catalogue import unnamed
 from twin.chain import Chain
 from twin.effect import Effect
 
-HANDICAP = 6.0
-"""What a shape without a name must gain (in nats) beyond one with a name."""
-SWAP_MARGIN = 2.0
-"""What a swap must gain (in nats): less is noise."""
-ALIASED = 20.0
-"""What an effect must gain beyond the others where coarse stairs may pass for it."""
 MOST_SHAPES = 20
+"""An effect with more shapes than this on its grid has lines or places enough that stairs' own pattern meets one."""
+SETTLING = 3
+"""Times that noise and fit are adapted to one another; the second time the noise hardly ever changes."""
 
 
 def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
@@ -75,7 +73,7 @@ def replace_chain(fit: Fit, chain: Chain) -> Fit:
 def settle(fit: Fit) -> tuple[Fit, Base]:
     """Let the fit take the noise that fits it best, the radius its own noise, and solve again."""
     fit = replace(fit, setting=replace(fit.setting, members=plausible_members(fit)))
-    for _ in range(3):
+    for _ in range(SETTLING):
         base = Base.of(fit)
         setting = replace(fit.setting, member=base.member, **_radius_setting(fit))
         same = setting.member == fit.setting.member and np.isclose(
@@ -155,14 +153,20 @@ class Trial:
 
 
 def handicap(effect: Effect, fit: Fit) -> float:
-    """What an effect has to gain beyond the others: without a name, or of the kind that coarse stairs pass for."""
-    extra = 0.0
-    if fit.setting.coarse and _aliased(effect, fit):
-        extra = ALIASED
-    if not unnamed(effect.name):
-        return extra
-    # On a shaft that steps evenly a tone in time is an order too: the order is the plainer description.
-    return extra + HANDICAP + (2.0 if effect.name == "unnamed_tone" else 0.0)
+    """What an effect has to gain beyond the others [nats]: without a name, or of the kind that stairs pass for."""
+    settings = fit.settings
+    stairs = settings.stairs_log_odds if fit.setting.coarse and _aliased(effect, fit) else 0.0
+    return stairs + effect.handicap + (settings.unnamed_log_odds if unnamed(effect.name) else 0.0)
+
+
+def doubt_beside(fit: Fit, keys: Sequence[str]) -> float:
+    """What a cause has to gain more [nats] beside a shape without a name.
+
+    Such a shape describes something only nearly, and what it leaves may pass for a weak cause; unless the noise is
+    coloured, which what it leaves is taken for.
+    """
+    nearly = fit.setting.member == 0 and any(unnamed(key) for key in keys)
+    return fit.settings.unnamed_log_odds if nearly else 0.0
 
 
 def _aliased(effect: Effect, fit: Fit) -> bool:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, radius_nuisance, root_weights
 from diagnosis.discovery.fitting.linearised_chain import Term
 from diagnosis.discovery.fitting.noise_model import observables_to_cosine, to_rows
@@ -22,6 +23,9 @@ from twin.angles import Array
 from twin.effect import Effect
 
 _CHUNK = 4_000_000
+_ZOOMS = 3
+_ZOOM_POINTS = 9
+"""Three grids of nine between neighbours find a maximum to 1/64 of the first grid's step; a fit goes on from it."""
 COARSE = (0, 2, 4, 6, 8, 13, 15)
 """Family members that a first-order gain is taken over, beside the best one; exact fits ask them all."""
 
@@ -109,19 +113,6 @@ class Base:
         return int(np.argmax(self.likelihood[0]))
 
 
-def log_probability(gain: Array, terms: int, dof: int) -> Array:
-    """Log of the probability that Gaussian noise gains as much: the F test, with ``gain = -dof log(rss1/rss0)``."""
-    from scipy.special import betainc, betaln
-
-    share = np.exp(-np.maximum(gain, 0.0) / max(dof, 1))
-    a, b = 0.5 * max(dof - terms, 1), 0.5 * terms
-    plain = betainc(a, b, share)
-    with np.errstate(divide="ignore"):
-        tail = a * np.log(np.maximum(share, 1e-300)) + (b - 1.0) * np.log1p(-np.minimum(share, 1 - 1e-16))
-        tail = tail - betaln(a, b) - np.log(a)
-        return np.asarray(np.where(plain > 1e-280, np.log(np.maximum(plain, 1e-300)), tail))
-
-
 def screen(base: Base, effects: Iterable[Effect]) -> list[Candidate]:
     """The best shape of each effect that gains at all, strongest first."""
     found = []
@@ -149,12 +140,14 @@ def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, floa
     if not np.any(gains > 0.0):
         return None
     best = int(np.argmax(gains))
-    shape, gain, coefficient = shapes[best], float(gains[best]), coefficients[best]
-    for name in _smooth(effect, shape):
-        shape, gain, coefficient = _zoom(base, effect, shapes, shape, name, gain, coefficient)
-    terms = coefficient.size
-    values = {**effect.null(), **shape, **_parameters(effect, fit.linear.terms(effect), coefficient, motion)}
-    return Candidate(effect, values, gain, terms, looks, float(by_chance(base, effect, np.array(gain), terms, looks)))
+    point = _Point(shapes[best], float(gains[best]), coefficients[best])
+    for name in _smooth(effect, point.shape):
+        point = _zoom(base, effect, point, name=name, axis=np.unique([shape[name] for shape in shapes]))
+    terms = point.coefficient.size
+    found = _parameters(effect, fit.linear.terms(effect), point.coefficient, motion)
+    values = {**effect.null(), **point.shape, **found}
+    log_p = float(by_chance(base, effect, np.array(point.gain), terms, looks))
+    return Candidate(effect, values, point.gain, terms, looks, log_p)
 
 
 def by_chance(base: Base, effect: Effect, gain: Array, terms: int, looks: float) -> Array:
@@ -269,23 +262,23 @@ def _allowed(effect: Effect, terms: tuple[Term, ...], coefficients: Array) -> Ar
     return ok
 
 
-def _zoom(
-    base: Base,
-    effect: Effect,
-    shapes: Sequence[Mapping[str, float]],
-    shape: Mapping[str, float],
-    name: str,
-    gain: float,
-    coefficient: Array,
-) -> tuple[Mapping[str, float], float, Array]:
-    """Climb from the best point of the grid: finer grids between its neighbours, three times."""
-    axis = np.unique([s[name] for s in shapes])
-    place = int(np.searchsorted(axis, shape[name]))
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """A shape of an effect, what it gains, and the coefficients (T,) of its first-order fit."""
+
+    shape: Mapping[str, float]
+    gain: float
+    coefficient: Array
+
+
+def _zoom(base: Base, effect: Effect, point: _Point, *, name: str, axis: Array) -> _Point:
+    """Climb from the best point of a grid ``axis`` of one parameter: finer grids between its neighbours."""
+    place = int(np.searchsorted(axis, point.shape[name]))
     low, high = axis[max(place - 1, 0)], axis[min(place + 1, axis.size - 1)]
     if effect.line is not None:
-        low, high = line_neighbours(base.fit, effect, shape[name])
-    for _ in range(3):
-        fine = [{**shape, name: float(value)} for value in np.linspace(low, high, 9)]
+        low, high = line_neighbours(base.fit, effect, point.shape[name])
+    for _ in range(_ZOOMS):
+        fine = [{**point.shape, name: float(value)} for value in np.linspace(low, high, _ZOOM_POINTS)]
         if effect.line is not None:
             inside = effect.line.within(np.array([f[name] for f in fine]))
             fine = [f for f, good in zip(fine, inside, strict=True) if good]
@@ -293,11 +286,11 @@ def _zoom(
             break
         gains, coefficients = (found[0] for found in gains_of(base, effect, fine))
         best = int(np.argmax(gains))
-        if gains[best] > gain:
-            shape, gain, coefficient = fine[best], float(gains[best]), coefficients[best]
-        width = (high - low) / 8.0
-        low, high = max(low, shape[name] - width), min(high, shape[name] + width)
-    return shape, gain, coefficient
+        if gains[best] > point.gain:
+            point = _Point(fine[best], float(gains[best]), coefficients[best])
+        width = (high - low) / (_ZOOM_POINTS - 1)
+        low, high = max(low, point.shape[name] - width), min(high, point.shape[name] + width)
+    return point
 
 
 def line_neighbours(fit: Fit, effect: Effect, value: float) -> tuple[float, float]:

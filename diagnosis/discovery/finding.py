@@ -1,20 +1,18 @@
-"""What an answer says of one cause: its probability, its rivals, and the held-out figures around it."""
+"""One entry of the answer: a cause, how improbable it is by chance, its rivals, and the held-out figures around it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
-from diagnosis.discovery.fitting.observations import Evidence
-from diagnosis.discovery.further.power import Option
-from diagnosis.discovery.marks.stairs import without_stairs
-from diagnosis.discovery.proof.cross_validation import rms_deg
-from twin.angles import Array
-from twin.catalogue import base_name, find, unnamed
-from twin.effect import BoolArray
+from twin.catalogue import base_name, unnamed
+
+if TYPE_CHECKING:
+    from diagnosis.discovery.further.power import Option
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +52,7 @@ class Named:
         return "unnamed" if unnamed(name) else name
 
 
-def merge(entries: list[Named]) -> list[Named]:
+def merge(entries: Sequence[Named]) -> list[Named]:
     """Instances of one effect, and all structure without a name, as one entry each; strongest first."""
     merged: dict[str, Named] = {}
     for entry in entries:
@@ -72,30 +70,3 @@ def merge(entries: list[Named]) -> list[Named]:
         else:
             merged[entry.name] = entry
     return sorted(merged.values(), key=lambda e: -e.gain)
-
-
-def of_readings(row_rms_deg: float, evidence: Evidence) -> float:
-    """RMS [deg] over single readings, from that over rows which average several of them."""
-    return float(np.hypot(row_rms_deg, np.degrees(np.sqrt(evidence.within))))
-
-
-def of_single_readings(entry: Named, evidence: Evidence) -> Named:
-    return replace(
-        entry,
-        before_deg=of_readings(entry.before_deg, evidence),
-        after_deg=of_readings(entry.after_deg, evidence),
-    )
-
-
-def with_figures(entry: Named, fit: Fit, held: list[Array], use: BoolArray) -> Named:
-    """RMS before and after for causes that no fit of the mean carries."""
-    if np.isfinite(entry.before_deg):
-        return entry
-    after = rms_deg(held[-1], use)
-    if entry.rows:
-        return replace(entry, before_deg=rms_deg(held[-1], np.ones_like(use)), after_deg=after)
-    effect = find(entry.keys[0], fit.chain.effects)
-    if effect.footprint == "values":
-        before = rms_deg(without_stairs(fit, entry.keys[0]), use)
-        return replace(entry, before_deg=before, after_deg=rms_deg(fit.residual[0], use))
-    return replace(entry, before_deg=after, after_deg=after)

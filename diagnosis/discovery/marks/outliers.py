@@ -1,0 +1,58 @@
+"""Outliers: rows that stand far out of their neighbours, and scatter measured blind to them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnosis.discovery.settings import DiscoverySettings
+from twin.angles import TAU, Array
+from twin.effect import BoolArray
+from twin.motion import Motion
+
+
+def robust_rms(values: Array) -> float:
+    """RMS of Gaussian values from their median deviation, blind to outliers."""
+    return float(1.4826 * np.median(np.abs(values - np.median(values)))) if values.size else 0.0
+
+
+def local_residual(residual: Array) -> Array:
+    """Residual (n,) against the median of its neighbours: what single readings do on their own."""
+    if residual.size < 12:
+        return np.asarray(residual - np.median(residual))
+    padded = np.pad(residual, 4, mode="reflect")
+    return np.asarray(residual - np.median(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1))
+
+
+def spikes(residual: Array, motion: Motion, step: float, settings: DiscoverySettings) -> BoolArray:
+    """Rows (n,) that stand alone, far out of their neighbours.
+
+    Readings on a grid of ``step`` [rad] jump by a whole step where noise moves them by much less.
+    Five or more neighbours off together are structure, not spikes; so is what comes again at the same angle.
+    """
+    away = local_residual(residual)
+    sigma = robust_rms(away)
+    few = residual.size < settings.spike_few
+    far = settings.spike_sigma_few if few else settings.spike_sigma
+    mask = np.abs(away) > far * max(sigma, 1e-9) + step
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        if last - first > settings.longest_spike:
+            mask[first:last] = False
+    return mask & ~_repeated(away, mask, motion) if mask.any() else mask
+
+
+def _repeated(away: Array, mask: BoolArray, motion: Motion) -> BoolArray:
+    """Which of the marked rows (n,) are off the same way at the same place of other turns, in the same direction.
+
+    Such rows show a narrow shape, or what follows a reversal.
+    """
+    again = np.zeros_like(mask)
+    place = np.round(np.degrees(motion.shaft_rad % TAU) / 2.0).astype(int) % 180
+    for way in (1.0, -1.0):
+        same_way = motion.direction == way
+        for spot in np.unique(place[mask & same_way]):
+            here = same_way & np.isin(place, [(spot - 1) % 180, spot, (spot + 1) % 180])
+            off = here & mask
+            if off.sum() >= 3 and 2 * off.sum() >= here.sum() and abs(np.sum(np.sign(away[off]))) == off.sum():
+                again |= off
+    return again

@@ -1,0 +1,33 @@
+"""Sequence: single readings that an effect of the link has touched, told by their values and their neighbours."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnosis.discovery.finding import Named
+from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.marks.outliers import local_residual, robust_rms
+from diagnosis.discovery.marks.row_masks import raw_residual
+from diagnosis.discovery.marks.stairs import stair_step
+from twin.effect import BoolArray, Effect
+from twin.sweep import Sweep
+
+
+def touched_rows(
+    fit: Fit, sweep: Sweep, effect: Effect, *, step: float, spoken_for: BoolArray
+) -> tuple[BoolArray, Named] | None:
+    """Raw rows (n_raw,) that the effect has touched, and the effect as a cause; None where chance explains them.
+
+    ``step`` [rad] is that of the output's grid; rows ``spoken_for`` (n_raw,) belong to another effect already.
+    """
+    assert effect.marks is not None
+    residual = np.where(spoken_for, 0.0, raw_residual(fit, sweep))
+    # What a CORDIC's uneven stairs leave stands out of the noise too.
+    stairs = stair_step(fit.chain, step) / np.sqrt(12.0)
+    sigma = max(robust_rms(local_residual(residual)), stairs)
+    mask, log_p = effect.marks(np.radians(sweep.measured_deg), residual, sigma, step, sweep.motion())
+    if log_p > fit.settings.footprint_log_p or not mask.any():
+        return None
+    rows = tuple(int(row) for row in np.flatnonzero(mask))
+    # Looked for by itself, on readings that no other effect touches: there is no family to pay for.
+    return mask, Named((effect.name,), log_p, -2.0 * log_p, rows=rows, family_log_p=log_p)

@@ -1,0 +1,215 @@
+"""Spread: whether the noise is louder at some angles, or in one stretch of the record, and by how much."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
+from diagnosis.discovery.fitting.noise_model import to_rows
+from diagnosis.discovery.fitting.observations import Evidence
+from twin.angles import Array
+from twin.effect import BoolArray, Effect
+
+_T95 = 1.959964
+
+
+@dataclass(frozen=True, eq=False)
+class SpreadFinding:
+    """A shape of the noise's variance over the rows: effect, parameters, twice the gain in log likelihood."""
+
+    name: str
+    values: dict[str, float]
+    gain: float
+    log_p: float
+    variance: Array
+    intervals: dict[str, tuple[float, float]]
+
+
+def white_rows(fit: Fit) -> Array:
+    """Residual (n,) over the rows, whitened, in units of its own RMS; masked rows are zero.
+
+    What the rows' scale has taken out of them is put back: this is what the spread is judged on.
+    """
+    root = root_weights(fit.setting, fit.evidence.observables)[0]
+    rows = to_rows(fit.cosine_residual[0] * root) * fit.evidence.scale
+    sigma = float(np.sqrt(np.mean(rows[fit.evidence.usable] ** 2)))
+    return np.where(fit.evidence.usable, rows / max(sigma, 1e-300), 0.0)
+
+
+def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
+    """Which declared shapes of the variance gain over constant variance, each at its best strength."""
+    if stairs_rule(fit) or float(np.mean(fit.residual[0] ** 2)) < 1e-12:
+        return []
+    use = fit.evidence.usable
+    square = np.clip(white_rows(fit)[use] ** 2, 0.0, 36.0)
+    expected = _expected_variance(fit, square)
+    found = [_spread_shape(fit, effect, square, expected) for effect in effects if effect.spread is not None]
+    return [finding for finding in found if finding is not None]
+
+
+def _spread_shape(fit: Fit, effect: Effect, square: Array, expected: Array) -> SpreadFinding | None:
+    """One effect's shape of the variance at its best strength, given the squares (rows in use,); None: no gain."""
+    assert effect.spread is not None
+    use, angle = fit.evidence.usable, fit.linear.sensor_angle
+    name = effect.roles("random")[0]
+    typical = effect.params[name].typical
+    shape = effect.spread(angle, {name: typical})[use]
+    if np.ptp(shape) < 1e-3 * np.mean(shape):
+        return None
+    gain, ratio = _variance_gain(square, shape / np.mean(shape), expected)
+    if ratio <= 0.0:
+        return None
+    (base, added), deviation = _variances(square, expected, shape / np.mean(shape), ratio)
+    # The fit has taken its share out of the mean square.
+    sigma2 = float(np.mean(fit.residual[0][use] ** 2))
+    unit = sigma2 * fit.rows / max(fit.rows - len(fit.free), 1) / float(np.mean(shape))
+    low, value, high = (
+        typical * float(np.sqrt(max(v, 0.0) * unit))
+        for v in (added - _T95 * deviation, added, added + _T95 * deviation)
+    )
+    full = effect.spread(angle, {name: value}) + sigma2 * base
+    log_p = _half_chi_square(gain / _inflation(square / full[use]))
+    return SpreadFinding(effect.name, {name: value}, gain, log_p, full, {name: (low, high)})
+
+
+def stairs_rule(fit: Fit) -> bool:
+    """Whether stairs make most of the spread: how much a reading scatters then depends on its place between two steps.
+
+    The variance is no evidence of anything else there.
+    """
+    stairs = fit.linear.stair_variance
+    if stairs is not None and float(np.mean(stairs)) > 2.0 * fit.setting.blur**2:
+        return True
+    return any(effect.line and effect.line.clock == "channels" for _, effect, _ in fit.chain.active("channels"))
+
+
+def _expected_variance(fit: Fit, square: Array) -> Array:
+    """Relative variance of the rows in use that the output's stairs alone lead one to expect, mean 1.
+
+    Between two steps of a coarse grid readings scatter more than on a step; how much of that is seen depends on how
+    fast the noise ahead of the grid is, so the data choose.
+    """
+    if fit.linear.stair_variance is None:
+        return np.ones(square.size)
+    stairs = fit.linear.stair_variance[fit.evidence.usable]
+    if not np.mean(stairs) > 0.0:
+        return np.ones(square.size)
+    stairs = stairs / np.mean(stairs)
+    profiles = [1.0 - share + share * stairs for share in np.linspace(0.0, 0.95, 12)]
+    return min(profiles, key=lambda v: square.size * np.log(np.mean(square / v)) + np.sum(np.log(v)))
+
+
+def _variance_gain(square: Array, shape: Array, expected: Array) -> tuple[float, float]:
+    """Twice the gain of variance ``expected + ratio shape`` over ``expected`` for squares (n,), and the best ratio."""
+    n = square.size
+    flat = n * np.log(np.mean(square / expected)) + np.sum(np.log(expected))
+    ratios = np.concatenate([[0.0], np.geomspace(0.02, 200.0, 160)])
+    gains = np.empty(ratios.size)
+    for place, ratio in enumerate(ratios):
+        profile = expected + ratio * shape
+        gains[place] = flat - (n * np.log(np.mean(square / profile)) + np.sum(np.log(profile)))
+    best = int(np.argmax(gains))
+    return float(gains[best]), float(ratios[best])
+
+
+def _variances(square: Array, expected: Array, shape: Array, ratio: float) -> tuple[tuple[float, float], float]:
+    """Maximum likelihood of variance ``base expected + added shape`` from a first ratio: (base, added), sd of added.
+
+    Both are free: where the shape is all there is, what it adds is known as well as the variance itself, no better.
+    """
+    parts = np.stack([expected, shape])
+    found: Array = np.array([1.0, ratio]) * float(np.mean(square / (expected + ratio * shape)))
+    inverse: Array = np.eye(2)
+    for _ in range(4):
+        variance = found @ parts
+        relative = parts / variance
+        # Fisher scoring: the information of a square about its variance is half of one over the variance squared.
+        inverse = np.asarray(np.linalg.inv(0.5 * relative @ relative.T), dtype=np.float64)
+        step = inverse @ (0.5 * relative @ (square / variance - 1.0))
+        found = np.asarray(np.maximum(found + step, 0.1 * found), dtype=np.float64)
+    return (float(found[0]), float(found[1])), float(np.sqrt(inverse[1, 1]))
+
+
+def _inflation(square: Array) -> float:
+    """By how much likelihood ratios of a variance are too large, from squares (n,) over their expected variance.
+
+    A square of Gaussian noise has the variance 2 (in units of its mean squared), one of noise with heavier tails has
+    more, and the ratio's chi-square is stretched by as much: Box, Biometrika 40 (1953) 318, with the kurtosis of the
+    noise itself, its uneven variance taken out. Lighter tails than Gaussian are not credited.
+    """
+    return max(float(np.var(square / np.mean(square))) / 2.0, 1.0)
+
+
+def _half_chi_square(gain: float) -> float:
+    """Log probability of the gain at the edge of the parameter's range: half a chi-square of one degree."""
+    from scipy.special import log_ndtr
+
+    return float(log_ndtr(-np.sqrt(max(gain, 0.0))))
+
+
+def bursts(fit: Fit) -> SpreadFinding | None:
+    """The stretch of rows with the most outstanding variance, if its noise is clearly louder than that of the rest."""
+    if stairs_rule(fit) or float(np.mean(fit.residual[0] ** 2)) < 1e-12:
+        return None
+    use = fit.evidence.usable
+    stretch = _loudest_stretch(np.where(use, np.clip(white_rows(fit) ** 2, 0.0, 36.0), 0.0), use)
+    if stretch is None or stretch.ratio < fit.settings.burst_ratio:
+        return None
+    sigma = float(np.sqrt(np.mean(fit.residual[0][use] ** 2)))
+    row = np.arange(use.size)
+    share = np.where((row >= stretch.first) & (row <= stretch.last), stretch.ratio, 1.0)
+    base = sigma / np.sqrt(np.mean(share[use]))
+    values = {
+        "first_row": float(stretch.first),
+        "last_row": float(stretch.last),
+        "rms_deg": float(np.degrees(base * np.sqrt(stretch.ratio - 1.0))),
+    }
+    square = np.clip(white_rows(fit)[use] ** 2, 0.0, 36.0)
+    log_p = _half_chi_square(stretch.gain / _inflation(square / share[use])) + float(np.log(max(stretch.looks, 1)))
+    return SpreadFinding("unnamed_burst", values, stretch.gain, log_p, base**2 * share, {})
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """Rows from ``first`` to ``last``: twice the gain in log likelihood by a variance of their own, its ratio to the
+    variance of the rest, and how many independent stretches were looked at."""
+
+    gain: float
+    first: int
+    last: int
+    ratio: float
+    looks: int
+
+
+def _loudest_stretch(square: Array, use: BoolArray) -> _Stretch | None:
+    """The stretch that gains most by a larger variance of its own, of squares (n,) that are zero where not in use."""
+    n = square.size
+    total, count = float(np.sum(square)), int(use.sum())
+    sums = np.concatenate([[0.0], np.cumsum(square)])
+    counts = np.concatenate([[0], np.cumsum(use)])
+    best: _Stretch | None = None
+    looks = 0
+    length = 10
+    while length <= n // 2:
+        starts = np.arange(0, n - length + 1, max(length // 6, 1))
+        looks += max(n // length, 1) * 2
+        inside = sums[starts + length] - sums[starts]
+        k = np.maximum(counts[starts + length] - counts[starts], 1)
+        outside = np.maximum(total - inside, 1e-12)
+        rest = np.maximum(count - k, 1)
+        gain = count * np.log(total / count) - k * np.log(np.maximum(inside, 1e-12) / k) - rest * np.log(outside / rest)
+        gain = np.where(inside / k > outside / rest, gain, 0.0)
+        at = int(np.argmax(gain))
+        if best is None or gain[at] > best.gain:
+            ratio = float((inside / k)[at] / (outside / rest)[at])
+            best = _Stretch(float(gain[at]), int(starts[at]), int(starts[at] + length - 1), ratio, 0)
+        length = int(length * 1.3) + 1
+    return None if best is None else replace(best, looks=looks)
+
+
+def row_scale(evidence: Evidence, variance: Array) -> Array:
+    """Noise of each row against the usual one, from a variance (n,)."""
+    return np.sqrt(variance / np.median(variance)) if variance.size == len(evidence) else np.ones(len(evidence))

@@ -1,0 +1,82 @@
+"""The answer of a discovery: what stands when the last stage has spoken."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from diagnosis.discovery.finding import Named
+from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.observations import of_readings
+from diagnosis.discovery.proof.cross_validation import rms_deg
+from diagnosis.discovery.proof.predictive_check import Likeness
+from diagnosis.discovery.state import State
+from twin.catalogue import unnamed
+from twin.chain import Chain
+from twin.effect import BoolArray
+from twin.sweep import Sweep
+
+
+@dataclass(frozen=True, eq=False)
+class Discovery:
+    """The answer to a sweep.
+
+    ``baseline`` is the paper's error model alone, ``fit`` the extended one; ``masked`` the raw rows (n_raw,) that
+    belong to single-reading causes; ``invisible`` the effects that this sweep cannot show, with what it lacks.
+    """
+
+    sweep: Sweep
+    baseline: Fit
+    fit: Fit
+    causes: tuple[Named, ...]
+    masked: BoolArray
+    bits: int | None
+    baseline_held_deg: float
+    extended_held_deg: float
+    noise_floor_deg: float
+    looked_at: int
+    given: Chain | None = None
+    invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    likeness: Likeness | None = None
+
+    def __repr__(self) -> str:
+        names = ", ".join(cause.name for cause in self.causes) or "no cause"
+        held = f"held-out RMS {self.baseline_held_deg:.4g} -> {self.extended_held_deg:.4g} deg"
+        return f"Discovery({self.sweep.name!r}, {self.verdict}: {names}; {held})"
+
+    @classmethod
+    def of(cls, state: State) -> Discovery:
+        """The answer that a state holds after the last stage."""
+        fit, evidence = state.fit, state.fit.evidence
+        held = [of_readings(rms_deg(state.held[place], evidence.usable), evidence) for place in (0, -1)]
+        provides = evidence.motion.provides
+        assert state.baseline is not None
+        return cls(
+            sweep=state.sweep,
+            baseline=state.baseline,
+            fit=fit,
+            causes=state.causes,
+            masked=state.touched,
+            bits=state.bits,
+            baseline_held_deg=held[0],
+            extended_held_deg=held[1],
+            noise_floor_deg=float(np.degrees(evidence.repeat_rms)) if evidence.repeat_rms else held[1],
+            looked_at=state.looked_at,
+            given=state.given,
+            invisible={
+                effect.name: effect.missing(provides)
+                for effect in state.effects
+                if not unnamed(effect.name) and not effect.visible_in(provides)
+            },
+            likeness=state.likeness,
+        )
+
+    @property
+    def verdict(self) -> str:
+        """adequate, explained, partly explained or unnamed."""
+        named = any(cause.name != "unnamed" for cause in self.causes)
+        without_name = any(cause.name == "unnamed" for cause in self.causes)
+        if named:
+            return "partly explained" if without_name else "explained"
+        return "unnamed" if without_name else "adequate"

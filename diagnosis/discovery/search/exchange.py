@@ -1,0 +1,131 @@
+"""Exchange: causes that no longer pay are removed, and each is held against what could stand in its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.noise_choice import either, plausible_members
+from diagnosis.discovery.search.forward_step import best_addition, candidates, retuned
+from diagnosis.discovery.search.likelihood_ratio import (
+    Trial,
+    degrees,
+    doubt_beside,
+    drop,
+    handicap,
+    judged_p,
+    likelihood,
+    settle,
+)
+from diagnosis.discovery.search.removal import Standing
+from diagnosis.discovery.search.screening import Candidate
+from twin.catalogue import find, unnamed
+from twin.effect import Effect
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What is searched for, and by which rule.
+
+    ``effects`` are those that the recording can show, ``threshold`` the log probability by chance that one of them
+    must fall below, ``contenders`` by key the effects that explained a fair part of what that cause was added for.
+    """
+
+    effects: tuple[Effect, ...]
+    threshold: float
+    contenders: Mapping[str, Sequence[Effect]]
+
+    @classmethod
+    def among(cls, effects: Sequence[Effect], fit: Fit) -> Search:
+        """The search of a fit for these effects."""
+        visible = tuple(effect for effect in effects if effect.visible_in(fit.evidence.motion.provides))
+        threshold = fit.settings.effect_log_p(len(visible))
+        if fit.setting.coarse:
+            # No smooth model of coarse stairs takes all of them out: only what is beyond doubt counts.
+            threshold = min(threshold, -fit.settings.stairs_log_odds)
+        return cls(visible, threshold, {})
+
+    def with_contenders(self, added: Mapping[str, Sequence[Effect]]) -> Search:
+        """The same search, which knows what contended for the place of the causes added."""
+        return replace(self, contenders={**self.contenders, **added})
+
+    def level_beside(self, fit: Fit, keys: Sequence[str]) -> float:
+        """The log probability to fall below beside these causes."""
+        return self.threshold - doubt_beside(fit, keys)
+
+
+def improve(fit: Fit, keys: Sequence[str], plan: Search) -> tuple[Fit, list[str]]:
+    """Remove what no longer pays, exchange what another explains better; repeat while anything changes."""
+    held = list(keys)
+    for _ in range(fit.settings.most_rounds):
+        before = list(held)
+        fit = retuned(fit, held)
+        for key in before:
+            if key in held and len(held) > 1:
+                fit, held, plan = _held_or_exchanged(fit, key, held, plan)
+        if held == before:
+            break
+    return fit, held
+
+
+def _held_or_exchanged(fit: Fit, key: str, keys: list[str], plan: Search) -> tuple[Fit, list[str], Search]:
+    """The fit with this cause, without it, or with another in its place."""
+    others = [other for other in keys if other != key]
+    standing = Standing.of(fit, key)
+    if standing.log_p + handicap(standing.effect, fit) > plan.level_beside(fit, others):
+        return standing.without, others, plan
+    for rival in _rivals(fit, standing, plan.contenders.get(key, plan.effects), others):
+        trial = Trial.of(standing.removed, rival)
+        members = either(plausible_members(fit), trial.members)
+        own_gain = 2.0 * (likelihood(fit, members) - likelihood(standing.without, members))
+        own_p = standing.judged(own_gain) + handicap(standing.effect, fit)
+        rival_p = trial.log_p(standing.without, members, standing.base.dof) + handicap(rival.effect, fit)
+        if own_p - rival_p > fit.settings.swap_log_odds:
+            plan = plan.with_contenders({trial.key: plan.contenders.get(key, plan.effects)})
+            return trial.fit, [*others, trial.key], plan
+    return fit, keys, plan
+
+
+def _rivals(fit: Fit, standing: Standing, contenders: Sequence[Effect], others: Sequence[str]) -> list[Candidate]:
+    """Candidates that may do better in the place of a cause, by their first-order scores."""
+    # First order undervalues a large gain, of the cause itself as of its rivals: like is held against like.
+    own_first = standing.own.log_p if standing.own is not None else standing.log_p
+    score = max(standing.log_p, own_first) + handicap(standing.effect, fit) + fit.settings.contender_nats
+    ranked = candidates(standing.base, contenders, others)
+    most = fit.settings.most_rivals
+    # The zeros of the turns cost a scatter, not a coefficient each: first order undervalues them.
+    chosen = [*ranked[:most], *(c for c in ranked[most:] if c.effect.roles("per turn"))]
+    return [c for c in chosen if c.effect.name != standing.effect.name and c.log_p + handicap(c.effect, fit) <= score]
+
+
+def in_its_place(fit: Fit, key: str, keys: list[str], plan: Search) -> tuple[Fit, list[str]]:
+    """The fit with several named causes in the place of one shape without a name, where they explain as much.
+
+    Each has to do a fair share of it: any shape can be had from a cause that is near to it and another's small help.
+    """
+    named = [effect for effect in plan.effects if not unnamed(effect.name)]
+    without, base = settle(drop(fit, key))
+    effect = find(key, fit.chain.effects)
+    trial, others = without, [other for other in keys if other != key]
+    added: list[str] = []
+    gains = [0.0]
+    terms, log_looks = 0, 0.0
+    for _ in range(fit.settings.most_in_place):
+        step = best_addition(trial, base, named, [*others, *added], plan.threshold)
+        if step is None:
+            return fit, keys
+        added += step.added
+        terms, log_looks = terms + step.terms, log_looks + step.log_looks
+        trial, base = settle(step.fit)
+        members = either(fit.setting.plausible, trial.setting.plausible)
+        before = likelihood(without, members)
+        own = 2.0 * (likelihood(fit, members) - before)
+        own_p = judged_p(own, degrees(effect, len(without.linear.terms(effect))), base.dof, 1.0) + handicap(effect, fit)
+        gains.append(2.0 * (likelihood(trial, members) - before))
+        fair = min(np.diff(gains)) > fit.settings.fair_share * gains[-1]
+        if fair and judged_p(gains[-1], terms, base.dof, 1.0) + log_looks < own_p:
+            return trial, [*others, *added]
+    return fit, keys

@@ -1,0 +1,172 @@
+"""Every threshold of the discovery, in one frozen object: what it decides, and where its value comes from.
+
+One number is the policy: :attr:`DiscoverySettings.false_alarm_probability`, the probability that a sweep without any
+cause is given one. What is compared with it follows by the rules below (the properties). The other fields are odds
+between descriptions that fit about as well, limits that physics or sampling sets, and budgets of computation. A field
+says which of these it is: *derived* (the derivation stands beside it), *odds* (a prior judgement, as log odds in nats),
+*limit* (the smallest or largest thing that counts, with its reason) or *budget* (more costs time and changes no answer
+that is not at the edge).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+FOOTPRINTS = 4
+"""Places where a cause can show: the mean, the spread, the values, and the sequence of the readings."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiscoverySettings:
+    """The settings of one discovery; the defaults are the project's own.
+
+    Probabilities are family-wise: over all effects, shapes and places that a stage looks at.
+    """
+
+    # ---- significance -----------------------------------------------------------------------------------------------
+
+    false_alarm_probability: float = 0.01
+    """Policy. Probability that a sweep without a cause is given one: what the public answer promises."""
+    beyond_doubt_log_p: float = -25.0
+    """Limit. Log probability below which a finding needs no second opinion: structure that is not known yet can make
+    plain noise seem uneven at e^-10, but a finding at e^-25 (seven sigma) survives any structure found later."""
+    no_simulation_log_p: float = -40.0
+    """Budget. Below this log probability an F test is not calibrated by simulation: the tail of 96 simulated scores
+    cannot be extrapolated to where it would matter."""
+
+    # ---- odds between descriptions ----------------------------------------------------------------------------------
+
+    unnamed_log_odds: float = 6.0
+    """Odds. A shape without a name must gain so many nats more than a cause with one (400 to 1): the ten empirical
+    shapes with their orders, places and frequencies together describe anything nearly."""
+    swap_log_odds: float = 2.0
+    """Odds. What one cause in another's place must gain: two descriptions that are equally good differ by a nat or so
+    by chance (each of a few free shapes adds half a nat of scatter), and a swap for nothing may go round."""
+    colour_log_odds: float = 3.0
+    """Odds. White noise against each coloured one before a reading is seen (20 to 1)."""
+    stairs_log_odds: float = 20.0
+    """Odds. Beside coarse stairs, whose own pattern aliases to lines at any order: what an effect that could be such a
+    line must gain more, and how improbable by chance any cause must be there."""
+    sigma_apart: float = 3.0
+    """Derived. Two causes are told apart by three sigma: by twice the log likelihood of 9 in the sweep itself, and by
+    the same separation expected of a further measurement."""
+    sigma_enough: float = 5.0
+    """Derived. A further measurement is advised without reserve at five sigma: with the scatter of one sigma that the
+    outcome has, it then falls below three sigma in 2.3 % of the cases."""
+    stairs_sigma_factor: float = 2.0
+    """Limit. Beside coarse stairs so many times more sigma: what the fit leaves of the stairs themselves favours now
+    one smooth shape, now another."""
+
+    # ---- what the search tries --------------------------------------------------------------------------------------
+
+    most_causes: int = 8
+    """Budget. More causes than the search may add: public sweeps hold up to seven."""
+    most_together: int = 3
+    """Budget. So many causes at once are looked for where none stands out of coloured noise alone."""
+    most_in_place: int = 2
+    """Budget. So many named causes are tried in the place of one shape without a name."""
+    most_rounds: int = 3
+    """Budget. Rounds of a loop that ends earlier where nothing changes any more."""
+    most_contenders: int = 5
+    """Budget. Candidates that are fitted exactly before one is added."""
+    most_rivals: int = 3
+    """Budget. Candidates that are fitted exactly in the place of a cause."""
+    contender_nats: float = 8.0
+    """Limit. By how much a first-order score may undervalue a candidate: those within it of the best are fitted."""
+    contender_share: float = 0.1
+    """Limit. The same for strong causes, as a share of the best score: first order errs in proportion to the gain."""
+    fair_share: float = 0.15
+    """Limit. Share of a cause's gain that another must reach by itself to be tried in its place, or to be one of
+    several that take the place of a shape: any shape can be had from a near one and another's small help."""
+    rival_share: float = 0.3
+    """Limit. Share of a cause's gain to first order below which an effect is not fitted as its rival: an exact fit
+    gains up to three times what first order says."""
+    radius_left: float = 1.5
+    """Limit. Variance of the radius against that of its noise above which something in it is unexplained: with the
+    thirty degrees of freedom of the shortest sweep a ratio of 1.5 is exceeded by chance in 4 % (chi-square)."""
+    smallest_rms_deg: float = 6e-5
+    """Limit. Residual RMS below which nothing is searched for: a step of a 22-bit word, and the digits of a file."""
+
+    # ---- single rows ------------------------------------------------------------------------------------------------
+
+    spike_sigma: float = 7.0
+    """Limit. A row stands alone beyond so many robust sigma of its neighbours: never by Gaussian noise in a million
+    rows (3e-6), and by one or two in a thousand of noise with four degrees of freedom."""
+    spike_sigma_few: float = 14.0
+    """Limit. The same of fewer rows than ``spike_few``: the robust sigma of so few is known to a third only."""
+    spike_few: int = 60
+    """Limit. So few rows do not tell their robust sigma well enough."""
+    longest_spike: int = 4
+    """Limit. Neighbours off together that still are single readings: five or more are structure."""
+    fallen_out: float = 0.2
+    """Limit. Change of the log of the channels' amplitude that no cause of the catalogue makes: 20 %."""
+
+    # ---- stairs and the spread --------------------------------------------------------------------------------------
+
+    fewest_words: int = 40
+    """Limit. A sweep with fewer different words says nothing of its grid: few angles lie on one by choice."""
+    stairs_in_noise: float = 0.1
+    """Derived. Stairs are modelled where step/sqrt(12) exceeds this share of the noise: below, they add less than half
+    a percent to its RMS."""
+    stairs_cause_share: float = 0.5
+    """Public rule of the catalogue: the output's grid is a cause where step/sqrt(12) exceeds half of what is left."""
+    set_share: float = 0.9
+    """Limit. A finite set of angles that leaves out less than a tenth of the words cannot be told from all of them."""
+    set_missed: float = 0.04
+    """Limit. Share of the readings that may lie outside a finite set: other links' errors, of a few percent at most."""
+    burst_ratio: float = 2.25
+    """Limit. A stretch is louder where its noise is at least half as large again (1.5 squared)."""
+
+    # ---- noise ------------------------------------------------------------------------------------------------------
+
+    noise_reach: float = 4.0
+    """Limit. Members of the noise family within so many nats of the best are plausible (e^-4: 2 %)."""
+    noise_turns: float = 3.5
+    """Limit. Turns below which what repeats with the angle cannot be told from noise."""
+
+    # ---- proof ------------------------------------------------------------------------------------------------------
+
+    folds: int = 4
+    """Derived. Parts of the held-out proof: each fit sees three quarters of the readings, so its parameters' variance
+    is a third larger than the final fit's."""
+    blocks_a_turn: int = 3
+    """Limit. Held-out blocks a turn: shorter than a turn, so that each turn's own zero can be fitted from the rest."""
+    heldout_slack: float = 1.004
+    """Limit. Growth of the held-out RMS that is forgiven a cause that stands beyond doubt: the RMS counts correlated
+    noise in full, which such a cause leaves as it is."""
+    heldout_lost: float = 1.5
+    """Limit. Growth of the held-out RMS above which the fit has not seen at all what the cause is about."""
+    predictive_sweeps: int = 199
+    """Derived. Sweeps simulated for the predictive check: the smallest p is 1/200."""
+    fewest_simulated: int = 32
+    """Budget. Fewest sweeps that the family-wise probability is calibrated on; the tail is fitted to half of them."""
+    most_simulated: int = 96
+    """Budget. Most of them."""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.false_alarm_probability < 1.0:
+            raise ValueError(
+                f"false_alarm_probability is {self.false_alarm_probability}; expected a number between 0 and 1"
+            )
+        for one in fields(self):
+            value = getattr(self, one.name)
+            if not np.isfinite(value) or (one.type == "int" and (value != int(value) or value < 1)):
+                kind = "a whole number of at least 1" if one.type == "int" else "a finite number"
+                raise ValueError(f"{one.name} is {value}; expected {kind}")
+
+    # ---- rules ------------------------------------------------------------------------------------------------------
+
+    @property
+    def footprint_log_p(self) -> float:
+        """Log probability by chance below which a footprint counts: the policy's, shared by the four (Bonferroni)."""
+        return float(np.log(self.false_alarm_probability / FOOTPRINTS))
+
+    def effect_log_p(self, effects: int) -> float:
+        """Log probability of one effect, below which it counts among so many (Bonferroni within the footprint)."""
+        return self.footprint_log_p - float(np.log(max(effects, 1)))
+
+    def same_fit(self, *, coarse: bool) -> float:
+        """Difference of twice the log likelihood below which two causes cannot be told apart; ``coarse``: stairs."""
+        return (self.sigma_apart * (self.stairs_sigma_factor if coarse else 1.0)) ** 2

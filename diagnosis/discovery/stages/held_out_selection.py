@@ -1,0 +1,13 @@
+"""Held-out selection: what gains nothing on readings that no fit has seen, or might be chance, is no cause."""
+
+from __future__ import annotations
+
+from diagnosis.discovery.proof.selection import select
+from diagnosis.discovery.state import State
+
+
+def held_out_selection(state: State) -> State:
+    """Keep the causes of the joint fit that are proven, each with its probability, rivals and held-out figures."""
+    proof = select(state.fit, state.searched, state.keys, rng=state.rng)
+    findings = (*proof.entries(), *state.findings)
+    return state.with_(proof.fit, keys=proof.ordered, held=proof.held, findings=findings)

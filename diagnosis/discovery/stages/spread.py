@@ -1,0 +1,40 @@
+"""Spread: causes that show in how much the readings scatter, judged on what the search leaves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnosis.discovery.finding import Named
+from diagnosis.discovery.fitting.joint_fit import evaluate
+from diagnosis.discovery.marks.row_masks import scaled
+from diagnosis.discovery.marks.spread import bursts, spread_shapes
+from diagnosis.discovery.search.likelihood_ratio import doubt_beside
+from diagnosis.discovery.state import State
+from twin.catalogue import unnamed
+
+
+def spread(state: State) -> State:
+    """Name what makes some rows louder than others, and weigh the rows by it: they then tell more than before.
+
+    Judged once: how loud it is does not depend on what the better weights find afterwards.
+    """
+    if state.found("spread"):
+        return state
+    fit = state.fit
+    shapes = spread_shapes(fit, [effect for effect in state.effects if effect.footprint == "spread"])
+    burst = bursts(fit)
+    if burst is not None:
+        shapes.append(burst)
+    limit = state.settings.effect_log_p(len(shapes)) - doubt_beside(fit, state.keys)
+    odds = state.settings.unnamed_log_odds
+    judged = [(shape.log_p + (odds if unnamed(shape.name) else 0.0), shape) for shape in shapes]
+    score, best = min(judged, key=lambda item: item[0], default=(0.0, None))
+    if best is None or score > limit:
+        if np.all(fit.evidence.scale == 1.0):
+            return state
+        # What looked like uneven noise before the search was structure: a scale that no cause carries goes.
+        return state.with_(scaled(fit, np.ones(len(fit.evidence))))
+    chain = fit.chain.with_values({best.name: best.values})
+    named = Named((best.name,), best.log_p, best.gain, intervals=best.intervals)
+    weighed = scaled(evaluate(chain, fit.free, fit.evidence, fit.setting), best.variance)
+    return state.with_(weighed, findings=(*state.findings, named))

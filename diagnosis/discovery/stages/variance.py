@@ -1,0 +1,25 @@
+"""Variance: rows that are much louder than others weigh less, before the search takes their noise for structure."""
+
+from __future__ import annotations
+
+from diagnosis.discovery.marks.row_masks import scaled
+from diagnosis.discovery.marks.spread import bursts, spread_shapes
+from diagnosis.discovery.state import State
+
+
+def variance(state: State) -> State:
+    """Weigh the rows by a stretch or a shape of louder noise that is beyond doubt.
+
+    Nothing is named yet: structure that is still unknown passes for uneven noise. Once a search has been made, the
+    spread of what it leaves is judged instead (:func:`~diagnosis.discovery.stages.spread.spread`).
+    """
+    if state.looked_at:
+        return state
+    fit, limit = state.fit, state.settings.beyond_doubt_log_p
+    burst = bursts(fit)
+    if burst is not None and burst.log_p < limit:
+        return state.with_(scaled(fit, burst.variance))
+    uneven = [shape for shape in spread_shapes(fit, state.effects) if shape.log_p < limit]
+    if not uneven:
+        return state
+    return state.with_(scaled(fit, min(uneven, key=lambda shape: shape.log_p).variance))

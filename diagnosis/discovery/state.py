@@ -1,0 +1,150 @@
+"""What the stages of the discovery hand on: the fit as it stands, and what has been found so far."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from diagnosis.discovery.finding import Named
+from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.settings import DiscoverySettings
+from twin.angles import TAU, Array
+from twin.chain import Chain
+from twin.effect import BoolArray, Effect
+from twin.sweep import Sweep
+
+if TYPE_CHECKING:
+    from diagnosis.discovery.proof.predictive_check import Likeness
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class State:
+    """A discovery between two stages.
+
+    Given at the start: ``sweep``; ``start``, the chain that the fit sets out from, whose effects are what is known;
+    ``given``, the same where it is a known twin, of which only the zeros are fitted; ``settings``; ``rng``, which draws
+    the simulated sweeps.
+
+    Filled by the stages: ``fitted``, the chain with its free parameters, the observations and how they are weighed
+    (see :attr:`fit`); ``baseline``, the same before any cause was added; ``bits``, the length of the output's word;
+    ``keys`` of the causes in the joint fit; ``findings`` beside it, from values, sequence and spread; ``touched``,
+    the raw rows (n_raw,) that single-reading causes have claimed; ``looked_at``, how many effects were searched for;
+    ``held``, held-out residuals (n,) [rad] of the baseline and after each of ``causes``; ``causes``, the entries of
+    the answer; ``likeness``, the predictive check.
+    """
+
+    sweep: Sweep
+    start: Chain
+    given: Chain | None
+    settings: DiscoverySettings
+    rng: np.random.Generator
+    touched: BoolArray
+    fitted: Fit | None = None
+    baseline: Fit | None = None
+    bits: int | None = None
+    keys: tuple[str, ...] = ()
+    findings: tuple[Named, ...] = ()
+    looked_at: int = 0
+    held: tuple[Array, ...] = ()
+    causes: tuple[Named, ...] = ()
+    likeness: Likeness | None = None
+
+    @classmethod
+    def of(
+        cls,
+        sweep: Sweep,
+        start: Chain,
+        *,
+        given: Chain | None = None,
+        settings: DiscoverySettings | None = None,
+        rng: np.random.Generator | None = None,
+    ) -> State:
+        """The state that the first stage is handed.
+
+        Parameters
+        ----------
+        sweep : Sweep
+            The recording, at most as long as :func:`~diagnosis.discovery.fitting.subsample.searched_part` leaves it.
+        start : Chain
+            Where the fit sets out from: the fitted baseline, or a given twin. Its effects are those that are known:
+            those of the baseline are fitted, the others searched for.
+        given : Chain, optional
+            The twin, where one is held against the sweep: then only its zeros are fitted.
+        settings : DiscoverySettings, optional
+            Every threshold; the project's own if not given.
+        rng : numpy.random.Generator, optional
+            Draws the simulated sweeps that the measured one is compared with; seed 0 if not given.
+        """
+        settings, rng = settings or DiscoverySettings(), rng or np.random.default_rng(0)
+        touched = np.zeros(len(sweep), dtype=bool)
+        return cls(sweep=sweep, start=start, given=given, settings=settings, rng=rng, touched=touched)
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects that are searched for, in the mean or elsewhere."""
+        return tuple(effect for effect in self.start.effects if not effect.baseline)
+
+    @property
+    def fit(self) -> Fit:
+        """The joint fit as it stands.
+
+        Raises
+        ------
+        RuntimeError
+            Before the stage that prepares the observations.
+        """
+        if self.fitted is None:
+            raise RuntimeError("no stage has prepared the observations yet; expected `observe` first in the pipeline")
+        return self.fitted
+
+    @property
+    def step(self) -> float:
+        """Step [rad] of the output's grid; 0 where the readings lie on none."""
+        return TAU / 2.0**self.bits if self.bits is not None else 0.0
+
+    @property
+    def searched(self) -> tuple[Effect, ...]:
+        """The effects that show in the mean: those that the stepwise search is for."""
+        return tuple(effect for effect in self.effects if effect.footprint == "mean")
+
+    def found(self, footprint: str) -> bool:
+        """Whether a cause that shows there has been found beside the joint fit."""
+        declared = {effect.name: effect.footprint for effect in self.effects}
+        return any(declared.get(finding.keys[0]) == footprint for finding in self.findings)
+
+    def has(self, effect: Effect) -> bool:
+        """Whether this effect has been found beside the joint fit."""
+        return any(finding.keys[0] == effect.name for finding in self.findings)
+
+    def with_(self, fit: Fit | None = None, **changes: Any) -> State:
+        """This state with another fit, and with these fields changed."""
+        return replace(self, **(changes if fit is None else {"fitted": fit, **changes}))
+
+
+Stage = Callable[[State], State]
+"""A stage takes a state and returns another, or the very same one where it has nothing to say."""
+
+
+def until_still(*stages: Stage) -> Stage:
+    """The stages one after the other, again and again, until none of them has anything more to say.
+
+    A stage is not asked again about a state that it has left as it is, and the loop ends after
+    :attr:`DiscoverySettings.most_rounds` at the latest.
+    """
+
+    def loop(state: State) -> State:
+        left: dict[int, State] = {}
+        for _ in range(state.settings.most_rounds):
+            before = state
+            for place, stage in enumerate(stages):
+                if left.get(place) is not state:
+                    state = stage(state)
+                    left[place] = state
+            if state is before:
+                break
+        return state
+
+    return loop

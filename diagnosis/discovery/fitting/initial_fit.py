@@ -44,11 +44,6 @@ def senses_of_channels(sweep: Sweep) -> tuple[int, int] | None:
     return together(measured, reference) * output, output
 
 
-def mirrored(chain: Chain) -> Chain:
-    """The chain that counts the other way on both sides: the same readings but for the quadratic term."""
-    return chain.mirrored()
-
-
 def unfitted(evidence: Evidence, start: Chain, settings: DiscoverySettings) -> Fit:
     """A chain held against the observations as it is, nothing fitted."""
     weight = 1.0 if evidence.observables == 2 else 0.0

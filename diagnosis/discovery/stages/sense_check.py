@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from diagnosis.discovery.fitting.initial_fit import mirrored
 from diagnosis.discovery.fitting.joint_fit import evaluate, solve
 from diagnosis.discovery.search.likelihood_ratio import likelihood
 from diagnosis.discovery.state import State
@@ -16,7 +15,7 @@ def sense_check(state: State) -> State:
     fit, baseline = state.fit, state.baseline
     if state.given is not None or baseline is None or fit.evidence.observables == 2:
         return state
-    other = solve(evaluate(mirrored(fit.chain), fit.free, fit.evidence, fit.setting))
+    other = solve(evaluate(fit.chain.mirrored(), fit.free, fit.evidence, fit.setting))
     if likelihood(other) <= likelihood(fit) + state.settings.swap_log_odds:
         return state
     fresh = solve(evaluate(other.chain.without(*state.keys), baseline.free, fit.evidence, fit.setting))

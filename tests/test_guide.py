@@ -103,3 +103,14 @@ def test_commands_that_pages_name_exist() -> None:
     for page in PAGES:
         named = set(re.findall(r"halltwin ([a-z][a-z-]+)", page.read_text(encoding="utf-8")))
         assert named <= known, page.name
+
+
+def test_how_it_works_lists_every_stage_in_order() -> None:
+    page = (GUIDE / "how_it_works.md").read_text(encoding="utf-8")
+    source = (ROOT / "diagnosis/discovery/pipeline.py").read_text(encoding="utf-8")
+    listed = re.search(r"^PIPELINE.*?^\)$", source, re.S | re.M)
+    assert listed
+    stages = {path.stem for path in (ROOT / "diagnosis/discovery/stages").glob("[!_]*.py")}
+    order = [name for name in re.findall(r"^\s+(\w+),", listed[0], re.M) if name in stages]
+    assert set(order) == stages
+    assert [name for name in re.findall(r"^\| `(\w+)` \|", page, re.M) if name in stages] == order

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.command_line import halltwin
-from tests.pages import ROOT, block, words
+from tests.pages import ROOT, block, figures, words
 
 README = ROOT / "README.md"
 MOST_LINES = 200
@@ -20,10 +21,23 @@ def test_is_short() -> None:
 
 
 def test_example_is_its_real_output(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Word by word; its figures to a few percent, the rank of the predictive check to some of its 199 sweeps."""
     shown = block(README, "example")
     monkeypatch.setenv("COLUMNS", "100")
-    assert words(shown) == words(halltwin("explain", ROOT / "scenarios/data/bench_sweep.csv").out)
+    out = halltwin("explain", ROOT / "scenarios/data/bench_sweep.csv").out
+    assert words(shown) == words(out)
     assert "hysteresis" in shown
+    (told_p, *told), (found_p, *found) = (_rank_first(text) for text in (shown, out))
+    assert told_p == pytest.approx(found_p, abs=0.05)
+    for one, other in zip(told, found, strict=True):
+        assert one == pytest.approx(other, rel=0.03, abs=3e-4)
+
+
+def _rank_first(text: str) -> list[float]:
+    """The p-value of the predictive check, then all other figures."""
+    rank = re.search(r"\(p = ([\d.]+)\)", text)
+    assert rank
+    return [float(rank[1]), *figures(text.replace(rank[0], ""))]
 
 
 def test_python_lines_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -18,6 +18,8 @@ from twin.files import to_dict
 
 SCHEMA = "halltwin.explain/1"
 _T95 = 1.959964
+Deviations = dict[tuple[str, str], float]
+"""Standard deviation of a parameter, by effect and parameter."""
 _KINDS = {
     "unnamed_order": "order",
     "unnamed_direction": "direction",
@@ -34,30 +36,15 @@ _KINDS = {
 
 def to_json(found: Discovery) -> dict[str, Any]:
     """The answer, with every figure rounded to seven digits: what is beyond them is no information."""
-    sweep = found.sweep
-    residual = np.degrees(raw_residual(found.baseline, sweep))
-    extended = np.degrees(raw_residual(found.fit, sweep))
+    residual = np.degrees(raw_residual(found.baseline, found.sweep))
+    extended = np.degrees(raw_residual(found.fit, found.sweep))
     kept = ~found.masked if found.masked.any() and not found.masked.all() else np.ones_like(found.masked)
-    wild = wild_rows(found)
     gain = found.baseline_held_deg / max(found.extended_held_deg, 1e-12)
     unnamed = [key for cause in found.causes if cause.name == "unnamed" for key in cause.keys]
     answer: dict[str, Any] = _rounded(
         {
             "schema": SCHEMA,
-            "sweep": {
-                "name": sweep.name,
-                "rows": sweep.rows,
-                "used": len(sweep),
-                "set_aside": sweep.set_aside,
-                "rejected": len(sweep.rejected),
-                "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:100]},
-                "turns": found.fit.evidence.motion.turns,
-                "columns": list(sweep.columns),
-                **facts(found),
-                "output_bits": found.bits,
-                "wild": len(wild),
-                "wild_rows": wild[:100],
-            },
+            "sweep": _sweep(found),
             "baseline": {
                 "parameters": baseline_parameters(found.baseline),
                 "rms_deg": _rms(residual[kept]),
@@ -87,6 +74,26 @@ def to_json(found: Discovery) -> dict[str, Any]:
     return answer
 
 
+def _sweep(found: Discovery) -> dict[str, Any]:
+    """What the sweep holds, and what was not used of it."""
+    sweep = found.sweep
+    wild = wild_rows(found)
+    return {
+        "name": sweep.name,
+        "rows": sweep.rows,
+        "used": len(sweep),
+        "set_aside": sweep.set_aside,
+        "rejected": len(sweep.rejected),
+        "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:100]},
+        "turns": found.fit.evidence.motion.turns,
+        "columns": list(sweep.columns),
+        **facts(found),
+        "output_bits": found.bits,
+        "wild": len(wild),
+        "wild_rows": wild[:100],
+    }
+
+
 def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:
     """The six visible parameters of the paper's model with 95 % intervals; a given twin's are taken as known."""
     deviation = standard_deviations(fit)
@@ -114,7 +121,7 @@ def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:
     return answer
 
 
-def standard_deviations(fit: Fit) -> dict[tuple[str, str], float]:
+def standard_deviations(fit: Fit) -> Deviations:
     """Standard deviation of every free scalar parameter of a fit, in its own unit."""
     variance = np.diag(fit.covariance()) if fit.free else np.zeros(0)
     return {
@@ -147,56 +154,86 @@ def _cause(found: Discovery, cause: Named) -> dict[str, Any]:
 
 def parameters(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
     """Every parameter of a cause's instances with its interval; further instances carry their number."""
-    fit = found.fit
-    deviation = standard_deviations(fit)
+    deviation = standard_deviations(found.fit)
     answer: dict[str, dict[str, Any]] = {}
     for number, key in enumerate(cause.keys):
-        effect = find(key, fit.chain.effects)
-        values = {**effect.null(), **fit.chain.values.get(key, {})}
         suffix = "" if number == 0 else f"_{number + 1}"
-        for name, param in effect.params.items():
-            if param.role == "per turn" or name not in values or np.ndim(values[name]):
-                continue
-            if param.role == "random" and name in effect.derived(values):
-                continue
-            value = float(values[name])
-            half = _T95 * deviation.get((key, name), 0.0)
-            if param.role == "phase":
-                # Of a phase no less can be known than nothing.
-                half = min(half, 180.0)
-            answer[name + suffix] = {"value": value, "low": value - half, "high": value + half, "unit": param.unit}
-            if name == "time_s" and (key, name) not in deviation and name in effect.zoomed:
-                # A step's instant lies between two readings.
-                clock = fit.evidence.motion.time_s
-                place = int(np.searchsorted(clock, value))
-                answer[name + suffix] |= {
-                    "low": float(min(clock[max(place - 2, 0)], value)),
-                    "high": float(max(clock[min(place + 1, clock.size - 1)], value)),
-                }
-        if effect.line is not None and effect.line.clock == "time":
-            # Fitted in the middle of the record, where it is known best; told at its first row.
-            half_s = 0.5 * float(np.ptp(fit.evidence.motion.time_s))
-            told = answer[effect.roles("phase")[0] + suffix]
-            value = float(wrap_deg(told["value"] - 360.0 * float(values[effect.line.param]) * half_s))
-            spread = 360.0 * half_s * _T95 * deviation.get((key, effect.line.param), 0.0)
-            half = float(np.hypot(0.5 * (told["high"] - told["low"]), spread))
-            told |= {"value": value, "low": value - half, "high": value + half}
-        if fit.evidence.observables == 1:
-            for name, (low, high) in effect.angle_only(values).items():
-                told, value = answer[name + suffix], float(values[name])
-                told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
-        for name, (value, low, high, unit) in effect.derived(values).items():
-            answer[name + suffix] = {"value": value, "low": low, "high": high, "unit": unit}
+        figures = _instance(found.fit, key, deviation)
         for name, (low, high) in cause.intervals.items():
-            answer[name + suffix] |= {"low": low, "high": high}
+            figures[name] |= {"low": low, "high": high}
+        answer.update({name + suffix: figure for name, figure in figures.items()})
+    return answer | _counted(found, cause)
+
+
+def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, Any]]:
+    """The parameters of one instance of an effect, each with its 95 % interval."""
+    effect = find(key, fit.chain.effects)
+    values = {**effect.null(), **fit.chain.values.get(key, {})}
+    derived = effect.derived(values)
+    figures: dict[str, dict[str, Any]] = {}
+    for name, param in effect.params.items():
+        if param.role == "per turn" or name not in values or np.ndim(values[name]):
+            continue
+        if param.role == "random" and name in derived:
+            continue
+        value = float(values[name])
+        half = _T95 * deviation.get((key, name), 0.0)
+        if param.role == "phase":
+            # Of a phase no less can be known than nothing.
+            half = min(half, 180.0)
+        figures[name] = _figure(value, value - half, value + half, param.unit)
+        if name == "time_s" and (key, name) not in deviation and name in effect.zoomed:
+            figures[name] |= _between_readings(fit, value)
+    if effect.line is not None and effect.line.clock == "time":
+        name = effect.roles("phase")[0]
+        figures[name] |= _phase_at_first_row(
+            fit,
+            figures[name],
+            frequency_Hz=float(values[effect.line.param]),
+            deviation_Hz=deviation.get((key, effect.line.param), 0.0),
+        )
+    if fit.evidence.observables == 1:
+        for name, (low, high) in effect.angle_only(values).items():
+            told, value = figures[name], float(values[name])
+            told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
+    figures.update({name: _figure(*figure) for name, figure in derived.items()})
+    return figures
+
+
+def _figure(value: float, low: float, high: float, unit: str) -> dict[str, Any]:
+    return {"value": value, "low": low, "high": high, "unit": unit}
+
+
+def _between_readings(fit: Fit, value_s: float) -> dict[str, float]:
+    """Limits of a step's instant, which lies between two readings."""
+    clock = fit.evidence.motion.time_s
+    place = int(np.searchsorted(clock, value_s))
+    return {
+        "low": float(min(clock[max(place - 2, 0)], value_s)),
+        "high": float(max(clock[min(place + 1, clock.size - 1)], value_s)),
+    }
+
+
+def _phase_at_first_row(
+    fit: Fit, phase: dict[str, Any], *, frequency_Hz: float, deviation_Hz: float
+) -> dict[str, float]:
+    """A phase [deg], fitted in the middle of the record, where it is known best, as it is at the record's first row."""
+    half_s = 0.5 * float(np.ptp(fit.evidence.motion.time_s))
+    value = float(wrap_deg(phase["value"] - 360.0 * frequency_Hz * half_s))
+    half = float(np.hypot(0.5 * (phase["high"] - phase["low"]), 360.0 * half_s * _T95 * deviation_Hz))
+    return {"value": value, "low": value - half, "high": value + half}
+
+
+def _counted(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
+    """Figures of causes that touch single rows: how many, or which share of them."""
     if cause.name == "bus_glitch":
         count = float(len(cause.rows))
-        answer["count"] = {"value": count, "low": count, "high": count, "unit": "1"}
+        return {"count": _figure(count, count, count, "1")}
     if cause.name == "stale_frames":
         share = 100.0 * len(cause.rows) / len(found.sweep)
         half = 100.0 * _T95 * float(np.sqrt(max(share / 100 * (1 - share / 100) / len(found.sweep), 0.0)))
-        answer["fraction_percent"] = {"value": share, "low": max(share - half, 0.0), "high": share + half, "unit": "%"}
-    return answer
+        return {"fraction_percent": _figure(share, max(share - half, 0.0), share + half, "%")}
+    return {}
 
 
 def _structure(found: Discovery, key: str) -> dict[str, Any]:

@@ -27,9 +27,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.error_model import least_squares, model, swarm
-from diagnosis.error_model.global_search import Valley, first_look, search
-from diagnosis.error_model.model import LOWER_LIMIT, NAMES, UPPER_LIMIT, Readings
-from diagnosis.error_model.result import BaselineFit, Contributions, SearchRange, Senses
+from diagnosis.error_model.global_search import first_look, search
+from diagnosis.error_model.model import Readings
+from diagnosis.error_model.outcome import Outcome, results
+from diagnosis.error_model.result import BaselineFit
 from twin.angles import Array
 
 QUICK = swarm.SwarmSettings(particles=32, iterations=64, stop_settled=True)
@@ -107,20 +108,29 @@ def fit_equal(
     fits: list[BaselineFit] = []
     for start in range(0, reference_rad.shape[0], _BATCH):
         rows = slice(start, start + _BATCH)
-        part = None if weights is None else weights[rows]
-        fits += _fit_batch(reference_rad[rows], measured_rad[rows], part, senses, robust, settings, band_rad, rng)
+        fits += _fit_batch(
+            reference_rad[rows],
+            measured_rad[rows],
+            rng=rng,
+            weights=None if weights is None else weights[rows],
+            senses=senses,
+            robust=robust,
+            settings=settings,
+            band_rad=band_rad,
+        )
     return fits
 
 
 def _fit_batch(
     reference: Array,
     measured: Array,
+    *,
+    rng: np.random.Generator,
     weights: Array | None,
     senses: tuple[int, int] | None,
     robust: bool,
     settings: swarm.SwarmSettings,
     band_rad: float | None,
-    rng: np.random.Generator,
 ) -> list[BaselineFit]:
     n = reference.shape[1]
     sensor, output = _first_senses(reference, measured, weights, senses)
@@ -142,7 +152,16 @@ def _fit_batch(
         exact, other, turned = _both_senses(used, exact, coarse, swapped)
         swap = swap ^ turned
     sign = np.where(swap, -1.0, 1.0)
-    return _results(used, plain.oriented(swap), sensor * sign, output * sign, exact, other, valley)
+    outcome = Outcome(
+        used=used,
+        plain=plain.oriented(swap),
+        sensor=sensor * sign,
+        output=output * sign,
+        exact=exact,
+        other=other,
+        valley=valley,
+    )
+    return results(outcome)
 
 
 def _both_senses(
@@ -185,93 +204,3 @@ def _first_senses(
     w = 1.0 if weights is None else weights
     follows = [np.abs(np.sum(w * np.exp(1j * (measured - sense * reference)), axis=-1)) for sense in (1, -1)]
     return np.where(follows[0] >= follows[1], 1.0, -1.0), np.ones(batch)
-
-
-def _results(
-    used: Readings,
-    plain: Readings,
-    sensor: Array,
-    output: Array,
-    exact: least_squares.Polished,
-    other: tuple[Array, Array] | None,
-    valley: Valley,
-) -> list[BaselineFit]:
-    """One result a sweep; ``plain`` are the readings in the senses that were kept, with the caller's weights."""
-    batch, n = exact.points.shape[0], plain.count
-    # residual() is h m - atan2(y, x): times h it is measured minus predicted.
-    residual = output[:, None] * plain.residual(exact.points)
-    weights = used.weights
-    counted = np.full((batch, n), True) if weights is None else weights > 0.0
-    outliers = (
-        np.zeros((batch, n), dtype=bool) if plain.weights is None and weights is None else _left_out(plain, counted)
-    )
-    fits = []
-    for k in range(batch):
-        rows = int(np.count_nonzero(counted[k]))
-        freedom = max(rows - 6, 1)
-        squares = residual[k] ** 2 if weights is None else weights[k] * residual[k] ** 2
-        sigma = float(np.sqrt(squares.sum() / freedom))
-        rms = float(np.sqrt(np.mean(residual[k][counted[k]] ** 2)))
-        covariance = sigma**2 * _inverse(exact.curvature[k])
-        half = _student(freedom) * np.sqrt(np.diagonal(covariance))
-        point = exact.points[k].copy()
-        best, own = valley.histories[k]
-        share = float(rows if plain.weights is None else plain.weights[k].sum())
-        excess = np.inf if other is None else max(float(other[1][k] - exact.cost[k]), 0.0) / max(sigma**2, 1e-300)
-        fits.append(
-            BaselineFit(
-                point=point,
-                covariance=covariance,
-                low=point - half,
-                high=point + half,
-                at_bound=(point <= LOWER_LIMIT) | (point >= UPPER_LIMIT),
-                senses=Senses(
-                    sensor=int(sensor[k]),
-                    output=int(output[k]),
-                    sigma=float(np.sqrt(excess)),
-                    other=None if other is None else other[0][k].copy(),
-                ),
-                search=SearchRange(
-                    lower=valley.box.lower[k].copy(),
-                    upper=valley.box.upper[k].copy(),
-                    widened=tuple(name for name, wide in zip(NAMES, valley.box.widened[k], strict=True) if wide),
-                    rounds=int(valley.rounds[k]),
-                ),
-                contributions=Contributions(
-                    zero_only_rms_rad=float(np.sqrt(valley.zero_only[k] / share)),
-                    swarm_rms_rad=float(np.sqrt(valley.cost[k] / share)),
-                    polished_rms_rad=rms,
-                    particles_evaluated=int(valley.evaluations[k]),
-                    particles_discarded=int(valley.discarded[k]),
-                    passes=exact.passes,
-                    best_history_rad=np.sqrt(best / share),
-                    own_history_rad=np.sqrt(own / share),
-                ),
-                residual_rad=residual[k],
-                outliers=outliers[k],
-                sigma_rad=sigma,
-                rms_rad=rms,
-                degrees_of_freedom=freedom,
-                settled=bool(exact.settled[k]),
-            )
-        )
-    return fits
-
-
-def _left_out(plain: Readings, counted: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Rows that the robust option left out; those to which the caller gave the weight 0 are not among them."""
-    return ~counted if plain.weights is None else ~counted & (plain.weights > 0.0)
-
-
-def _inverse(curvature: Array) -> Array:
-    """Inverse of (6, 6); combinations that the readings do not determine get an enormous variance."""
-    scale = 1.0 / np.sqrt(np.maximum(np.diagonal(curvature), 1e-300))
-    values, vectors = np.linalg.eigh(curvature * scale[:, None] * scale)
-    return np.asarray((vectors / np.maximum(values, 1e-13)) @ vectors.T * scale[:, None] * scale)
-
-
-def _student(freedom: int) -> float:
-    """Half width of a 95 % interval in standard errors."""
-    from scipy.special import stdtrit
-
-    return float(stdtrit(freedom, 0.975))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from string import Formatter
 from typing import get_args
 
@@ -44,30 +45,29 @@ def undeclared(effect: Effect) -> str:
             return f"needs {unknown[0]!r}, which no sweep provides; expected among {', '.join(sorted(NEEDS))}"
     if not any(effect.roles(role) for role in _ACTING):
         return "has no strength: no parameter that makes it vanish at its null"
-    unclear = next(filter(None, (_unclear(name, param) for name, param in effect.params.items())), "")
+    unclear = next((said for name, param in effect.params.items() for said in _unclear(name, param)), "")
     return unclear or _unsearchable(effect) or _untold(effect)
 
 
-def _unclear(name: str, param: Param) -> str:
-    """What is wrong with a parameter's declaration, in words."""
+def _unclear(name: str, param: Param) -> Iterator[str]:
+    """What is wrong with a parameter's declaration, in words, one fault after the other."""
     if re.search(r"_\d+$", name) or not name.isidentifier():
-        return f"parameter {name!r}: expected a name that ends in its unit and in no number after an underscore"
+        yield f"parameter {name!r}: expected a name that ends in its unit and in no number after an underscore"
     if not str(param.unit).strip():
-        return f'{name} has no unit; give one ("1" for a pure number)'
+        yield f'{name} has no unit; give one ("1" for a pure number)'
     if not str(param.doc).strip():
-        return f"{name} has no doc; say in a few words what it is"
+        yield f"{name} has no doc; say in a few words what it is"
     if param.role not in get_args(Role):
-        return f"{name}: role is {param.role!r}; expected one of {', '.join(get_args(Role))}"
+        yield f"{name}: role is {param.role!r}; expected one of {', '.join(get_args(Role))}"
     if not np.isfinite([param.null, param.lower, param.upper]).all() or not param.typical > 0.0:
-        return f"{name}: null, lower, upper and typical must be finite, and typical positive"
+        yield f"{name}: null, lower, upper and typical must be finite, and typical positive"
     if param.mirror not in (None, -1, 0, 1):
-        return f"{name}: mirror is {param.mirror!r}; expected -1, 1, or 0 where no value reads the same"
+        yield f"{name}: mirror is {param.mirror!r}; expected -1, 1, or 0 where no value reads the same"
     low, high = param.allowed or (param.lower, param.upper)
     if not param.lower <= low <= param.null <= high <= param.upper:
-        return f"{name}: allowed is {param.allowed}; expected a range within [lower, upper] that holds the null"
+        yield f"{name}: allowed is {param.allowed}; expected a range within [lower, upper] that holds the null"
     if not np.isfinite(param.field_power) or not 0.0 <= param.scatter < np.inf:
-        return f"{name}: field_power and scatter must be finite, and scatter not negative"
-    return ""
+        yield f"{name}: field_power and scatter must be finite, and scatter not negative"
 
 
 def _unsearchable(effect: Effect) -> str:

@@ -98,62 +98,90 @@ def run(
     on the discard rule. The cost of an evaluation is the objective's alone.
     """
     settings = settings or SwarmSettings()
-    batch, dims = lower.shape
-    span = (upper - lower)[:, None, :]
-    low = lower[:, None, :]
-    shape = (batch, settings.particles, dims)
+    span, low = (upper - lower)[:, None, :], lower[:, None, :]
     grid = None if steps is None else steps / span
-    sweeps = np.arange(batch)
-    scales = np.array([settings.own_pull, settings.best_pull]).reshape(2, 1, 1, 1)
-
-    place = rng.random(shape)
-    if grid is not None:
-        place = np.round(place / grid) * grid
-    velocity = (rng.random(shape) - 0.5) * 0.5
-    own = place.copy()
-    own_cost = objective(low + span * place)
-    leader = np.argmin(own_cost, axis=1)
-    discarded = np.zeros(batch, dtype=np.int64)
-    best_history = [own_cost[sweeps, leader]]
-    own_history = [own_cost.mean(axis=1)]
-
+    swarm = _started((len(lower), settings.particles, lower.shape[1]), rng, grid)
+    swarm.remember(objective(low + span * swarm.place))
+    discarded = np.zeros(len(lower), dtype=np.int64)
+    best_history, own_history = [swarm.best_cost], [swarm.own_cost.mean(axis=1)]
     for iteration in range(1, settings.iterations + 1):
-        best = own[sweeps, leader][:, None, :]
-        pulls = rng.random((2, *shape))
-        pulls *= scales
-        velocity *= inertia(settings, iteration - 1)
-        velocity += pulls[0] * (own - place)
-        velocity += pulls[1] * (best - place)
-        np.maximum(velocity, -_FASTEST, out=velocity)
-        np.minimum(velocity, _FASTEST, out=velocity)
-        if grid is not None:
-            velocity = np.round(velocity / grid) * grid
-        place += velocity
-        _keep_inside(place, velocity, settings.bounds)
-
-        points = low + span * place
+        _move(swarm, rng, settings, inertia(settings, iteration - 1), grid)
+        points = low + span * swarm.place
         now = objective(points)
         if outside is not None:
-            known = ~outside((low + span * own)[sweeps, leader][:, None, :])
+            known = ~outside(low + span * swarm.best)
             out = outside(points) & known
             discarded += out.sum(axis=1)
             now[out] = np.inf
-        np.copyto(own, place, where=(now < own_cost)[..., None])
-        np.minimum(own_cost, now, out=own_cost)
-        leader = own_cost.argmin(axis=1)
-        best_history.append(own_cost[sweeps, leader])
-        own_history.append(own_cost.sum(axis=1) / settings.particles)
+        swarm.remember(now)
+        best_history.append(swarm.best_cost)
+        own_history.append(swarm.own_cost.mean(axis=1))
         if settings.stop_settled and np.all(own_history[-1] <= (1.0 + _SETTLED) * best_history[-1]):
             break
 
     return SwarmResult(
-        best=lower + (upper - lower) * own[sweeps, leader],
+        best=lower + (upper - lower) * swarm.best[:, 0, :],
         best_cost=best_history[-1],
         best_history=np.stack(best_history, axis=1),
         own_history=np.stack(own_history, axis=1),
         evaluations=settings.particles * len(best_history),
         discarded=discarded,
     )
+
+
+@dataclass(eq=False)
+class _Swarm:
+    """Particles in flight, changed in place; positions in coordinates that span the range with 0..1."""
+
+    place: Array
+    """(batch, particles, d)"""
+    velocity: Array
+    """(batch, particles, d), a move in one iteration"""
+    own: Array
+    """The best place that each particle has been at (batch, particles, d)."""
+    own_cost: Array
+    """Its cost (batch, particles)."""
+
+    @property
+    def best(self) -> Array:
+        """The best place that any particle of a swarm has been at (batch, 1, d)."""
+        return np.take_along_axis(self.own, self.own_cost.argmin(axis=1)[:, None, None], axis=1)
+
+    @property
+    def best_cost(self) -> Array:
+        """Its cost (batch,)."""
+        return np.asarray(self.own_cost.min(axis=1))
+
+    def remember(self, now: Array) -> None:
+        """Keep the present places where their cost (batch, particles) is the lowest so far."""
+        np.copyto(self.own, self.place, where=(now < self.own_cost)[..., None])
+        np.minimum(self.own_cost, now, out=self.own_cost)
+
+
+def _started(shape: tuple[int, int, int], rng: np.random.Generator, grid: Array | None) -> _Swarm:
+    """Particles (batch, particles, d) anywhere in the range, at up to a quarter of it an iteration."""
+    place = rng.random(shape)
+    if grid is not None:
+        place = np.round(place / grid) * grid
+    velocity = (rng.random(shape) - 0.5) * 0.5
+    return _Swarm(place, velocity, place.copy(), np.full(shape[:2], np.inf))
+
+
+def _move(
+    swarm: _Swarm, rng: np.random.Generator, settings: SwarmSettings, inertia_now: float, grid: Array | None
+) -> None:
+    """Move every particle once, in place (Eq. 8 and 9)."""
+    pulls = rng.random((2, *swarm.place.shape))
+    pulls *= np.array([settings.own_pull, settings.best_pull]).reshape(2, 1, 1, 1)
+    swarm.velocity *= inertia_now
+    swarm.velocity += pulls[0] * (swarm.own - swarm.place)
+    swarm.velocity += pulls[1] * (swarm.best - swarm.place)
+    np.maximum(swarm.velocity, -_FASTEST, out=swarm.velocity)
+    np.minimum(swarm.velocity, _FASTEST, out=swarm.velocity)
+    if grid is not None:
+        swarm.velocity = np.round(swarm.velocity / grid) * grid
+    swarm.place += swarm.velocity
+    _keep_inside(swarm.place, swarm.velocity, settings.bounds)
 
 
 def _keep_inside(place: Array, velocity: Array, bounds: str) -> None:

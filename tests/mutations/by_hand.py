@@ -30,7 +30,7 @@ ERROR_MODEL: tuple[Mutation, ...] = (
     Mutation(
         "swarm.own_pull",
         _SWARM,
-        "        velocity += pulls[0] * (own - place)\n",
+        "    swarm.velocity += pulls[0] * (swarm.own - swarm.place)\n",
         "",
         (f"{_SWARM_TESTS}::test_particles_move_by_equation_8",),
         short=True,
@@ -38,15 +38,15 @@ ERROR_MODEL: tuple[Mutation, ...] = (
     Mutation(
         "swarm.best_pull",
         _SWARM,
-        "        velocity += pulls[1] * (best - place)\n",
+        "    swarm.velocity += pulls[1] * (swarm.best - swarm.place)\n",
         "",
         (f"{_SWARM_TESTS}::test_particles_move_by_equation_8",),
     ),
     Mutation(
         "swarm.inertia",
         _SWARM,
-        "velocity *= inertia(settings, iteration - 1)",
-        "velocity *= settings.inertia_max",
+        "swarm.velocity *= inertia_now",
+        "swarm.velocity *= settings.inertia_max",
         (f"{_SWARM_TESTS}::test_particles_move_by_equation_8",),
     ),
     Mutation(

@@ -96,6 +96,7 @@ def explain(
     from diagnosis.blas_threads import one_blas_thread
 
     rng = np.random.default_rng(checked_seed(seed))
+    _check_settings(settings)
     searched = _searched(effects, twin)
     given = _given(twin, searched)
     read = as_sweep(sweep)
@@ -132,6 +133,15 @@ def _discovery(
         robust=True,
     )
     return discover(State.of(sweep, replace(fit.chain(), effects=effects), settings=settings, rng=rng))
+
+
+def _check_settings(settings: DiscoverySettings | None) -> None:
+    """Raise UserError for settings that are none."""
+    from diagnosis.discovery.settings import DiscoverySettings
+    from twin.errors import UserError
+
+    if not (settings is None or isinstance(settings, DiscoverySettings)):
+        raise UserError(f"settings is of the type {type(settings).__name__}; expected DiscoverySettings, or None")
 
 
 def _searched(own: OwnEffects, twin: str | os.PathLike[str] | Chain | None) -> tuple[Effect, ...]:

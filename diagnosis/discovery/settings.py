@@ -156,6 +156,11 @@ class DiscoverySettings:
                 kind = "a whole number of at least 1" if one.type == "int" else "a finite number"
                 raise ValueError(f"{one.name} is {value}; expected {kind}")
 
+    def __repr__(self) -> str:
+        """Show what differs from the defaults."""
+        values = {one.name: getattr(self, one.name) for one in fields(self) if getattr(self, one.name) != one.default}
+        return f"DiscoverySettings({', '.join(f'{name}={value!r}' for name, value in values.items())})"
+
     # ---- rules ------------------------------------------------------------------------------------------------------
 
     @property

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnosis import Cause, Diagnoses, Diagnosis, Explanation, diagnose, diagnose_many, explain
+from diagnosis import Cause, Diagnoses, Diagnosis, DiscoverySettings, Explanation, diagnose, diagnose_many, explain
 from tests.command_line import halltwin
 from twin.catalogue import CATALOGUE
 from twin.chain import Chain
@@ -240,6 +240,29 @@ def test_the_seed_alone_decides_what_is_random() -> None:
     assert explain(sweep, seed=1).to_dict() == explain(sweep, seed=np.int64(1)).to_dict()
     assert explain(sweep, seed=1).to_dict() != explain(sweep, seed=2).to_dict()
     assert diagnose(sweep, seed=1).to_dict() == diagnose(sweep, seed=1).to_dict()
+
+
+def test_settings_decide_how_improbable_a_cause_must_be() -> None:
+    there = np.arange(0.0, 720.0, 2.0)
+    motion = Motion.from_angle(np.radians(np.concatenate([there, there[::-1]])))
+    # A play of 0.004 deg either way in 720 readings with 0.02 deg of noise stands out by 0.004 sqrt(720)/0.02 = 5
+    # sigma: improbable by chance, but not as improbable as one in 10^12 over all that is searched.
+    weak = (
+        Chain()
+        .with_effect("backlash", half_width_deg=0.004)
+        .with_effect("noise", rms_deg=0.02)
+        .simulate(motion, seed=1)
+    )
+    verdicts = [explain(weak, settings=settings).verdict for settings in (None, DiscoverySettings())]
+    assert verdicts == ["explained", "explained"]
+    assert explain(weak, settings=DiscoverySettings(false_alarm_probability=1e-12)).verdict == "adequate"
+    with pytest.raises(UserError, match="settings is of the type float; expected DiscoverySettings"):
+        explain(weak, settings=0.01)  # type: ignore[arg-type]
+
+
+def test_settings_show_what_differs_from_the_defaults() -> None:
+    assert repr(DiscoverySettings()) == "DiscoverySettings()"
+    assert repr(DiscoverySettings(most_causes=3)) == "DiscoverySettings(most_causes=3)"
 
 
 @pytest.mark.parametrize("seed", [-1, 0.5, "1", None, True])

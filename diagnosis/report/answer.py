@@ -142,7 +142,7 @@ def _cause(found: Discovery, cause: Named) -> dict[str, Any]:
         "heldout_rms_deg_before": cause.before_deg,
         "heldout_rms_deg_after": cause.after_deg,
         "indistinguishable_from": list(cause.rivals),
-        "to_tell_apart": advice(cause.options) if cause.rivals else "",
+        "to_tell_apart": advice(cause.options, found.fit.settings) if cause.rivals else "",
         "to_tell_apart_options": [
             {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options
         ],

@@ -16,7 +16,7 @@ import pytest
 from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.further.measurements import MENU, Recording
-from diagnosis.discovery.further.power import ENOUGH_SIGMA, best, expected, separation_sigma
+from diagnosis.discovery.further.power import best, expected, separation_sigma
 from diagnosis.discovery.result import Discovery
 from tests.hidden.generator import draw
 from tests.hidden.motion import Motion
@@ -81,7 +81,7 @@ def test_advice_holds(case: Case, tmp_path: Path) -> None:
     option = best(named.options)
     assert option is not None
     assert option.name == advised
-    assert option.sigma > ENOUGH_SIGMA
+    assert option.sigma > first.fit.settings.sigma_enough
     plan = PLAN[advised](first.fit.evidence.motion)
     assert plan is not None
     (recording,) = plan

@@ -20,13 +20,14 @@ from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_model import noise_family, to_cosine
 from diagnosis.discovery.fitting.subsample import stretches
 from diagnosis.discovery.further.measurements import MENU, Measurement, Recording
+from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array
 from twin.catalogue import find
 from twin.chain import Chain
 
-ENOUGH_SIGMA = 5.0
-LEAST_SIGMA = 3.0
 MOST_PLANNED = 4_000
+"""Rows of a plan; a longer one is planned on a part of itself."""
+_DEFAULTS = DiscoverySettings()
 _ITERATIONS = 4
 
 _family = lru_cache(maxsize=2)(noise_family)
@@ -79,26 +80,26 @@ def _least_sigma(fit: Fit, rivals: Mapping[str, Fit], planned: tuple[Recording, 
     for rival in rivals.values():
         for true, wrong in ((fit, rival), (rival, fit)):
             least = min(least, separation_sigma(true, wrong, planned))
-            if least < LEAST_SIGMA:
+            if least < fit.settings.sigma_apart:
                 return least
     return least
 
 
-def best(offered: Sequence[Option]) -> Option | None:
+def best(offered: Sequence[Option], settings: DiscoverySettings = _DEFAULTS) -> Option | None:
     """The cheapest measurement that is enough, else the one that parts best; None where there is none."""
-    enough = [option for option in offered if option.sigma >= ENOUGH_SIGMA]
+    enough = [option for option in offered if option.sigma >= settings.sigma_enough]
     if enough:
         return min(enough, key=lambda option: option.cost)
     return max(offered, key=lambda option: option.sigma, default=None)
 
 
-def advice(offered: Sequence[Option]) -> str:
+def advice(offered: Sequence[Option], settings: DiscoverySettings = _DEFAULTS) -> str:
     """The best measurement in words, with the separation expected of it."""
-    option = best(offered)
-    if option is None or option.sigma < LEAST_SIGMA:
+    option = best(offered, settings)
+    if option is None or option.sigma < settings.sigma_apart:
         reached = f" ({option.sigma:.1f} sigma at most)" if option is not None else ""
         return f"no further measurement of the menu parts them{reached}"
-    if option.sigma < ENOUGH_SIGMA:
+    if option.sigma < settings.sigma_enough:
         return f"{option.measurement} ({option.sigma:.1f} sigma, which may not be enough)"
     return f"{option.measurement} ({option.sigma:.0f} sigma)"
 
@@ -107,7 +108,7 @@ def separation_sigma(fit: Fit, rival: Fit, planned: tuple[Recording, ...]) -> fl
     """How many sigma of the noise the rival, at its best, would miss the planned recordings by were ``fit`` true."""
     parts = [expected(fit, rival, recording) for recording in planned]
     sigma = _missed(parts, planned) / _noise_rms(fit)
-    if len(parts) == 1 and sigma > LEAST_SIGMA:
+    if len(parts) == 1 and sigma > fit.settings.sigma_apart:
         # What the rival cannot do to first order it may do exactly.
         sigma = min(sigma, _missed([solve(parts[0], iterations=_ITERATIONS)], planned) / _noise_rms(fit))
     return sigma

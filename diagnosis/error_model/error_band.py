@@ -8,9 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.error_model.model import Readings
-from twin.adc.adc_quantisation import FULL_SCALE
+from twin.adc.adc_quantisation import ADC_QUANTISATION, FULL_SCALE
+from twin.adc.reference_jitter import REFERENCE_JITTER
 from twin.angles import TAU, Array
 from twin.chain import Chain
+from twin.cordic.cordic_truncation import CORDIC_TRUNCATION
+from twin.effect import Effect
+from twin.hall.noise import NOISE
+from twin.link.output_quantisation import OUTPUT_QUANTISATION
 
 SENTINELS = 32
 _REACH = 4.0
@@ -24,17 +29,17 @@ def delta_e_rad(chain: Chain, *, immeasurable_rad: float = 0.0) -> float:
     largest deviation: half a step of each grid, four standard deviations of each random term.
     """
 
-    def of(effect: str, name: str, null: float = 0.0) -> float:
-        return float(chain.values.get(effect, {}).get(name, null))
+    def of(effect: Effect, name: str) -> float:
+        return float(chain.values.get(effect.name, {}).get(name, effect.params[name].null))
 
-    adc_bits, link_bits = of("adc_quantisation", "bits"), of("output_quantisation", "bits")
+    adc_bits, link_bits = of(ADC_QUANTISATION, "bits"), of(OUTPUT_QUANTISATION, "bits")
     # Half a step on both channels at once, at amplitude 1.
     quantisation = np.sqrt(2.0) * FULL_SCALE / 2.0**adc_bits if adc_bits else 0.0
     quantisation += 0.5 * TAU / 2.0**link_bits if link_bits else 0.0
     # x/2^m Delta D is a relative error of a channel: at 45 deg, where both are 0.707, it turns by half of it each.
-    reference = _REACH * 0.01 * of("reference_jitter", "percent_rms") / np.sqrt(2.0)
-    noise = _REACH * np.radians(of("noise", "rms_deg"))
-    iterations = of("cordic_truncation", "iterations")
+    reference = _REACH * 0.01 * of(REFERENCE_JITTER, "percent_rms") / np.sqrt(2.0)
+    noise = _REACH * np.radians(of(NOISE, "rms_deg"))
+    iterations = of(CORDIC_TRUNCATION, "iterations")
     cordic = np.arctan(2.0 ** (1.0 - iterations)) if iterations else 0.0
     return float(quantisation + reference + noise + cordic + immeasurable_rad)
 

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.angles import Array, wrap
+from twin.baseline import FACTORS
 
 NAMES = ("Vx_over_Ax", "Vy_over_Ay", "gain_ratio", "beta_rad", "quad", "zero_rad")
 VX, VY, GAIN, BETA, QUAD, ZERO = range(6)
@@ -52,32 +53,21 @@ def mirrored(points: Array) -> Array:
 
 def twin_values(point: Array) -> dict[str, dict[str, float]]:
     """A point (6,) as parameters of the twin's effects, by effect name; the zero in (-180, 180] deg."""
-    vx, vy, gain, beta, quad, zero = (float(value) for value in point)
-    return {
-        "zero": {"zero_deg": -float(np.degrees(wrap(-zero)))},
-        "offset": {"x_percent": 100.0 * vx, "y_percent": 100.0 * vy},
-        "gain_mismatch": {"ratio": gain},
-        "phase": {"beta_deg": float(np.degrees(beta))},
-        "quadratic_nonlinearity": {"q_percent": 100.0 * quad},
-    }
+    values: dict[str, dict[str, float]] = {FACTORS[ZERO].key: {}}
+    for place, factor in enumerate(FACTORS):
+        value = -float(wrap(-point[place])) if place == ZERO else float(point[place])
+        own = float(np.degrees(value)) if factor.unit == "deg" else value * (1.0 / factor.scale)
+        values.setdefault(factor.key, {})[factor.param] = own
+    return values
 
 
 def from_twin_values(values: Mapping[str, Mapping[str, float]]) -> Array:
     """The point (6,) of a twin's parameters; effects that are absent are at null."""
-
-    def get(effect: str, name: str, null: float = 0.0) -> float:
-        return float(values.get(effect, {}).get(name, null))
-
-    return np.array(
-        [
-            0.01 * get("offset", "x_percent"),
-            0.01 * get("offset", "y_percent"),
-            get("gain_mismatch", "ratio", 1.0),
-            np.radians(get("phase", "beta_deg")),
-            0.01 * get("quadratic_nonlinearity", "q_percent"),
-            np.radians(get("zero", "zero_deg")),
-        ]
-    )
+    point = []
+    for factor in FACTORS:
+        own = float(values.get(factor.key, {}).get(factor.param, factor.null))
+        point.append(float(np.radians(own)) if factor.unit == "deg" else factor.scale * own)
+    return np.array(point)
 
 
 def coefficients(points: Array) -> Array:

@@ -230,8 +230,7 @@ def _mirror(fit: BaselineFit) -> tuple[str, ...]:
     senses = fit.senses
     if senses.other is None:
         return ()
-    other = model.twin_values(senses.other)
-    beta, offset = other["phase"]["beta_deg"], other["offset"]["y_percent"]
+    beta, offset = np.degrees(senses.other[model.BETA]), 100.0 * senses.other[model.VY]
     pair = f"s = {-senses.sensor:+d}, h = {-senses.output:+d} (beta {beta:+.3f} deg, Vy/Ay {offset:+.3f} %)"
     if senses.matters:
         return (f"the mirror solution {pair} is {senses.sigma:.0f} standard errors worse, through q alone",)

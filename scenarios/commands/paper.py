@@ -21,6 +21,8 @@ from scenarios.commands.paper_table import (
 from twin.adc.converter import Converter, convert
 from twin.angles import Array
 from twin.chain import Chain
+from twin.hall.gain_mismatch import GAIN_MISMATCH
+from twin.hall.phase import PHASE
 from twin.sweep_file import write_beside, write_columns
 
 Columns = dict[str, Array]
@@ -70,14 +72,14 @@ def offsets(plt: Any) -> tuple[Any, Columns]:
 def gain(plt: Any) -> tuple[Any, Columns]:
     """Fig. 4: the error over angle and gain mismatch."""
     percents = np.linspace(0.0, 1.0, 21)
-    chains = [Chain().with_effect("gain_mismatch", ratio=1.0 + 0.01 * percent) for percent in percents]
+    chains = [Chain().with_effect(GAIN_MISMATCH.name, ratio=1.0 + 0.01 * percent) for percent in percents]
     return _surface(plt, percents, chains, "gain mismatch / %", "mismatch_percent")
 
 
 def phase(plt: Any) -> tuple[Any, Columns]:
     """Fig. 5: the error over angle and phase deviation."""
     degrees = np.linspace(0.0, 0.5, 21)
-    chains = [Chain().with_effect("phase", beta_deg=beta) for beta in degrees]
+    chains = [Chain().with_effect(PHASE.name, beta_deg=beta) for beta in degrees]
     return _surface(plt, degrees, chains, "phase deviation / deg", "beta_deg")
 
 

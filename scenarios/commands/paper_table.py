@@ -9,6 +9,10 @@ import numpy as np
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain
 from twin.cordic.bit_true import Cordic, angle_rad, codes_of, vectoring
+from twin.hall.gain_mismatch import GAIN_MISMATCH
+from twin.hall.offset import OFFSET
+from twin.hall.phase import PHASE
+from twin.hall.quadratic_nonlinearity import QUADRATIC_NONLINEARITY
 from twin.motion import Motion
 
 POINTS = 3600
@@ -40,12 +44,12 @@ def largest_deg(chain: Chain) -> float:
 
 def offset_of(millivolt_x: float, millivolt_y: float) -> Chain:
     """Offsets in mV, for the paper's amplitude of 1 V."""
-    return Chain().with_effect("offset", x_percent=0.1 * millivolt_x, y_percent=0.1 * millivolt_y)
+    return Chain().with_effect(OFFSET.name, x_percent=0.1 * millivolt_x, y_percent=0.1 * millivolt_y)
 
 
 def non_linear(field_mT: float) -> Chain:
     """The quadratic term at this field."""
-    return Chain().with_effect("quadratic_nonlinearity", q_percent=Q_PERCENT_PER_MT * field_mT)
+    return Chain().with_effect(QUADRATIC_NONLINEARITY.name, q_percent=Q_PERCENT_PER_MT * field_mT)
 
 
 def fluctuation_deg(millivolt: float, *, both: bool) -> float:
@@ -81,7 +85,7 @@ def table() -> list[Row]:
             factor="Gain mismatch",
             condition="mismatch ratio is 0.003",
             printed=0.08581,
-            computed=largest_deg(Chain().with_effect("gain_mismatch", ratio=1.003)),
+            computed=largest_deg(Chain().with_effect(GAIN_MISMATCH.name, ratio=1.003)),
             unit="deg",
             remark="Ay/Ax = 1.003",
         ),
@@ -89,7 +93,7 @@ def table() -> list[Row]:
             factor="Phase",
             condition="phase deviation is 0.1 deg",
             printed=0.09999,
-            computed=largest_deg(Chain().with_effect("phase", beta_deg=0.1)),
+            computed=largest_deg(Chain().with_effect(PHASE.name, beta_deg=0.1)),
             unit="deg",
             remark="on the y channel alone: the largest of beta cos^2",
         ),

@@ -24,7 +24,6 @@ ALLOWED: dict[str, str] = {
     "scenarios/bench/command.py": "what the closed loop hides unless told otherwise, as one would write it",
     "diagnosis/discovery/marks/spread.py": "a noisy stretch, found by code of its own",
     "diagnosis/discovery/proof/bootstrap.py": "the noise ahead of the stairs",
-    "diagnosis/report/answer.py": "kinds of structure, and what single readings are told of",
 }
 """File or folder -> why it may name effects."""
 

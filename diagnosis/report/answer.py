@@ -13,25 +13,14 @@ from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
 from twin.angles import wrap_deg
-from twin.catalogue import base_name, find
+from twin.baseline import FACTORS
+from twin.catalogue import find
 from twin.files import to_dict
 
 SCHEMA = "halltwin.explain/1"
 _T95 = 1.959964
 Deviations = dict[tuple[str, str], float]
 """Standard deviation of a parameter, by effect and parameter."""
-_KINDS = {
-    "unnamed_order": "order",
-    "unnamed_direction": "direction",
-    "unnamed_direction_order": "direction",
-    "unnamed_temperature": "temperature",
-    "unnamed_temperature_order": "temperature",
-    "unnamed_speed": "speed",
-    "unnamed_tone": "time_frequency",
-    "unnamed_drift": "drift",
-    "unnamed_bump": "local",
-    "unnamed_burst": "noise",
-}
 
 
 def to_json(found: Discovery) -> dict[str, Any]:
@@ -97,27 +86,14 @@ def _sweep(found: Discovery) -> dict[str, Any]:
 def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:
     """The six visible parameters of the paper's model with 95 % intervals; a given twin's are taken as known."""
     deviation = standard_deviations(fit)
-    wanted = (
-        ("Vx_over_Ax", "offset", "x_percent", 0.01, "1"),
-        ("Vy_over_Ay", "offset", "y_percent", 0.01, "1"),
-        ("gain_ratio", "gain_mismatch", "ratio", 1.0, "1"),
-        ("beta_deg", "phase", "beta_deg", 1.0, "deg"),
-        ("quad", "quadratic_nonlinearity", "q_percent", 0.01, "1"),
-        ("zero_deg", "zero", "zero_deg", 1.0, "deg"),
-    )
     answer = {}
-    for name, key, param, scale, unit in wanted:
-        declared = find(key).params[param]
-        value = float(fit.chain.values.get(key, {}).get(param, declared.null))
-        half = _T95 * deviation.get((key, param), 0.0)
+    for factor in FACTORS:
+        declared = factor.effect.params[factor.param]
+        value = float(fit.chain.values.get(factor.key, {}).get(factor.param, factor.null))
+        half = _T95 * deviation.get((factor.key, factor.param), 0.0)
+        middle, low, high = (figure * factor.scale for figure in (value, value - half, value + half))
         at_bound = value <= declared.lower or value >= declared.upper
-        answer[name] = {
-            "value": value * scale,
-            "low": (value - half) * scale,
-            "high": (value + half) * scale,
-            "unit": unit,
-            "at_bound": bool(at_bound),
-        }
+        answer[factor.name] = {**_figure(middle, low, high, factor.unit), "at_bound": bool(at_bound)}
     return answer
 
 
@@ -147,7 +123,7 @@ def _cause(found: Discovery, cause: Named) -> dict[str, Any]:
             {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options
         ],
     }
-    if cause.name == "bus_glitch":
+    if effect.marks is not None and effect.marks.rows_listed:
         answer["rows"] = found.sweep.numbers[list(cause.rows)].tolist()
     return answer
 
@@ -182,7 +158,7 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
             # Of a phase no less can be known than nothing.
             half = min(half, 180.0)
         figures[name] = _figure(value, value - half, value + half, param.unit)
-        if name == "time_s" and (key, name) not in deviation and name in effect.zoomed:
+        if param.unit == "s" and name in effect.zoomed and (key, name) not in deviation:
             figures[name] |= _between_readings(fit, value)
     if effect.line is not None and effect.line.clock == "time":
         name = effect.roles("phase")[0]
@@ -226,30 +202,20 @@ def _phase_at_first_row(
 
 def _counted(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
     """Figures of causes that touch single rows: how many, or which share of them."""
-    if cause.name == "bus_glitch":
-        count = float(len(cause.rows))
-        return {"count": _figure(count, count, count, "1")}
-    if cause.name == "stale_frames":
-        share = 100.0 * len(cause.rows) / len(found.sweep)
-        half = 100.0 * _T95 * float(np.sqrt(max(share / 100 * (1 - share / 100) / len(found.sweep), 0.0)))
-        return {"fraction_percent": _figure(share, max(share - half, 0.0), share + half, "%")}
-    return {}
+    effect = find(cause.keys[0], found.fit.chain.effects)
+    if effect.marks is None:
+        return {}
+    figures = {}
+    for name, (value, deviation) in effect.marks.told(len(cause.rows), len(found.sweep)).items():
+        param, half = effect.params[name], _T95 * deviation
+        figures[name] = _figure(value, max(value - half, param.lower), min(value + half, param.upper), param.unit)
+    return figures
 
 
 def _structure(found: Discovery, key: str) -> dict[str, Any]:
-    values = found.fit.chain.values[key]
-    answer: dict[str, Any] = {"kind": _KINDS.get(base_name(key), "order")}
-    answer.update({name: float(value) for name, value in values.items() if np.ndim(value) == 0})
-    series = {
-        int(name[3:-4]): float(np.hypot(values[name], values.get(f"sin{name[3:-4]}_deg", 0.0)))
-        for name in values
-        if name.startswith("cos") and name.endswith("_deg")
-    }
-    if series:
-        # A pattern of several orders is described by its strongest one.
-        answer["order"] = float(max(series, key=lambda order: series[order]))
-        answer["amplitude_deg"] = max(series.values())
-    return answer
+    effect, values = find(key, found.fit.chain.effects), found.fit.chain.values[key]
+    own = {name: float(value) for name, value in values.items() if np.ndim(value) == 0}
+    return {"kind": effect.kind, **own, **effect.figures(values)}
 
 
 def wild_rows(found: Discovery) -> list[int]:

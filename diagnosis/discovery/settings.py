@@ -54,7 +54,7 @@ class DiscoverySettings:
     the same separation expected of a further measurement."""
     sigma_enough: float = 5.0
     """Derived. A further measurement is advised without reserve at five sigma: with the scatter of one sigma that the
-    outcome has, it then falls below three sigma in 2.3 % of the cases."""
+    outcome has, it then falls below three sigma in 2.3 % of the cases. The output's stairs are seen at as much."""
     stairs_sigma_factor: float = 2.0
     """Limit. Beside coarse stairs so many times more sigma: what the fit leaves of the stairs themselves favours now
     one smooth shape, now another."""

@@ -115,4 +115,5 @@ def grid_as_cause(fit: Fit, grid: Effect, step: float) -> Named | None:
     plain = without_stairs(fit, grid.name)[use]
     gain = int(use.sum()) * float(np.log(np.mean(plain**2) / np.mean(fit.residual[0][use] ** 2)))
     log_p = float(log_probability(np.array(gain), 1, int(use.sum())))
-    return Named((grid.name,), log_p, gain) if gain > 0.0 and log_p < settings.footprint_log_p else None
+    # The squares of correlated noise count for less than their number: so five sigma, of noise taken to be white.
+    return Named((grid.name,), log_p, gain) if gain > settings.sigma_enough**2 else None

@@ -25,7 +25,8 @@ def spread(state: State) -> State:
     burst = bursts(fit)
     if burst is not None:
         shapes.append(burst)
-    limit = state.settings.effect_log_p(len(shapes)) - doubt_beside(fit, state.keys)
+    # One family with the causes of the mean: what is listed is as improbable among everything that was searched.
+    limit = state.settings.effect_log_p(state.looked_at) - doubt_beside(fit, state.keys)
     odds = state.settings.unnamed_log_odds
     judged = [(shape.log_p + (odds if unnamed(shape.name) else 0.0), shape) for shape in shapes]
     score, best = min(judged, key=lambda item: item[0], default=(0.0, None))

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from scenarios.commands.explain import explain_file
+from diagnosis import explain
 
 from .hidden.scoring import right
 from .measured import CHALLENGE
@@ -23,7 +23,7 @@ def truth() -> dict[str, Any]:
 
 @pytest.mark.parametrize("name", [f"example{number:02d}" for number in range(10)])
 def test_right(name: str) -> None:
-    answer = explain_file(str(CHALLENGE / f"{name}.csv"))
+    answer = explain(CHALLENGE / f"{name}.csv").to_dict()
     hidden = truth()[name]
     # Structure outside the catalogue bears a name of its own in the truth; the answer can only say unnamed.
     hidden["causes"] = ["unnamed" if cause.startswith("unnamed") else cause for cause in hidden["causes"]]

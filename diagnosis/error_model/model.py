@@ -20,7 +20,7 @@ matrix is built in one pass: what a particle of the swarm costs does not depend 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -59,15 +59,6 @@ def twin_values(point: Array) -> dict[str, dict[str, float]]:
         own = float(np.degrees(value)) if factor.unit == "deg" else value * (1.0 / factor.scale)
         values.setdefault(factor.key, {})[factor.param] = own
     return values
-
-
-def from_twin_values(values: Mapping[str, Mapping[str, float]]) -> Array:
-    """The point (6,) of a twin's parameters; effects that are absent are at null."""
-    point = []
-    for factor in FACTORS:
-        own = float(values.get(factor.key, {}).get(factor.param, factor.null))
-        point.append(float(np.radians(own)) if factor.unit == "deg" else factor.scale * own)
-    return np.array(point)
 
 
 def coefficients(points: Array) -> Array:

@@ -8,8 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.error_model import swarm
-from diagnosis.error_model.fit import QUICK, fit_baseline, fit_equal
+from diagnosis.error_model.fit import fit_equal
 from diagnosis.error_model.model import Readings
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors import channels
@@ -53,26 +52,6 @@ class Findings:
     def glitch_rows(self) -> tuple[int, ...]:
         """Numbers of the rows (first reading = 1) that were left out as isolated gross errors."""
         return tuple(self.sweep.numbers[self.fit.outliers].tolist())
-
-
-def quantify(
-    sweep: Sweep,
-    *,
-    rng: np.random.Generator | None = None,
-    robust: bool = True,
-    settings: swarm.SwarmSettings = QUICK,
-    band_rad: float | None = None,
-) -> Findings:
-    """Fit the paper's error model to a sweep and say what the answer is worth.
-
-    ``rng`` drives the swarm (default: a fixed seed). ``robust`` leaves isolated gross errors out, as the paper's
-    pretreatment does. ``band_rad`` is Delta E of Eq. 7; given, the discard rule of Eq. 11 is on.
-    """
-    rng = rng or np.random.default_rng(DEFAULT_SEED)
-    reference, measured = radians(sweep.reference_deg), radians(sweep.measured_deg)
-    senses = senses_from_channels(sweep, reference, measured)
-    fit = fit_baseline(reference, measured, rng=rng, senses=senses, robust=robust, settings=settings, band_rad=band_rad)
-    return _findings(sweep, fit)
 
 
 def quantify_many(

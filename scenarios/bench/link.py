@@ -11,7 +11,7 @@ from typing import Any
 import can
 
 from scenarios.bench.faults import FaultyBus, Opener
-from scenarios.bench.messages import Frame, messages
+from scenarios.bench.messages import SEQUENCES, Frame, messages
 from scenarios.bench.readings import Assembler, Event
 from twin.errors import UserError
 
@@ -36,7 +36,7 @@ class Link:
 
     def next_sequence(self) -> int:
         """A number for a request that no answer on its way still carries."""
-        self._sequence = (self._sequence + 1) % (1 << 16)
+        self._sequence = (self._sequence + 1) % SEQUENCES
         return self._sequence
 
     def send(self, name: str, values: Mapping[str, float]) -> None:

@@ -18,6 +18,7 @@ from twin.link.frames import CRC8_FINAL, CRC8_POLYNOMIAL, CRC8_START
 COUNTS = 16
 """The rolling counter's modulus."""
 SEQUENCES = 1 << 16
+"""The modulus of the number that a request and its answer share."""
 CHANNEL_LIMIT = 2.0 - 2.0**-16
 """Largest channel value [nominal amplitudes] that HallChannels can carry."""
 SPEED_STEP_RPM = 0.5

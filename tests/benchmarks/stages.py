@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from tests.twin.sine_fit import jitter_sinad_db
 from tests.twin.test_adc import TONE_HZ, five_sigma_db, sinad_of
 from tests.twin.test_cordic import WORD_BITS, circle
 from tests.twin.test_magnet_field import harmonics_deg, placed
 from twin.adc.converter import Converter
-from twin.adc.sine_fit import jitter_sinad_db
 from twin.angles import wrap
 from twin.cordic.bit_true import Cordic, angle_rad, vectoring
 

@@ -14,10 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.error_model import grid_search, model, swarm
+from diagnosis.error_model import model, swarm
 from diagnosis.error_model.fit import QUICK, fit_baseline
 from diagnosis.error_model.model import NOMINAL, ZERO, Readings
 from diagnosis.error_model.search_range import first_box
+from tests.diagnosis.grid_search import full_grid_count, grid_search
 from twin.angles import TAU, Array, wrap
 
 NOISE_DEG = 0.02
@@ -231,7 +232,7 @@ def our_grid(task: Problem, points: int) -> Outcome:
     """The ordinary method on a grid of so many points a parameter."""
     start = time.perf_counter()
     gram = Readings.of(task.reference, task.measured).gram()
-    found = grid_search.grid_search(gram, task.lower, task.upper, points=points)
+    found = grid_search(gram, task.lower, task.upper, points=points)
     return Outcome(time.perf_counter() - start, task.rms_deg(found.best), found.evaluations)
 
 
@@ -273,9 +274,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     seed, patience = options.seed, options.patience
-    print(
-        f"Table 2's full grid: {grid_search.full_grid_count():.3g} points; the swarm evaluates {PARTICLES * ITERATIONS}"
-    )
+    print(f"Table 2's full grid: {full_grid_count():.3g} points; the swarm evaluates {PARTICLES * ITERATIONS}")
     our_fit(problem(360, seed), seed)
     evolved = 10_000
     for readings in options.readings:

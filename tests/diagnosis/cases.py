@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from hypothesis import strategies as st
 
 from diagnosis.error_model.model import Readings
 from twin.angles import Array
+from twin.baseline import FACTORS
 
 NOISE_RAD = float(np.radians(0.02))
 
@@ -31,3 +34,12 @@ def measured(point: Array, reference: Array, sensor: int = 1, output: int = 1, n
 def turn(readings: int) -> Array:
     """Reference angles (n,) [rad] evenly round one turn, not at the axes."""
     return 0.1 + 2.0 * np.pi * np.arange(readings) / readings
+
+
+def point_of(values: Mapping[str, Mapping[str, float]]) -> Array:
+    """The point (6,) of a twin's parameters; effects that are absent are at null."""
+    point = []
+    for factor in FACTORS:
+        own = float(values.get(factor.key, {}).get(factor.param, factor.null))
+        point.append(float(np.radians(own)) if factor.unit == "deg" else factor.scale * own)
+    return np.array(point)

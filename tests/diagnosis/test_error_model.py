@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from diagnosis.error_model import model
 from diagnosis.error_model.model import Readings
-from tests.diagnosis.cases import NOISE_RAD, measured, points, senses, turn
+from tests.diagnosis.cases import NOISE_RAD, measured, point_of, points, senses, turn
 from twin.angles import Array, wrap
 from twin.chain import Chain
 from twin.motion import Motion
@@ -21,7 +21,7 @@ def test_is_the_twin(point: Array, pair: tuple[int, int]) -> None:
     chain = Chain(values=model.twin_values(point), sensor_sense=pair[0], output_sense=pair[1])
     readings = chain.readings(Motion.from_angle(reference))
     np.testing.assert_allclose(wrap(readings - measured(point, reference, *pair)), 0.0, atol=1e-12)
-    back = model.from_twin_values(chain.values)
+    back = point_of(chain.values)
     np.testing.assert_allclose(back, point, atol=1e-12)
 
 

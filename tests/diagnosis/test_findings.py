@@ -9,7 +9,7 @@ from diagnosis.error_model.fit import fit_baseline
 from diagnosis.error_model.model import GAIN, NOMINAL, QUAD, VX, VY, Readings
 from diagnosis.factors.air_gaps import GapSweep, Law, laws
 from diagnosis.factors.channels import fit_curve, output_sense
-from diagnosis.factors.findings import curve_deg, quantify, quantify_many
+from diagnosis.factors.findings import curve_deg, quantify_many
 from diagnosis.factors.identifiability import HIDDEN, identifiability, invisible_count, paper_jacobian
 from diagnosis.factors.mechanical import mechanical
 from tests.diagnosis.cases import NOISE_RAD, measured, turn
@@ -139,12 +139,12 @@ def test_no_misalignment_reaches_a_gain_ratio_of_two() -> None:
 
 def test_channels_part_the_reference_from_the_sensor() -> None:
     chain = device().with_effect("reference_eccentricity", amplitude_deg=0.3, phase_deg=20.0)
-    found = quantify(sweep_of(chain, channels=True))
+    found = quantify_many([sweep_of(chain, channels=True)])[0]
     assert found.added is not None
     assert found.added.beyond_order_1_deg == pytest.approx(0.3, abs=0.02)
     assert any("eccentricity" in words for words in found.sentences)
     assert found.added.curve.values[2:4] == pytest.approx([1.0, 1.01], abs=1e-3)
-    quiet = quantify(sweep_of(device(), channels=True))
+    quiet = quantify_many([sweep_of(device(), channels=True)])[0]
     assert any("the reference adds nothing" in words for words in quiet.sentences)
 
 
@@ -206,7 +206,7 @@ def test_repeated_angles_are_not_independent() -> None:
     jig = np.repeat(np.radians(0.1) * rng.standard_normal(16), 10)
     reading = measured(POINT, reference, noise=jig + NOISE_RAD * rng.standard_normal(160))
     sweep = Sweep.from_columns({"reference_deg": np.degrees(reference), "measured_deg": np.degrees(reading)})
-    found = quantify(sweep)
+    found = quantify_many([sweep])[0]
     assert found.repeated is not None
     assert "16 different angles" in found.repeated
     assert found.fit.degrees_of_freedom == 10
@@ -216,7 +216,7 @@ def test_repeated_angles_are_not_independent() -> None:
 
 def test_curve_is_the_error_of_the_fit() -> None:
     sweep = sweep_of(device())
-    found = quantify(sweep)
+    found = quantify_many([sweep])[0]
     error = sweep.measured_deg - sweep.reference_deg - found.fit.values["zero"]["zero_deg"]
     left = (error - curve_deg(found.fit, sweep.reference_deg) + 180.0) % 360.0 - 180.0
     np.testing.assert_allclose(left, np.degrees(found.fit.residual_rad), atol=1e-9)
@@ -225,6 +225,6 @@ def test_curve_is_the_error_of_the_fit() -> None:
 def test_many_agree_with_one() -> None:
     sweeps = [sweep_of(device(), 90 + 10 * (k % 2), channels=k == 2, seed=k) for k in range(4)]
     for many, sweep in zip(quantify_many(sweeps), sweeps, strict=True):
-        one = quantify(sweep)
+        one = quantify_many([sweep])[0]
         assert many.sweep is sweep
         np.testing.assert_allclose(many.fit.point, one.fit.point, atol=1e-8)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from diagnosis.discovery.pipeline import State, discover
-from diagnosis.factors.findings import quantify
+from diagnosis.factors.findings import quantify_many
 from twin.sweep import Sweep
 
 BENCH = Path(__file__).parents[2] / "scenarios" / "data" / "bench_sweep.csv"
@@ -32,7 +32,7 @@ SHOWN = {
 def objects() -> dict[str, Any]:
     """What a person meets on the way from a sweep to its causes."""
     sweep = Sweep.read(BENCH)
-    findings = quantify(sweep)
+    findings = quantify_many([sweep])[0]
     found = discover(State.of(sweep, findings.fit.chain()))
     return {
         "sweep": sweep,

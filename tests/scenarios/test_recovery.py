@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.error_model.model import Readings, from_twin_values
+from diagnosis.error_model.model import Readings
 from scenarios.studies.machines import Machines
 from scenarios.studies.recovery.cells import BASELINE, SLOTS, Cell, Grid, bounds, simulate
 from scenarios.studies.recovery.run import check, recover, run
+from tests.diagnosis.cases import point_of
 from tests.scenarios.study_jobs import content
 from twin.errors import UserError
 
@@ -32,7 +33,7 @@ def test_the_bound_is_that_of_the_error_models_own_slopes() -> None:
     motion = cell.motion()
     chain, sweep = simulate(cell, motion, np.random.default_rng(0))
     ours = bounds(chain, cell, motion)
-    point = from_twin_values(chain.values)
+    point = point_of(chain.values)
     readings = Readings.of(np.radians(sweep.reference_deg), np.radians(sweep.measured_deg))
     _, slopes = readings.linearised(point[None])
     information = slopes[0] @ slopes[0].T / np.radians(cell.noise_deg) ** 2

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.twin.sine_fit import fit_sine, ideal_sinad_db, jitter_sinad_db
 from twin.adc.converter import Converter, convert, instants, linearity, sample
-from twin.adc.sine_fit import fit_sine, ideal_sinad_db, jitter_sinad_db
 from twin.angles import TAU, Array
 from twin.limits import OutOfRangeError
 

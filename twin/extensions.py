@@ -20,8 +20,6 @@ GROUP = "halltwin.effects"
 """Entry points of this group name an :class:`Effect` or a sequence of them."""
 RESERVED = "unnamed"
 """What the names of structure without a name begin with."""
-SEARCHED = ("mean", "spread", "values")
-"""Footprints that the search finds in any effect; single readings are found by code of their own."""
 
 
 class EffectError(UserError):
@@ -99,8 +97,6 @@ def unfit(effect: Effect) -> str:
         return f"names that begin with '{RESERVED}' are for structure without a name"
     if effect.baseline:
         return "baseline is True; only the paper's error model is fitted always"
-    if effect.footprint not in SEARCHED:
-        return f"footprint is {effect.footprint!r}; expected one of {', '.join(SEARCHED)}"
     return ""
 
 

@@ -205,7 +205,7 @@ CHANGES = {
     "single readings": (
         'name="belt_splice",',
         'name="belt_splice",\n    footprint="sequence",',
-        "expected one of mean",
+        "footprint 'sequence' needs `marks`",
     ),
     "null outside": ("null=0.0, lower=0.0", "null=-1.0, lower=0.0", "ValueError: null -1.0 outside"),
 }

@@ -147,6 +147,23 @@ def test_a_second_air_gap_parts_saturation_from_a_harmonic_of_the_magnet() -> No
     assert told == pytest.approx(by_hand, rel=0.15)
 
 
+def test_a_second_air_gap_parts_a_coercive_field_from_a_play() -> None:
+    """By hand: a lag of the field is the coercive field's share of it, a play of the coupling stays what it is."""
+    motion = Protocol(turns=1, points=72, both_directions=True, speeds_rpm=(60.0, 300.0), channels=False).motion()
+    chain = Chain().with_effect("hysteresis", lag_deg=0.1, memory_deg=1.0).with_effect("noise", rms_deg=0.02)
+    found = explain(chain.simulate(motion, seed=1)).discovery
+    (cause,) = found.causes
+    assert {cause.name, *cause.rivals} == {"hysteresis", "backlash"}
+    planned = PLAN["second air gap"](motion)
+    assert planned is not None
+    grown = 1.0 / planned[1].field
+    # Amplitudes (1, 1) of a play and (1, grown) of a lag, in two recordings of as many readings: what the lag leaves of
+    # the play is the less of the two. The fitted noise is known to 1/sqrt(2 n), 4 %, the amplitude to 2 %.
+    by_hand = 0.1 * (grown - 1.0) / np.hypot(1.0, grown) * np.sqrt(len(motion)) / 0.02
+    (told,) = (option.sigma for option in cause.options if option.name == "second air gap")
+    assert told == pytest.approx(by_hand, rel=3.0 * np.hypot(0.04, 0.02))
+
+
 def test_what_is_told_apart_has_no_advice() -> None:
     chain = Chain().with_effect("hysteresis", lag_deg=0.15, memory_deg=15.0).with_effect("noise", rms_deg=0.01)
     dense = Protocol(turns=2, points=360, both_directions=True, channels=False).motion()

@@ -26,7 +26,7 @@ class State:
 
     Given at the start: ``sweep``; ``start``, the chain that the fit sets out from, whose effects are what is known;
     ``given``, the same where it is a known twin, of which only the zeros are fitted; ``settings``; ``rng``, which draws
-    the simulated sweeps.
+    the simulated sweeps: a stage that draws hands on a generator that is further, and leaves its own as it is.
 
     Filled by the stages: ``fitted``, the chain with its free parameters, the observations and how they are weighed
     (see :attr:`fit`); ``baseline``, the same before any cause was added; ``bits``, the length of the output's word;

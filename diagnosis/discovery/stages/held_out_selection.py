@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
+
 from diagnosis.discovery.proof.selection import select
 from diagnosis.discovery.state import State
 
 
 def held_out_selection(state: State) -> State:
     """Keep the causes of the joint fit that are proven, each with its probability, rivals and held-out figures."""
-    proof = select(state.fit, state.searched, state.keys, rng=state.rng)
+    rng = deepcopy(state.rng)
+    proof = select(state.fit, state.searched, state.keys, rng=rng)
     findings = (*proof.entries(), *state.findings)
-    return state.with_(proof.fit, keys=proof.ordered, held=proof.held, findings=findings)
+    return state.with_(proof.fit, keys=proof.ordered, held=proof.held, findings=findings, rng=rng)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import replace
 from typing import Any
 
@@ -18,9 +19,9 @@ from twin.chain import Chain
 
 def predictive_check(state: State) -> State:
     """Complete the extended chain by its noise, and ask whether its sweeps can be told from the measured one."""
-    colour = colour_of(state.fit)
+    colour, rng = colour_of(state.fit), deepcopy(state.rng)
     fit = replace(state.fit, chain=_with_noise(state, colour))
-    return state.with_(fit, likeness=likeness(fit, rng=state.rng, colour=colour))
+    return state.with_(fit, likeness=likeness(fit, rng=rng, colour=colour), rng=rng)
 
 
 def _with_noise(state: State, colour: Colour) -> Chain:

@@ -1,0 +1,113 @@
+"""The grid that all readings lie on, and the finite set that holds them: a case on each side of every limit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from diagnosis.discovery.marks.quantisation import finite_set, grid_bits
+from diagnosis.discovery.settings import DiscoverySettings
+from twin.angles import TAU, Array
+from twin.cordic.cordic_truncation import CORDIC_TRUNCATION, attainable
+from twin.effect import Effect
+
+LIMITS = DiscoverySettings()
+CELLS = 1024
+STEP = TAU / CELLS
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grid:
+    """A word of so many bits, written with so many decimals of a degree; what is seen of it."""
+
+    bits: int
+    seen: int | None
+    decimals: int = 9
+    off_deg: float = 0.0
+    words: int = 200
+
+
+GRIDS = {
+    "the shortest": Grid(bits=6, seen=6, words=64),
+    "shorter than any": Grid(bits=5, seen=None, words=32),
+    "usual": Grid(bits=12, seen=12),
+    "the longest": Grid(bits=20, seen=20),
+    "longer than any": Grid(bits=21, seen=None),
+    "six decimals": Grid(bits=14, seen=14, decimals=6),
+    "three decimals": Grid(bits=14, seen=14, decimals=3),
+    # The last digit is as coarse as a twelfth of the step: anything would lie on such a grid.
+    "three decimals of a fine word": Grid(bits=18, seen=None, decimals=3),
+    "two decimals": Grid(bits=12, seen=None, decimals=2),
+    "one reading off": Grid(bits=12, seen=None, off_deg=0.01),
+}
+
+
+@pytest.mark.parametrize("case", GRIDS.values(), ids=GRIDS)
+def test_the_word_length_is_that_of_the_coarsest_grid_that_holds_all(case: Grid) -> None:
+    rng = np.random.default_rng(4)
+    words = rng.choice(2**case.bits, size=case.words, replace=False)
+    measured_deg = np.round(words * 360.0 / 2**case.bits, case.decimals)
+    measured_deg[17] += case.off_deg
+    assert grid_bits(np.radians(measured_deg), LIMITS) == case.seen
+
+
+def holding(share: float) -> Effect:
+    """An effect whose attainable angles are this share of the cells, the first ones; any level, the same angles."""
+    angles = np.arange(round(share * CELLS)) * STEP
+    return replace(CORDIC_TRUNCATION, attainable=lambda values: angles)
+
+
+def readings(inside: int, outside: int, share: float) -> Array:
+    """Different words [rad], so many in the first cells and so many behind them."""
+    first = round(share * CELLS)
+    return np.concatenate([np.arange(inside), first + np.arange(outside)]) * STEP
+
+
+@dataclass(frozen=True, kw_only=True)
+class Set:
+    """A set that leaves out a share of the cells, and readings inside and outside of it."""
+
+    share: float
+    inside: int
+    outside: int = 0
+    found: bool = True
+
+
+SETS = {
+    "half of the words": Set(share=0.5, inside=100),
+    "nearly all words": Set(share=LIMITS.set_share - 0.05, inside=100),
+    "all but a few words": Set(share=LIMITS.set_share + 0.05, inside=100, found=False),
+    "as many outside as may be": Set(share=0.5, inside=96, outside=4),
+    "one outside more": Set(share=0.5, inside=95, outside=5, found=False),
+    # 24 readings inside speak for this set by 3.8 nats, one outside against it by 4.
+    "too few to outweigh the one outside": Set(share=0.95 * LIMITS.set_share, inside=24, outside=1, found=False),
+}
+
+
+@pytest.mark.parametrize("case", SETS.values(), ids=SETS)
+def test_chance_is_the_share_of_the_words_to_the_power_of_the_readings(case: Set) -> None:
+    """Four of a hundred may lie outside; each of these speaks against the set as an error of one in fifty would."""
+    assert LIMITS.set_missed == pytest.approx(0.04)
+    measured = readings(case.inside, case.outside, case.share)
+    level, log_p = finite_set(measured, holding(case.share), [7.0], step=STEP, settings=LIMITS)
+    share = round(case.share * CELLS) / CELLS
+    expected = case.inside * np.log(share) + 4.0 * case.outside
+    assert (level, log_p) == (pytest.approx((7.0, expected)) if case.found else (0.0, 0.0))
+
+
+def test_readings_of_one_word_count_once() -> None:
+    measured = np.repeat(readings(30, 0, 0.5), 10)
+    _, log_p = finite_set(measured, holding(0.5), [7.0], step=STEP, settings=LIMITS)
+    assert log_p == pytest.approx(30 * np.log(0.5))
+
+
+@pytest.mark.parametrize("iterations", [6, 9, 12])
+def test_the_fewest_iterations_that_hold_all_readings_are_told(iterations: int) -> None:
+    """Sets of more iterations leave out fewer words, those of fewer iterations readings."""
+    rng = np.random.default_rng(iterations)
+    measured = rng.choice(attainable({"iterations": iterations}), size=100)
+    tried = [float(count) for count in range(5, 15)]
+    level, _ = finite_set(measured, CORDIC_TRUNCATION, tried, step=0.0, settings=LIMITS)
+    assert level == iterations

@@ -1,0 +1,73 @@
+"""Observe: rows that count as independent angles, and the grid on which the readings lie."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from diagnosis.discovery.settings import DiscoverySettings
+from diagnosis.discovery.stages.observe import observe
+from diagnosis.discovery.state import State
+from tests.diagnosis.discovery.sweeps import Made, start_of, sweep_of
+from twin.chain import Chain
+from twin.sweep import Sweep
+
+NOISE_DEG = 0.02
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A sweep, and what is seen of it: rows, those set aside, bits of the word, the scatter of repeats [deg]."""
+
+    made: Made
+    rows: int
+    aside: tuple[int, ...] = ()
+    bits: int | None = None
+    repeat_deg: float | None = None
+    radius: bool = False
+
+
+CASES = {
+    "one turn": Case(made=Made(bits=30, points=72), rows=72),
+    "ten readings at each angle": Case(made=Made(bits=30, points=60, repeats=10), rows=60, repeat_deg=NOISE_DEG),
+    "direction recorded": Case(made=Made(bits=30, points=72, back=True), rows=144),
+    "direction inferred": Case(
+        made=Made(bits=30, points=72, back=True, left_out=("direction", "turn")), rows=144, aside=(72, 73)
+    ),
+    "channels": Case(made=Made(bits=30, points=72, channels=True), rows=72, radius=True),
+    "words of 12 bits": Case(made=Made(bits=12, points=72), rows=72, bits=12),
+    "words of 14 bits": Case(made=Made(bits=14, points=72), rows=72, bits=14),
+}
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_what_is_seen(case: Case) -> None:
+    state = observe(start_of(case.made))
+    evidence = state.fit.evidence
+    assert len(evidence) == case.rows
+    assert tuple(np.flatnonzero(~evidence.usable)) == case.aside
+    assert state.bits == case.bits
+    assert state.step == (2.0 * np.pi / 2.0**case.bits if case.bits else 0.0)
+    assert (evidence.observables == 2) == case.radius
+    assert state.fit.setting.radius_weight == float(case.radius)
+    assert state.fit.free == ()
+    assert state.fit.settings is state.settings
+    if case.repeat_deg is None:
+        assert evidence.repeat_rms is None
+    else:
+        # A standard deviation of n readings, a degree of freedom lost at each angle: five of its own deviations.
+        dof = len(sweep_of(case.made)) - case.rows
+        assert evidence.repeat_rms == pytest.approx(np.radians(case.repeat_deg), rel=5.0 / np.sqrt(2.0 * dof))
+
+
+@pytest.mark.parametrize(("missing", "bits"), [(0, 12), (1, None)])
+def test_few_words_say_nothing_of_the_grid(missing: int, bits: int | None) -> None:
+    """As many words as the limit, on a grid of 12 bits, and one fewer."""
+    words = DiscoverySettings().fewest_words - missing
+    reference = np.arange(80) * 4.5
+    # Odd words among them: even ones alone would lie on a grid of 11 bits.
+    measured = ((np.arange(80) % words) * 51 + 1) * 360.0 / 2**12
+    sweep = Sweep(reference_deg=reference, measured_deg=measured)
+    assert observe(State.of(sweep, Chain())).bits == bits

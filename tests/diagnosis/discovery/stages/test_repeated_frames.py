@@ -1,0 +1,97 @@
+"""Repeated frames: found, named and kept out of the fits; asked again after a search, they are not named twice."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from diagnosis.discovery.settings import DiscoverySettings
+from diagnosis.discovery.stages.repeated_frames import repeated_frames
+from diagnosis.discovery.state import State
+from tests.diagnosis.discovery.claims import claiming, with_effects
+from tests.diagnosis.discovery.sweeps import Made, before, planted_of
+
+LIMIT = DiscoverySettings().footprint_log_p
+STALE, GLITCH = "stale_frames", "bus_glitch"
+MADE = Made(causes=((STALE, 0.05),), turns=2)
+CLEAN = Made(turns=2)
+
+
+def rows_hit(made: Made, name: str) -> tuple[int, ...]:
+    """The rows that the generator has touched."""
+    hidden = {one.name: one for one in planted_of(made)}[name].hidden
+    return tuple(int(row) for row in hidden["rows"])
+
+
+@pytest.mark.parametrize("made", [MADE, Made(causes=((STALE, 0.05),), points=90, turns=2, back=True, bits=12)])
+def test_every_repeated_frame_is_named_and_masked(made: Made) -> None:
+    state = before(repeated_frames, made)
+    after = repeated_frames(state)
+    rows = rows_hit(made, STALE)
+    (cause,) = after.findings
+    assert cause.keys == (STALE,)
+    assert cause.rows == rows
+    # Looked for by itself, so that there is no family to pay for.
+    assert cause.family_log_p == cause.log_p < LIMIT
+    assert tuple(np.flatnonzero(after.touched)) == rows
+    assert set(rows) <= set(np.flatnonzero(~after.fit.evidence.usable))
+    assert repeated_frames(after) is after
+
+
+def test_without_them_the_fit_is_that_of_the_other_readings() -> None:
+    """An order of the turn that the repeats would pull at, in standard deviations of the fit."""
+    after = repeated_frames(before(repeated_frames, MADE)).fit
+    clean = before(repeated_frames, CLEAN).fit
+    names = [(free.key, free.name) for free in clean.free]
+    moved = [float(after.chain.values[key][name]) - float(clean.chain.values[key][name]) for key, name in names]
+    # The same noise on all rows but those masked, three in a hundred: estimates differ by sqrt(0.03) of a deviation.
+    assert np.max(np.abs(moved) / np.sqrt(np.diag(clean.covariance()))) < 5.0 * np.sqrt(0.03)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A claim to some rows with some probability by chance, and whether it is believed."""
+
+    log_p: float
+    named: bool
+    rows: tuple[int, ...] = (40, 90)
+    early: bool = True
+
+
+CASES = {
+    "just improbable enough": Case(log_p=LIMIT - 0.1, named=True),
+    "just too probable": Case(log_p=LIMIT + 0.1, named=False),
+    "no row": Case(log_p=-50.0, rows=(), named=False),
+    "an effect that is not looked for first": Case(log_p=-50.0, early=False, named=False),
+}
+
+
+def test_the_limit_is_a_quarter_of_the_policy() -> None:
+    """Causes show in four places, and the probability of a false alarm is that of all together."""
+    assert pytest.approx(np.log(0.01 / 4.0)) == LIMIT
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_a_claim_is_believed_by_its_probability(case: Case) -> None:
+    state = with_effects(before(repeated_frames, CLEAN), claiming(STALE, case.rows, case.log_p, early=case.early))
+    after = repeated_frames(state)
+    assert (after is state) == (not case.named)
+    assert len(after.findings) == int(case.named)
+    assert tuple(np.flatnonzero(after.touched)) == (case.rows if case.named else ())
+
+
+def test_rows_of_an_earlier_claim_stay_touched() -> None:
+    state: State = with_effects(before(repeated_frames, CLEAN), claiming(STALE, (40,), -50.0, early=True))
+    state = state.with_(touched=np.isin(np.arange(len(state.sweep)), (7, 8)))
+    after = repeated_frames(state)
+    assert tuple(np.flatnonzero(after.touched)) == (7, 8, 40)
+    assert tuple(np.flatnonzero(~after.fit.evidence.usable)) == (7, 8, 40)
+
+
+@pytest.mark.parametrize("made", [CLEAN, Made(turns=2, bits=10), Made(points=90, repeats=4)])
+def test_on_a_clean_sweep_there_is_nothing_to_say(made: Made) -> None:
+    """Also where the shaft moves by less than a step of the grid, or stands still."""
+    state = before(repeated_frames, made)
+    assert repeated_frames(state) is state

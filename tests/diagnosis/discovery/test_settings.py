@@ -1,0 +1,91 @@
+"""The settings: what may not be set, the one policy with the rules that follow from it, and where values come from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import FrozenInstanceError, fields
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.stats import chi2, norm, t
+
+from diagnosis.discovery.settings import FOOTPRINTS, DiscoverySettings
+
+PLAIN = DiscoverySettings()
+WHOLE = [one.name for one in fields(PLAIN) if isinstance(one.default, int)]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "expected"),
+    [
+        *(("false_alarm_probability", value, "a number between 0 and 1") for value in (0.0, 1.0, -0.1, 2.0, np.nan)),
+        *((name, value, "a whole number of at least 1") for name in WHOLE for value in (0, 2.5, np.nan)),
+        ("spike_sigma", np.inf, "a finite number"),
+        ("swap_log_odds", np.nan, "a finite number"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_name(name: str, value: Any, expected: str) -> None:
+    with pytest.raises(ValueError, match=f"^{name} is {value}; expected {expected}"):
+        DiscoverySettings(**{name: value})
+
+
+def test_settings_are_frozen() -> None:
+    with pytest.raises(FrozenInstanceError):
+        PLAIN.folds = 5  # type: ignore[misc]
+
+
+@pytest.mark.parametrize("policy", [0.001, 0.01, 0.2])
+def test_every_limit_follows_from_the_policy(policy: float) -> None:
+    """Bonferroni: over the four places where a cause can show, and over the effects that are looked for there."""
+    settings = DiscoverySettings(false_alarm_probability=policy)
+    assert FOOTPRINTS == 4
+    assert FOOTPRINTS * np.exp(settings.footprint_log_p) == pytest.approx(policy)
+    for effects in (1, 7, 30):
+        assert FOOTPRINTS * effects * np.exp(settings.effect_log_p(effects)) == pytest.approx(policy)
+    assert settings.effect_log_p(0) == settings.effect_log_p(1)
+
+
+def test_two_causes_are_the_same_within_the_squares_of_the_sigma() -> None:
+    """Twice the log likelihood ratio of two points is the square of their distance in sigma."""
+    assert PLAIN.same_fit(coarse=False) == pytest.approx(PLAIN.sigma_apart**2)
+    assert PLAIN.same_fit(coarse=True) == pytest.approx((PLAIN.stairs_sigma_factor * PLAIN.sigma_apart) ** 2)
+    assert DiscoverySettings(sigma_apart=4.0).same_fit(coarse=False) == pytest.approx(16.0)
+
+
+DERIVED: dict[str, tuple[Callable[[DiscoverySettings], float], float, float]] = {
+    # Two-sided, in a million rows; and in a thousand rows of Student's t of four degrees, whose robust sigma is larger.
+    "spike_sigma": (lambda s: 2e6 * norm.sf(s.spike_sigma), 0.5e-6, 5e-6),
+    "spike_sigma in heavy tails": (
+        lambda s: 2e3 * t(4).sf(s.spike_sigma * 1.4826 * t(4).ppf(0.75)),
+        1.0,
+        2.5,
+    ),
+    # The share of sweeps of thirty degrees of freedom in which chance exceeds it.
+    "radius_left": (lambda s: chi2.sf(30 * s.radius_left, 30), 0.03, 0.05),
+    # An outcome scatters by one sigma about what is expected.
+    "sigma_enough": (lambda s: norm.cdf(s.sigma_apart - s.sigma_enough), 0.02, 0.025),
+    "sigma_apart": (lambda s: 2.0 * norm.sf(s.sigma_apart), 0.002, 0.003),
+    # What stairs at the limit add to the RMS of the noise.
+    "stairs_in_noise": (lambda s: np.hypot(1.0, s.stairs_in_noise) - 1.0, 0.004, 0.005),
+    # A stretch is loud from an RMS half as large again on.
+    "burst_ratio": (lambda s: np.sqrt(s.burst_ratio), 1.5, 1.5),
+    # The variance of a parameter in a fit of the other folds, against that in the final fit.
+    "folds": (lambda s: s.folds / (s.folds - 1.0), 1.33, 1.34),
+    # Each turn's zero is fitted from the rest of the turn, and every part of the turn is held out in some turn.
+    "blocks_a_turn": (lambda s: np.gcd(s.blocks_a_turn, s.folds) * (s.blocks_a_turn > 1), 1, 1),
+    "predictive_sweeps": (lambda s: 1.0 / (s.predictive_sweeps + 1), 0.005, 0.005),
+    "unnamed_log_odds": (lambda s: np.exp(s.unnamed_log_odds), 390.0, 410.0),
+    "colour_log_odds": (lambda s: np.exp(s.colour_log_odds), 19.0, 21.0),
+    "noise_reach": (lambda s: np.exp(-s.noise_reach), 0.015, 0.02),
+    "beyond_doubt_log_p": (lambda s: norm.isf(0.5 * np.exp(s.beyond_doubt_log_p)), 6.5, 7.5),
+    "fallen_out": (lambda s: s.fallen_out, 0.2, 0.2),
+    "most_causes": (lambda s: s.most_causes - 7, 1, 1),
+}
+"""What a value stands for, worked out apart, and between which numbers the words beside it place that."""
+
+
+@pytest.mark.parametrize("name", DERIVED)
+def test_a_value_is_what_the_words_beside_it_say(name: str) -> None:
+    worked_out, low, high = DERIVED[name]
+    assert low <= worked_out(PLAIN) <= high

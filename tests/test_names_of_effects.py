@@ -24,6 +24,7 @@ ALLOWED: dict[str, str] = {
     "scenarios/bench/command.py": "what the closed loop hides unless told otherwise, as one would write it",
     "diagnosis/discovery/marks/spread.py": "a noisy stretch, found by code of its own",
     "diagnosis/discovery/proof/bootstrap.py": "the noise ahead of the stairs",
+    "diagnosis/discovery/stages/predictive_check.py": "the noise that is left",
 }
 """File or folder -> why it may name effects."""
 
@@ -50,12 +51,20 @@ def is_key(node: ast.Constant, parents: Mapping[ast.AST, ast.AST]) -> bool:
         return word(parent.value) == "values" or isinstance(parents[parent], ast.Subscript)
     if isinstance(parent, ast.Call):
         return node in parent.args[:1] and word(parent.func) in LOOK_UPS
-    if isinstance(parent, ast.Dict):
-        return node in parent.keys and isinstance(parent.values[parent.keys.index(node)], ast.Dict)
+    if isinstance(parent, ast.Dict) and node in parent.keys:
+        return isinstance(parent.values[parent.keys.index(node)], ast.Dict) or holds_values(parents[parent])
     if isinstance(parent, ast.Tuple | ast.List):
         beside = [item.value for item in parent.elts if isinstance(item, ast.Constant)]
         return any(item in find(str(node.value)).params for item in beside)
     return False
+
+
+def holds_values(node: ast.AST) -> bool:
+    """Whether what a table is given to are a chain's values."""
+    if isinstance(node, ast.Call):
+        return word(node.func) == "with_values"
+    targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", node)]
+    return any(word(target) == "values" for target in targets)
 
 
 def word(node: ast.AST) -> str:
@@ -105,6 +114,8 @@ def test_what_is_allowed_is_needed(entry: str) -> None:
         'chain.with_effect("zero", zero_deg=1.0)',
         'values = {"phase": {"beta_deg": 1.0}}',
         'spread = {"offset.x_percent": 1.0}',
+        'values = {"noise": left(fit)}',
+        'chain.with_values({"noise": left(fit)})',
         'key = f"unnamed_order#{order}"',
         'beta_deg = other["phase"]["beta_deg"]',
     ],

@@ -86,47 +86,26 @@ class Motion:
         wrapped = np.asarray(shaft_rad, dtype=np.float64)
         n = wrapped.size
         shaft = wrapped if n == 0 else np.concatenate([wrapped[:1], wrapped[0] + np.cumsum(wrap(np.diff(wrapped)))])
-        columns = set()
-        if time_s is not None:
-            columns.add("time_s")
-        if direction is not None:
-            columns.add("direction")
-            way = np.where(np.asarray(direction) < 0, -1.0, 1.0)
-        else:
-            way = infer_direction(shaft)
-            if speed_rad_s is not None and np.ptp(np.sign(speed_rad_s)) == 2.0:
-                # A signed speed says the direction of the very row at which the shaft turns round.
-                sense = np.where(np.asarray(speed_rad_s) < 0.0, -1.0, 1.0)
-                agreement = float(np.mean(sense * way))
-                way = sense * np.sign(agreement) if abs(agreement) > 0.8 else way
-        if speed_rad_s is not None:
-            columns.add("speed_rpm")
-            # A recorded speed may be unsigned: its sense is the direction's.
-            speed = np.abs(np.asarray(speed_rad_s, dtype=np.float64)) * way
-        elif time_s is not None and n > 2 and 0 < float(np.median(np.diff(time_s))) <= STOP_AND_MEASURE_S:
-            speed = infer_speed(shaft, np.asarray(time_s), way)
-        else:
-            speed = np.zeros(n)
-        if turn is not None:
-            columns.add("turn")
-        if temperature_c is not None and np.isfinite(temperature_c).any():
-            columns.add("temperature_c")
-            known = np.flatnonzero(np.isfinite(temperature_c))
-            temperature = np.interp(np.arange(n), known, np.asarray(temperature_c)[known])
-        else:
-            temperature = np.full(n, 25.0)
-        if has_channels:
-            columns.add("vx")
+        way = _way(shaft, direction, speed_rad_s)
+        temperature = _without_gaps(temperature_c)
+        recorded = {
+            "time_s": time_s is not None,
+            "direction": direction is not None,
+            "speed_rpm": speed_rad_s is not None,
+            "turn": turn is not None,
+            "temperature_c": temperature is not None,
+            "vx": has_channels,
+        }
         return cls(
             shaft_rad=shaft,
             time_s=np.arange(n, dtype=np.float64) if time_s is None else np.asarray(time_s, dtype=np.float64),
             direction=way,
-            speed_rad_s=speed,
+            speed_rad_s=_speed(shaft, way, time_s, speed_rad_s),
             turn=np.zeros(n, dtype=np.int64)
             if turn is None
             else np.unique(turn, return_inverse=True)[1].astype(np.int64),
-            temperature_c=temperature,
-            columns=frozenset(columns),
+            temperature_c=np.full(n, 25.0) if temperature is None else temperature,
+            columns=frozenset(name for name, given in recorded.items() if given),
         )
 
     def part(self, rows: IntArray) -> Motion:
@@ -184,6 +163,38 @@ class Motion:
         if self.turn.max(initial=0) > 0:
             found.add("two turns")
         return frozenset(found)
+
+
+def _way(shaft_rad: Array, direction: Array | None, speed_rad_s: Array | None) -> Array:
+    """Direction (+1 or -1) of each row (n,): as recorded, else from the order of the angles and a signed speed."""
+    if direction is not None:
+        return np.where(np.asarray(direction) < 0, -1.0, 1.0)
+    way = infer_direction(shaft_rad)
+    if speed_rad_s is None or np.ptp(np.sign(speed_rad_s)) != 2.0:
+        return way
+    # A signed speed says the direction of the very row at which the shaft turns round.
+    sense = np.where(np.asarray(speed_rad_s) < 0.0, -1.0, 1.0)
+    agreement = float(np.mean(sense * way))
+    return np.asarray(sense * np.sign(agreement)) if abs(agreement) > 0.8 else way
+
+
+def _speed(shaft_rad: Array, way: Array, time_s: Array | None, speed_rad_s: Array | None) -> Array:
+    """Signed speed [rad/s] (n,): as recorded, else from time stamps dense enough for a shaft in motion, else zero."""
+    if speed_rad_s is not None:
+        # A recorded speed may be unsigned: its sense is the direction's.
+        return np.asarray(np.abs(np.asarray(speed_rad_s, dtype=np.float64)) * way)
+    n = shaft_rad.size
+    if time_s is not None and n > 2 and 0 < float(np.median(np.diff(time_s))) <= STOP_AND_MEASURE_S:
+        return infer_speed(shaft_rad, np.asarray(time_s), way)
+    return np.zeros(n)
+
+
+def _without_gaps(temperature_c: Array | None) -> Array | None:
+    """Temperatures (n,) [C], missing ones taken from their neighbours in row order; None where there is none at all."""
+    if temperature_c is None or not np.isfinite(temperature_c).any():
+        return None
+    known = np.flatnonzero(np.isfinite(temperature_c))
+    return np.asarray(np.interp(np.arange(np.size(temperature_c)), known, np.asarray(temperature_c)[known]))
 
 
 def infer_direction(shaft_rad: Array) -> Array:

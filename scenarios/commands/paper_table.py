@@ -72,7 +72,24 @@ def cordic_error(iterations: int, points: int = POINTS) -> tuple[Array, Array]:
 
 def table() -> list[Row]:
     """All rows, in the order of the paper."""
-    rows = [
+    rows = [*factor_rows(), calculation_row()]
+    radians = rows[-1].computed
+    printed = sum(row.printed for row in rows)
+    total = Row(
+        factor="Sum Foreseeable",
+        condition="not including immeasurable factors",
+        printed=0.42346,
+        computed=sum(row.computed if row.unit == "deg" else float(np.degrees(row.computed)) for row in rows),
+        unit="deg",
+        remark=f"the printed rows add up to {printed:.5f}, 0.0078 rad counted as 0.0078 deg; "
+        f"ours counts it as {np.degrees(radians):.3f} deg",
+    )
+    return [*rows, total]
+
+
+def factor_rows() -> list[Row]:
+    """The errors of the channels: offset, gain mismatch, phase, non-linearity, a disturbance of the voltage."""
+    return [
         Row(
             factor="Offset",
             condition="1 mV offset in both axes",
@@ -116,31 +133,20 @@ def table() -> list[Row]:
             f"figure (one channel of 0.8 V amplitude gives {fluctuation_deg(1.25, both=False):.4f} deg)",
         ),
     ]
+
+
+def calculation_row() -> Row:
+    """The error of the CORDIC."""
     eight, fourteen = (float(np.max(np.abs(cordic_error(count, 100_000)[1]))) for count in (8, 14))
-    rows.append(
-        Row(
-            factor="Calculation Error",
-            condition="8 times iterations with the worst case",
-            printed=0.0078,
-            computed=eight,
-            unit="rad",
-            remark="2^-7 = 0.0078 is in radians: the table mixes units. "
-            f"8 iterations leave {np.degrees(eight):.3f} deg; 14 iterations leave {np.degrees(fourteen):.4f} deg",
-        )
+    return Row(
+        factor="Calculation Error",
+        condition="8 times iterations with the worst case",
+        printed=0.0078,
+        computed=eight,
+        unit="rad",
+        remark="2^-7 = 0.0078 is in radians: the table mixes units. "
+        f"8 iterations leave {np.degrees(eight):.3f} deg; 14 iterations leave {np.degrees(fourteen):.4f} deg",
     )
-    printed = sum(row.printed for row in rows)
-    rows.append(
-        Row(
-            factor="Sum Foreseeable",
-            condition="not including immeasurable factors",
-            printed=0.42346,
-            computed=sum(row.computed if row.unit == "deg" else float(np.degrees(row.computed)) for row in rows),
-            unit="deg",
-            remark=f"the printed rows add up to {printed:.5f}, 0.0078 rad counted as 0.0078 deg; "
-            f"ours counts it as {np.degrees(eight):.3f} deg",
-        )
-    )
-    return rows
 
 
 def table_csv(rows: list[Row]) -> str:

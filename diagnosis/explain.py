@@ -132,7 +132,8 @@ def _discovery(
         senses=senses_of_channels(sweep),
         robust=True,
     )
-    return discover(State.of(sweep, replace(fit.chain(), effects=effects), settings=settings, rng=rng))
+    state = State.of(sweep, replace(fit.chain(), effects=effects), settings=settings, rng=rng)
+    return discover(state.with_(suspects=fit.outliers))
 
 
 def _check_settings(settings: DiscoverySettings | None) -> None:

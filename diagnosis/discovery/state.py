@@ -26,7 +26,9 @@ class State:
 
     Given at the start: ``sweep``; ``start``, the chain that the fit sets out from, whose effects are what is known;
     ``given``, the same where it is a known twin, of which only the zeros are fitted; ``settings``; ``rng``, which draws
-    the simulated sweeps: a stage that draws hands on a generator that is further, and leaves its own as it is.
+    the simulated sweeps: a stage that draws hands on a generator that is further, and leaves its own as it is;
+    ``suspects``, raw rows (n_raw,) that a robust fit of the start left out: the first least-squares fit is made without
+    them, because a flipped top bit, half a turn off, would pull it to where nothing stands out any more.
 
     Filled by the stages: ``fitted``, the chain with its free parameters, the observations and how they are weighed
     (see :attr:`fit`); ``baseline``, the same before any cause was added; ``bits``, the length of the output's word;
@@ -41,6 +43,7 @@ class State:
     given: Chain | None
     settings: DiscoverySettings
     rng: np.random.Generator
+    suspects: BoolArray
     touched: BoolArray
     fitted: Fit | None = None
     baseline: Fit | None = None
@@ -79,8 +82,8 @@ class State:
             Draws the simulated sweeps that the measured one is compared with; seed 0 if not given.
         """
         settings, rng = settings or DiscoverySettings(), rng or np.random.default_rng(0)
-        touched = np.zeros(len(sweep), dtype=bool)
-        return cls(sweep=sweep, start=start, given=given, settings=settings, rng=rng, touched=touched)
+        none = np.zeros(len(sweep), dtype=bool)
+        return cls(sweep=sweep, start=start, given=given, settings=settings, rng=rng, suspects=none, touched=none)
 
     @property
     def effects(self) -> tuple[Effect, ...]:

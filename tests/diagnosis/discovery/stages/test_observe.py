@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
 from diagnosis.discovery.settings import DiscoverySettings
+from diagnosis.discovery.stages.initial_fit import initial_fit
 from diagnosis.discovery.stages.observe import observe
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.sweeps import Made, start_of, sweep_of
@@ -71,3 +72,24 @@ def test_few_words_say_nothing_of_the_grid(missing: int, bits: int | None) -> No
     measured = ((np.arange(80) % words) * 51 + 1) * 360.0 / 2**12
     sweep = Sweep(reference_deg=reference, measured_deg=measured)
     assert observe(State.of(sweep, Chain())).bits == bits
+
+
+def test_suspects_stay_out_of_the_first_fit() -> None:
+    """A reading half a turn off moves the first fit not at all where it is under suspicion, and by degrees where not."""
+    made = Made(points=72, bits=30)
+    plain = start_of(made, DiscoverySettings())
+    measured_deg = plain.sweep.measured_deg.copy()
+    measured_deg[10] += 180.0
+    flipped = plain.with_(sweep=replace(plain.sweep, measured_deg=measured_deg))
+    suspects = np.arange(len(plain.sweep)) == 10
+    first = {
+        name: initial_fit(observe(state)).fit.linear.angle
+        for name, state in {
+            "as it was": plain.with_(suspects=suspects),
+            "suspected": flipped.with_(suspects=suspects),
+            "trusted": flipped,
+        }.items()
+    }
+    assert np.array_equal(first["suspected"], first["as it was"])
+    # One reading of 72 that is off by pi moves a mean by pi / 72, which is 2.5 deg.
+    assert np.degrees(np.max(np.abs(first["trusted"] - first["as it was"]))) > 1.0

@@ -75,7 +75,7 @@ def test_few_words_say_nothing_of_the_grid(missing: int, bits: int | None) -> No
 
 
 def test_suspects_stay_out_of_the_first_fit() -> None:
-    """A reading half a turn off moves the first fit not at all where it is under suspicion, and by degrees where not."""
+    """A reading half a turn off moves the first fit not at all where it is suspected, and by degrees where not."""
     made = Made(points=72, bits=30)
     plain = start_of(made, DiscoverySettings())
     measured_deg = plain.sweep.measured_deg.copy()

@@ -154,10 +154,11 @@ class Chain:
 
     def active(self, acts_on: ActsOn) -> Iterator[tuple[str, Effect, Parameters]]:
         """The effects not at null on this signal, in order: key, effect, complete parameters."""
+        present: dict[str, list[str]] = {}
+        for key in sorted(self.values):
+            present.setdefault(base_name(key), []).append(key)
         for effect in self.effects:
-            if effect.acts_on != acts_on:
-                continue
-            for key in sorted(k for k in self.values if base_name(k) == effect.name):
+            for key in present.get(effect.name, ()) if effect.acts_on == acts_on else ():
                 values = {**effect.null(), **self.values[key]}
                 if not effect.is_null(values):
                     yield key, effect, {name: _aligned(value, effect, name) for name, value in values.items()}

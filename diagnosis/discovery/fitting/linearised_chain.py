@@ -7,6 +7,7 @@ of the chain.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from twin.angles import Array, wrap
-from twin.chain import SIGNALS, Chain
+from twin.chain import SIGNALS, Chain, Step
 from twin.effect import Effect, Parameters
 from twin.motion import Motion
 
@@ -70,7 +71,7 @@ class Linear:
         # Backward: sensitivity of (angle, log radius) to the signal after each step.
         sense = np.zeros((self.observables, 1, n))
         sense[0] = 1.0
-        bounds = {str(name): _last_place(self.chain, name) for name in SIGNALS}
+        bounds = _last_places(self.chain)
         points: list[tuple[float, Insertion]] = []
         for step in reversed(steps):
             place = (
@@ -97,7 +98,7 @@ class Linear:
                 points.append((place, Insertion(step.after, sense)))
                 # A quantiser's edges are no slopes: it passes changes on as they are.
                 if step.effect.acts_on != "angle" and (self.slopes or not is_staircase(step.effect)):
-                    sense = _through(step.effect, step.before, self.motion, step.values, sense)
+                    sense = _through(step, self.motion, sense)
         points.append((-1.0, Insertion(np.broadcast_to(self.motion.shaft_rad, (2, n)), sense)))
         self._points = sorted(points, key=lambda item: item[0])
 
@@ -201,14 +202,15 @@ class Linear:
         return out
 
 
-def _through(effect: Effect, before: Array, motion: Motion, values: Parameters, sense: Array) -> Array:
-    """Sensitivity (O, 2, n) ahead of a pointwise effect from the one behind it."""
-    plain = effect.forward(before, motion, values, None)
+def _through(step: Step, motion: Motion, sense: Array) -> Array:
+    """Sensitivity (O, 2, n) ahead of a pointwise effect's step from the one behind it."""
+    assert step.effect is not None
+    before = step.before
     out = np.empty((sense.shape[0], before.shape[0], before.shape[1]))
     for channel in range(before.shape[0]):
         moved = np.array(before)
         moved[channel] += _STEP
-        slope = (effect.forward(moved, motion, values, None) - plain) / _STEP
+        slope = (step.effect.forward(moved, motion, step.values, None) - step.after) / _STEP
         out[:, channel] = np.einsum("okn,kn->on", sense, slope)
     return out
 
@@ -225,14 +227,13 @@ def is_staircase(effect: Effect) -> bool:
     return effect.line is not None and effect.line.clock == "channels"
 
 
-def _last_place(chain: Chain, acts_on: str) -> float:
-    """Place in the chain's order behind the last effect that acts on this signal."""
-    last = -1.0
-    for name in SIGNALS:
-        last = max([last, *(float(k) for k, effect in enumerate(chain.effects) if effect.acts_on == name)])
-        if name == acts_on:
-            break
-    return last
+def _last_places(chain: Chain) -> dict[str, float]:
+    """By signal the place in the chain's order of the last effect that acts on it or on a signal ahead of it."""
+    last = dict.fromkeys((str(name) for name in SIGNALS), -1.0)
+    for place, effect in enumerate(chain.effects):
+        if effect.acts_on in last:
+            last[effect.acts_on] = float(place)
+    return dict(zip(last, itertools.accumulate(last.values(), max), strict=True))
 
 
 def _normal_quantile(share: Array) -> Array:

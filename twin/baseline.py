@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import degrees
 
 from twin.effect import Effect
 from twin.hall.gain_mismatch import GAIN_MISMATCH
@@ -29,6 +30,11 @@ class Factor:
     def key(self) -> str:
         """The effect's key in a chain's values."""
         return self.effect.name
+
+    @property
+    def per_coordinate(self) -> float:
+        """The parameter for a coordinate of 1 of the error model's point: 100 % of a fraction, 57.3 deg of a radian."""
+        return degrees(1.0) if self.unit == "deg" else 1.0 / self.scale
 
     @property
     def null(self) -> float:

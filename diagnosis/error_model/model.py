@@ -56,8 +56,7 @@ def twin_values(point: Array) -> dict[str, dict[str, float]]:
     values: dict[str, dict[str, float]] = {FACTORS[ZERO].key: {}}
     for place, factor in enumerate(FACTORS):
         value = -float(wrap(-point[place])) if place == ZERO else float(point[place])
-        own = float(np.degrees(value)) if factor.unit == "deg" else value * (1.0 / factor.scale)
-        values.setdefault(factor.key, {})[factor.param] = own
+        values.setdefault(factor.key, {})[factor.param] = value * factor.per_coordinate
     return values
 
 

@@ -12,6 +12,7 @@ from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.control_chart import Chart, average_run_length, chart, limit_for
 from diagnosis.factors.findings import senses_from_channels
 from twin.angles import Array, radians
+from twin.baseline import FACTORS
 from twin.sweep import FEWEST_ROWS, Sweep
 
 FEWEST_SWEEPS = 5
@@ -19,15 +20,6 @@ FEWEST_SWEEPS = 5
 RUN_LENGTH = 500.0
 """Sweeps between two false alarms, on average, unless another number is asked for."""
 _SMALLEST_RMS_RAD = 1e-12
-_FACTORS = (
-    ("Vx_over_Ax_percent", 100.0),
-    ("Vy_over_Ay_percent", 100.0),
-    ("gain_ratio", 1.0),
-    ("beta_deg", 180.0 / np.pi),
-    ("quad_percent", 100.0),
-    ("zero_deg", 180.0 / np.pi),
-)
-"""Name of each parameter of the error model on its chart, and the factor that gives it the unit of that name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +71,10 @@ def factor_values(fits: Sequence[BaselineFit]) -> dict[str, Array]:
     """Each factor of the fits in their order (sweeps,), in the unit of its name, and the log of the residual's RMS."""
     points = np.array([fit.point for fit in fits])
     points[:, -1] = np.unwrap(points[:, -1])
-    values: dict[str, Array] = {name: scale * points[:, k] for k, (name, scale) in enumerate(_FACTORS)}
+    values: dict[str, Array] = {}
+    for k, factor in enumerate(FACTORS):
+        percent = "_percent" if factor.param.endswith("_percent") else ""
+        values[f"{factor.name}{percent}"] = factor.per_coordinate * points[:, k]
     values["log_residual_rms"] = np.log([max(fit.rms_rad, _SMALLEST_RMS_RAD) for fit in fits])
     return values
 

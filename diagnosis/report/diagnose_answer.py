@@ -7,14 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.error_model.model import BETA, NAMES, ZERO
+from diagnosis.error_model.model import NAMES
 from diagnosis.factors.air_gaps import Law
 from diagnosis.factors.findings import Findings
+from twin.baseline import FACTORS
 
 SCHEMA = "halltwin.diagnose/1"
-PUBLIC = ("Vx_over_Ax", "Vy_over_Ay", "gain_ratio", "beta_deg", "quad", "zero_deg")
-"""The six parameters as an answer names them, in the order of :data:`diagnosis.error_model.model.NAMES`."""
-_IN_DEGREES = (BETA, ZERO)
 
 
 def to_json(found: Sequence[Findings], over_gaps: Sequence[Law]) -> dict[str, Any]:
@@ -43,7 +41,7 @@ def one_sweep(found: Findings) -> dict[str, Any]:
         },
         "rms_deg": _degrees(fit.rms_rad),
         "steps": _steps(found),
-        "search": {"rounds": fit.search.rounds, "widened": [PUBLIC[NAMES.index(n)] for n in fit.search.widened]},
+        "search": {"rounds": fit.search.rounds, "widened": [FACTORS[NAMES.index(n)].name for n in fit.search.widened]},
         "correlations": [[_finite(v) for v in row] for row in found.identifiability.correlations],
         "covered_deg": found.identifiability.covered_deg,
         "mechanical": dict(vars(found.mechanical)),
@@ -63,18 +61,18 @@ def parameters(found: Findings) -> dict[str, dict[str, Any]]:
     """The six parameters with their 95 % intervals, and the profile's limits where the interval is not symmetric."""
     fit = found.fit
     answer: dict[str, dict[str, Any]] = {
-        name: {
+        factor.name: {
             "value": _finite(_scale(k) * fit.point[k]),
             "low": _finite(_scale(k) * fit.low[k]),
             "high": _finite(_scale(k) * fit.high[k]),
-            "unit": "deg" if k in _IN_DEGREES else "1",
+            "unit": factor.unit,
             "at_bound": bool(fit.at_bound[k]),
         }
-        for k, name in enumerate(PUBLIC)
+        for k, factor in enumerate(FACTORS)
     }
     for profile in found.identifiability.profiles:
         k = NAMES.index(profile.name)
-        answer[PUBLIC[k]]["profile"] = [_finite(_scale(k) * profile.low), _finite(_scale(k) * profile.high)]
+        answer[FACTORS[k].name]["profile"] = [_finite(_scale(k) * profile.low), _finite(_scale(k) * profile.high)]
     return answer
 
 
@@ -93,7 +91,7 @@ def _steps(found: Findings) -> dict[str, Any]:
 
 def _scale(place: int) -> float:
     """What the parameter at this place is multiplied by for the unit of the answer."""
-    return 180.0 / np.pi if place in _IN_DEGREES else 1.0
+    return FACTORS[place].per_coordinate * FACTORS[place].scale
 
 
 def _degrees(value_rad: float) -> float:

@@ -9,16 +9,17 @@ import numpy as np
 from diagnosis.error_model.model import NAMES
 from diagnosis.factors.air_gaps import Law, sentences
 from diagnosis.factors.findings import Findings
+from twin.baseline import FACTORS
 
 _ROWS = (
-    ("offset x", 0, 100.0, "% of amplitude", 4),
-    ("offset y", 1, 100.0, "% of amplitude", 4),
-    ("gain ratio", 2, 1.0, "", 6),
-    ("phase", 3, 180.0 / np.pi, "deg", 4),
-    ("quadratic", 4, 100.0, "% of amplitude", 4),
-    ("zero", 5, 180.0 / np.pi, "deg", 4),
+    ("offset x", "% of amplitude", 4),
+    ("offset y", "% of amplitude", 4),
+    ("gain ratio", "", 6),
+    ("phase", "deg", 4),
+    ("quadratic", "% of amplitude", 4),
+    ("zero", "deg", 4),
 )
-"""Label, place in the point, what it is multiplied by for the unit, unit, and decimals."""
+"""Label, unit and decimals of each parameter, in the order of the point and in the twin's units."""
 
 
 def text(found: Sequence[Findings], over_gaps: Sequence[Law]) -> str:
@@ -54,14 +55,17 @@ def _parameter_lines(found: Findings) -> list[str]:
     """The table of the six parameters, and the profiles' limits below it."""
     fit = found.fit
     lines = [f"{'':12} {'value':>12}   95 % interval"]
-    for label, k, scale, unit, digits in _ROWS:
+    for k, (label, unit, digits) in enumerate(_ROWS):
+        scale = FACTORS[k].per_coordinate
         low, high = scale * fit.low[k], scale * fit.high[k]
         bound = "   at the model's limit" if fit.at_bound[k] else ""
         lines.append(
             f"{label:12} {scale * fit.point[k]:12.{digits}f}   {low:.{digits}f} .. {high:.{digits}f} {unit}{bound}"
         )
     for profile in found.identifiability.profiles:
-        label, _, scale, unit, digits = _ROWS[NAMES.index(profile.name)]
+        k = NAMES.index(profile.name)
+        label, unit, digits = _ROWS[k]
+        scale = FACTORS[k].per_coordinate
         low, high = scale * profile.low, scale * profile.high
         lines.append(f"{'  profile':12} {label:>12}   {low:.{digits}f} .. {high:.{digits}f} {unit}")
     return lines
@@ -75,7 +79,7 @@ def many_sweeps(found: Sequence[Findings]) -> list[str]:
         f"{'RMS deg':>8} {'before':>8}"
     ]
     for item in found:
-        cells = " ".join(f"{scale * item.fit.point[k]:9.4f}" for _, k, scale, _, _ in _ROWS[:5])
+        cells = " ".join(f"{factor.per_coordinate * item.fit.point[k]:9.4f}" for k, factor in enumerate(FACTORS[:5]))
         fit = item.fit
         lines.append(
             f"{item.sweep.name:{width}} {item.sweep.rows:7d} {cells} {np.degrees(fit.rms_rad):8.4f} "

@@ -31,7 +31,7 @@ SLOTS = 6
 """Parameters a row has room for: the baseline's six, or a cause's strength in the first."""
 PARAMETERS = tuple((factor.key, factor.param) for factor in FACTORS)
 """The baseline's, in the order of diagnosis.error_model.model.NAMES and in the twin's units."""
-_TO_TWIN = np.array([100.0, 100.0, 1.0, np.degrees(1.0), 100.0, np.degrees(1.0)])
+_TO_TWIN = np.array([factor.per_coordinate for factor in FACTORS])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -29,7 +29,7 @@ def searched(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, step: 
         if found.keys == before and np.array_equal(refined.evidence.usable, found.fit.evidence.usable):
             return found
         fit = solve(refined)
-    return replace(found, fit=fit)
+    return replace(found, fit=settle(fit)[0])
 
 
 def trusting(fit: Fit, effects: Sequence[Effect], step: float, also: BoolArray) -> Found | None:

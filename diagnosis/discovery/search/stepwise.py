@@ -13,6 +13,7 @@ from diagnosis.discovery.marks.spread import stairs_rule
 from diagnosis.discovery.search.exchange import Search, improve, in_its_place
 from diagnosis.discovery.search.forward_step import best_addition, best_together
 from diagnosis.discovery.search.likelihood_ratio import settle
+from diagnosis.discovery.search.screening import Base
 from twin.catalogue import base_name, unnamed
 from twin.effect import Effect
 
@@ -41,7 +42,8 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = ()) -> Fou
     Returns
     -------
     Found
-        The causes come without a judgement of their rivals: see :func:`~diagnosis.discovery.search.rivals.judge`.
+        The fit is settled with its noise. The causes come without a judgement of their rivals: see
+        :func:`~diagnosis.discovery.search.rivals.judge`.
     """
     fit = replace(fit, setting=replace(fit.setting, coarse=stairs_rule(fit)))
     plan = Search.among(effects, fit)
@@ -50,8 +52,7 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = ()) -> Fou
     seen: set[frozenset[str]] = set()
     fit, base = settle(fit)
     if held:
-        fit, held = improve(fit, held, plan)
-        fit, base = settle(fit)
+        fit, base, held = _improved(fit, base, held, plan)
     while len(held) < fit.settings.most_causes and _stands_out(fit):
         offered = [effect for effect in plan.effects if effect.name not in barred]
         level = plan.level_beside(fit, held)
@@ -60,8 +61,7 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = ()) -> Fou
             break
         plan = plan.with_contenders(step.added)
         fit, base = settle(step.fit)
-        fit, held = improve(fit, [*held, *step.added], plan)
-        fit, base = settle(fit)
+        fit, base, held = _improved(fit, base, [*held, *step.added], plan)
         # Pruned or exchanged at once: offered again, it would only go round.
         idle = {base_name(key) for key in step.added if key not in held}
         barred |= idle
@@ -72,6 +72,12 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = ()) -> Fou
     for key in [key for key in held if unnamed(key)]:
         fit, held = in_its_place(fit, key, held, plan)
     return Found(fit, tuple(held), len(plan.effects))
+
+
+def _improved(fit: Fit, base: Base, keys: Sequence[str], plan: Search) -> tuple[Fit, Base, list[str]]:
+    """The settled fit improved, and settled again where anything has changed."""
+    better, held = improve(fit, keys, plan)
+    return (fit, base, held) if better is fit else (*settle(better), held)
 
 
 def _stands_out(fit: Fit) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from diagnosis.discovery.search.iterate import searched, trusting
-from diagnosis.discovery.search.likelihood_ratio import settle
 from diagnosis.discovery.state import State
 
 
@@ -15,5 +14,4 @@ def stepwise(state: State) -> State:
         state = state.with_(baseline=state.fit)
         found = trusting(state.fit, state.searched, state.step, kept_out)
     found = found or searched(state.fit, state.searched, state.keys, step=state.step, also=kept_out)
-    fit, _ = settle(found.fit)
-    return state.with_(fit, keys=found.keys, looked_at=found.looked_at)
+    return state.with_(found.fit, keys=found.keys, looked_at=found.looked_at)

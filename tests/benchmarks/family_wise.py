@@ -16,7 +16,7 @@ import numpy as np
 
 from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import Fit, solve
-from diagnosis.discovery.fitting.noise_colour import colour_of
+from diagnosis.discovery.proof.bootstrap import noise_of
 from diagnosis.discovery.proof.family_wise import family_wise
 from diagnosis.discovery.search.likelihood_ratio import settle, take_out
 from diagnosis.discovery.search.screening import Base, screen
@@ -44,7 +44,7 @@ def smallest(fit: Fit, rng: np.random.Generator) -> tuple[float, float]:
     """Family-wise probability of the effect that stands out most: calibrated, and by the F test."""
     provides = fit.evidence.motion.provides
     effects = [e for e in CATALOGUE if not e.baseline and e.footprint == "mean" and e.visible_in(provides)]
-    family = family_wise(fit, fit, colour_of(fit), effects, rng=rng)
+    family = family_wise(fit, fit, noise_of(fit), effects, rng=rng)
     found = screen(Base.of(fit), effects)
     calibrated = min((family.log_p(one.effect.name, one.log_p) for one in found), default=0.0)
     plain = min((one.log_p for one in found), default=0.0) + np.log(len(effects))

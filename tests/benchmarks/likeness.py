@@ -16,12 +16,13 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis import explain
-from diagnosis.discovery.fitting.noise_colour import Colour
+from diagnosis.discovery.proof.bootstrap import noise_of
 from diagnosis.discovery.proof.predictive_check import Likeness, likeness
 from diagnosis.discovery.result import Discovery
 from diagnosis.discovery.search.likelihood_ratio import drop
 from tests.hidden.scoring import verdict
 from tests.hidden.sets import Job, jobs
+from twin.noise.description import Noise
 from twin.sweep import Sweep
 
 GROUPS = (("clean_easy", 4), ("clean_hard", 7), ("single", 1), ("single_hard", 1), ("weak", 1), ("pairs", 1))
@@ -68,8 +69,8 @@ def main() -> None:
                 if any(free.key == key for free in found.fit.free):
                     p_of(likeness(drop(found.fit, key), rng=np.random.default_rng(0)), left_out)
             if coloured:
-                flat = Colour(np.ones(len(found.fit.evidence)), 0.0, 1.0)
-                p_of(likeness(found.fit, rng=np.random.default_rng(0), colour=flat), white)
+                flat = Noise(rms_rad=noise_of(found.fit).rms_rad)
+                p_of(likeness(found.fit, rng=np.random.default_rng(0), noise=flat), white)
     for name, values in (("explained rightly", right), ("a cause left out", left_out), ("white for coloured", white)):
         p = np.array(values)
         print(f"{name:20s} {p.size:4d} sweeps, p < 0.05: {np.sum(p < 0.05):4d}, p < 0.01: {np.sum(p < 0.01):4d}")

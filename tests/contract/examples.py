@@ -235,7 +235,22 @@ EXAMPLES: dict[str, Example] = {
     "mains_pickup": Example(
         strengths={"x_percent": 0.4, "y_percent": 0.3}, shapes={**_PHASE, "frequency_Hz": 50.2}, signature=_mains
     ),
-    "noise": Example(strengths={"rms_deg": 0.1}, shapes={"correlation": 0.5, "correlated_share": 0.5}, signature=None),
+    "noise": Example(
+        strengths={"rms_deg": 0.1},
+        shapes={
+            "correlation": 0.5,
+            "correlated_share": 0.5,
+            "flicker_exponent": 1.0,
+            "inverse_dof": 0.2,
+            "rotating_frame": 1.0,
+            "backward_percent": 50.0,
+            "percent_per_K": 1.0,
+            "percent_per_rpm": 0.1,
+            "angle_percent": 50.0,
+            "angle_phase_deg": 35.0,
+        },
+        signature=None,
+    ),
     # adc
     "xy_skew": Example(
         strengths={"delay_us": 60.0},

@@ -10,12 +10,14 @@ import functools
 import numpy as np
 import pytest
 
-from diagnosis.discovery.fitting.noise_colour import colour_of
-from diagnosis.discovery.proof.family_wise import SWEEPS, TAIL, Tail, family_wise
+from diagnosis.discovery.proof.bootstrap import noise_of
+from diagnosis.discovery.proof.family_wise import TAIL, Tail, family_wise
+from diagnosis.discovery.settings import DiscoverySettings
 from tests.benchmarks.family_wise import baseline_of, smallest
 from twin.catalogue import CATALOGUE
 
 CLEAN = 12
+SWEEPS = DiscoverySettings().most_simulated
 FIRST_SEED = 8800
 
 
@@ -36,12 +38,12 @@ def test_the_best_of_all_effects_has_an_even_probability_on_clean_sweeps(bench: 
 @pytest.mark.parametrize("rate", [0.5, 1.0])
 def test_a_tail_is_extrapolated_at_its_own_rate(rate: float) -> None:
     """The rate of 48 exponential scores is known to 1/sqrt(48): three of these are allowed, seed fixed."""
-    scores = np.random.default_rng(5).exponential(1.0 / rate, SWEEPS[1])
+    scores = np.random.default_rng(5).exponential(1.0 / rate, SWEEPS)
     tail = Tail.of(-scores)
     beyond = -20.0
     # P(score < beyond) = exp(rate * beyond), reached from the tail's edge by the fitted rate.
     edge = np.log(1.0 / TAIL) / rate
-    slack = 3.0 / np.sqrt(TAIL * SWEEPS[1])
+    slack = 3.0 / np.sqrt(TAIL * SWEEPS)
     assert float(tail.log_p(np.array(beyond))) == pytest.approx(
         rate * beyond, abs=slack * rate * (-beyond - edge) + 0.5
     )
@@ -49,19 +51,19 @@ def test_a_tail_is_extrapolated_at_its_own_rate(rate: float) -> None:
 
 
 def test_a_tail_never_falls_faster_than_that_of_a_single_test() -> None:
-    tail = Tail.of(-np.random.default_rng(6).exponential(0.2, SWEEPS[1]))
+    tail = Tail.of(-np.random.default_rng(6).exponential(0.2, SWEEPS))
     assert float(tail.log_p(np.array(-30.0)) - tail.log_p(np.array(-20.0))) == pytest.approx(-10.0)
 
 
 def test_an_effect_that_never_gains_is_judged_by_its_score() -> None:
-    tail = Tail.of(np.full(SWEEPS[1], np.inf))
+    tail = Tail.of(np.full(SWEEPS, np.inf))
     assert float(tail.log_p(np.array(-9.0))) == -9.0
 
 
 def test_same_seed_same_tails_and_a_strong_score_is_beyond_doubt() -> None:
     fit = baseline_of(FIRST_SEED, "hard")
     effects = [e for e in CATALOGUE if e.name in ("saturation", "magnet_harmonic", "index_slip")]
-    one, other = (family_wise(fit, fit, colour_of(fit), effects, rng=np.random.default_rng(2)) for _ in range(2))
+    one, other = (family_wise(fit, fit, noise_of(fit), effects, rng=np.random.default_rng(2)) for _ in range(2))
     for name, tail in one.tails.items():
         assert np.array_equal(tail.scores, other.tails[name].scores)
     # A tail's rate is at least a third here: exp(-60 / 3) and the share of three effects.

@@ -11,8 +11,9 @@ from scipy.fft import dct
 from scipy.optimize import least_squares
 
 from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Setting, evaluate, free_of, solve
-from diagnosis.discovery.fitting.noise_model import noise_family
+from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.observations import collect
+from diagnosis.discovery.settings import DiscoverySettings
 from scenarios.commands.protocol import Protocol
 from tests.twin.test_mirror import MISPLACED
 from twin.angles import Array, wrap
@@ -85,7 +86,7 @@ def started(case: Case) -> tuple[Fit, Array]:
     for key in case.causes:
         free += free_of(find(key), key, turns=1, channels=case.channels)
     setting = Setting(
-        noise_family(len(evidence)),
+        noise_family(len(evidence), DiscoverySettings().colour_log_odds),
         member=case.member,
         radius_member=case.member,
         radius_weight=1.0 if case.channels else 0.0,

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import functools
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +14,12 @@ import pytest
 
 from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import evaluate
-from diagnosis.discovery.fitting.noise_colour import Colour, colour_of
-from diagnosis.discovery.proof.predictive_check import SWEEPS, likeness
+from diagnosis.discovery.proof.bootstrap import noise_of
+from diagnosis.discovery.proof.predictive_check import likeness
 from diagnosis.discovery.result import Discovery
-from diagnosis.discovery.search.likelihood_ratio import drop, settle
+from diagnosis.discovery.search.likelihood_ratio import drop
 from tests.hidden.generator import draw
+from twin.noise.description import Noise
 
 FIRST_SEED = 9300
 RIGHT = (
@@ -60,28 +60,14 @@ def test_a_missing_cause_is_seen(cause: str, bench: str) -> None:
     assert cause in [named.name for named in whole.causes]
     without = likeness(drop(whole.fit, cause), rng=np.random.default_rng(1))
     assert without is not None
-    assert without.p == pytest.approx(1.0 / (SWEEPS + 1))
+    assert without.p == pytest.approx(1.0 / (whole.fit.settings.predictive_sweeps + 1))
 
 
 def test_a_wrong_colour_is_seen() -> None:
     fit = found("saturation", "hard").fit
-    white = likeness(fit, rng=np.random.default_rng(1), colour=Colour(np.ones(len(fit.evidence)), 0.0, 1.0))
+    white = likeness(fit, rng=np.random.default_rng(1), noise=Noise(rms_rad=noise_of(fit).rms_rad))
     assert white is not None
     assert white.p < 0.05
-
-
-def test_colour_lies_between_the_members_of_the_family() -> None:
-    """Autoregressive noise of 0.68, a member the family lacks, in the place of a fit's residual: within three sigma."""
-    fit = found("clean", "easy").fit
-    n, rng = len(fit.evidence), np.random.default_rng(5)
-    noise = np.zeros(n)
-    for row, step in enumerate(rng.standard_normal(n)):
-        noise[row] = 0.68 * noise[row - 1] + 3e-4 * np.sqrt(1.0 - 0.68**2) * step
-    evidence = replace(fit.evidence, measured=fit.linear.angle + noise)
-    coloured, _ = settle(evaluate(fit.chain, fit.free, evidence, fit.setting))
-    colour = colour_of(coloured)
-    assert colour.correlation == pytest.approx(0.68, abs=3.0 * np.sqrt((1.0 - 0.68**2) / n) + 0.03)
-    assert np.mean(colour.spectrum) == pytest.approx(1.0)
 
 
 def test_same_seed_same_p_and_too_few_readings_give_none() -> None:

@@ -17,7 +17,7 @@ from diagnosis.discovery.fitting.joint_fit import (
     solve,
     tidy,
 )
-from diagnosis.discovery.fitting.noise_model import noise_family
+from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.observations import Evidence
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
@@ -47,7 +47,7 @@ def senses_of_channels(sweep: Sweep) -> tuple[int, int] | None:
 def unfitted(evidence: Evidence, start: Chain, settings: DiscoverySettings) -> Fit:
     """A chain held against the observations as it is, nothing fitted."""
     weight = 1.0 if evidence.observables == 2 else 0.0
-    setting = Setting(noise_family(len(evidence)), radius_weight=weight, settings=settings)
+    setting = Setting(noise_family(len(evidence), settings.colour_log_odds), radius_weight=weight, settings=settings)
     return evaluate(start, (), evidence, setting)
 
 

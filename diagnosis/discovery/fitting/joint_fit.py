@@ -6,8 +6,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from diagnosis.discovery.fitting.coefficients import observables_to_cosine
 from diagnosis.discovery.fitting.linearised_chain import Linear
-from diagnosis.discovery.fitting.noise_model import NoiseFamily, observables_to_cosine, to_rows
+from diagnosis.discovery.fitting.noise_family import NoiseFamily
 from diagnosis.discovery.fitting.observations import Evidence
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
@@ -16,6 +17,7 @@ from twin.catalogue import find
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.mechanics.zero import ZERO
+from twin.noise.spectrum import to_rows
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ class Setting:
     @property
     def plausible(self) -> tuple[int, ...]:
         """The members that likelihoods are maximised over."""
-        return self.members or tuple(range(len(self.family.labels)))
+        return self.members or tuple(range(len(self.family.members)))
 
 
 @dataclass(frozen=True, eq=False)

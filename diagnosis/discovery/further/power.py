@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.discovery.fitting.coefficients import to_cosine
 from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve
 from diagnosis.discovery.fitting.linearised_chain import Linear
-from diagnosis.discovery.fitting.noise_model import noise_family, to_cosine
+from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.subsample import stretches
 from diagnosis.discovery.further.measurements import MENU, Measurement, Recording
 from diagnosis.discovery.settings import DiscoverySettings
@@ -163,7 +164,7 @@ def expected(fit: Fit, rival: Fit, recording: Recording) -> Fit:
     weight = fit.setting.radius_weight if fit.evidence.observables == 2 else 1.0
     setting = replace(
         fit.setting,
-        family=_family(n),
+        family=_family(n, fit.settings.colour_log_odds),
         radius_member=fit.setting.radius_member if fit.evidence.observables == 2 else fit.setting.member,
         radius_weight=weight if recording.channels else 0.0,
     )

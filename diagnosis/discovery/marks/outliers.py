@@ -23,6 +23,12 @@ def local_residual(residual: Array) -> Array:
     return np.asarray(residual - np.median(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1))
 
 
+def far_out(away: Array, settings: DiscoverySettings) -> float:
+    """How far from its neighbours a row stands alone, of local residuals (n,) that are mostly noise."""
+    far = settings.spike_sigma_few if away.size < settings.spike_few else settings.spike_sigma
+    return far * max(robust_rms(away), 1e-9)
+
+
 def spikes(residual: Array, motion: Motion, step: float, settings: DiscoverySettings) -> BoolArray:
     """Rows (n,) that stand alone, far out of their neighbours.
 
@@ -30,10 +36,7 @@ def spikes(residual: Array, motion: Motion, step: float, settings: DiscoverySett
     Five or more neighbours off together are structure, not spikes; so is what comes again at the same angle.
     """
     away = local_residual(residual)
-    sigma = robust_rms(away)
-    few = residual.size < settings.spike_few
-    far = settings.spike_sigma_few if few else settings.spike_sigma
-    mask = np.abs(away) > far * max(sigma, 1e-9) + step
+    mask = np.abs(away) > far_out(away, settings) + step
     edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         if last - first > settings.longest_spike:

@@ -10,8 +10,9 @@ import numpy as np
 from diagnosis.discovery.finding import Named
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
+from diagnosis.discovery.fitting.noise.rounding import coarsest_stair
 from diagnosis.discovery.marks.outliers import local_residual, robust_rms
-from diagnosis.discovery.marks.stairs import reblurred, stair_step, without_stairs
+from diagnosis.discovery.marks.stairs import reblurred, without_stairs
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import TAU, Array
 from twin.catalogue import output_grid
@@ -88,19 +89,19 @@ def with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | N
         sigma = robust_rms(local_residual(fit.residual[0]))
         if step / np.sqrt(12.0) > settings.stairs_in_noise * sigma:
             chain = chain.with_values({grid.name: {grid.roles("level")[0]: float(bits)}})
-    return _blurred(fit, chain, step), tuple(found)
+    return _blurred(fit, chain), tuple(found)
 
 
-def _blurred(fit: Fit, chain: Chain, step: float) -> Fit:
+def _blurred(fit: Fit, chain: Chain) -> Fit:
     """The fit with a chain that has stairs, their blur found from what is left."""
-    coarse = stair_step(chain, step)
+    coarse = coarsest_stair(chain)
     if coarse == 0.0:
         return fit
     # Before the stairs are modelled they add step/sqrt(12) to what the noise leaves.
     rest = float(np.mean(fit.residual[0][fit.evidence.usable] ** 2)) - coarse**2 / 12.0
     blur = float(np.sqrt(max(rest, (0.05 * coarse) ** 2)))
     fit = solve(evaluate(chain, fit.free, fit.evidence, replace(fit.setting, blur=blur)))
-    return solve(reblurred(fit, step))
+    return solve(reblurred(fit))
 
 
 def grid_as_cause(fit: Fit, grid: Effect, step: float) -> Named | None:

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
+from diagnosis.discovery.fitting.noise.rounding import coarsest_stair
 from diagnosis.discovery.fitting.observations import Evidence
 from diagnosis.discovery.marks.outliers import spikes
 from diagnosis.discovery.marks.spread import row_scale
-from diagnosis.discovery.marks.stairs import stair_step
 from twin.angles import Array, wrap
 from twin.effect import BoolArray
 from twin.sweep import Sweep
@@ -26,7 +26,7 @@ def mask_spikes(fit: Fit, step: float, also: BoolArray) -> Fit:
     """
     settings, motion = fit.settings, fit.evidence.motion
     for _ in range(_PASSES):
-        mask = spikes(fit.residual[0], motion, max(step, stair_step(fit.chain, step)), settings)
+        mask = spikes(fit.residual[0], motion, max(step, coarsest_stair(fit.chain)), settings)
         usable = ~mask & fit.evidence.sure & ~rows_of(fit.evidence, also)
         if fit.evidence.observables == 2:
             # Channels that fall out say nothing true about the radius: alone for a reading, or by more than any cause

@@ -6,9 +6,9 @@ import numpy as np
 
 from diagnosis.discovery.finding import Named
 from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.noise.rounding import coarsest_stair
 from diagnosis.discovery.marks.outliers import local_residual, robust_rms
 from diagnosis.discovery.marks.row_masks import raw_residual
-from diagnosis.discovery.marks.stairs import stair_step
 from twin.effect import BoolArray, Effect
 from twin.sweep import Sweep
 
@@ -23,7 +23,7 @@ def touched_rows(
     assert effect.marks is not None
     residual = np.where(spoken_for, 0.0, raw_residual(fit, sweep))
     # What a CORDIC's uneven stairs leave stands out of the noise too.
-    stairs = stair_step(fit.chain, step) / np.sqrt(12.0)
+    stairs = coarsest_stair(fit.chain) / np.sqrt(12.0)
     sigma = max(robust_rms(local_residual(residual)), stairs)
     mask, log_p = effect.marks(np.radians(sweep.measured_deg), residual, sigma, step, sweep.motion())
     if log_p > fit.settings.footprint_log_p or not mask.any():

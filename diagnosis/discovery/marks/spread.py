@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
-from diagnosis.discovery.fitting.noise_model import to_rows
+from diagnosis.discovery.fitting.noise.rounding import stairs_rule
 from diagnosis.discovery.fitting.observations import Evidence
 from twin.angles import Array
 from twin.effect import BoolArray, Effect
+from twin.noise.spectrum import to_rows
 
 _T95 = 1.959964
 
@@ -73,17 +74,6 @@ def _spread_shape(fit: Fit, effect: Effect, square: Array, expected: Array) -> S
     full = effect.spread(angle, {name: value}) + sigma2 * base
     log_p = _half_chi_square(gain / _inflation(square / full[use]))
     return SpreadFinding(effect.name, {name: value}, gain, log_p, full, {name: (low, high)})
-
-
-def stairs_rule(fit: Fit) -> bool:
-    """Whether stairs make most of the spread: how much a reading scatters then depends on its place between two steps.
-
-    The variance is no evidence of anything else there.
-    """
-    stairs = fit.linear.stair_variance
-    if stairs is not None and float(np.mean(stairs)) > 2.0 * fit.setting.blur**2:
-        return True
-    return any(effect.line and effect.line.clock == "channels" for _, effect, _ in fit.chain.active("channels"))
 
 
 def _expected_variance(fit: Fit, square: Array) -> Array:

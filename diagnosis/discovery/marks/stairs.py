@@ -1,4 +1,4 @@
-"""Stairs of quantisers in a fit: how wide they are, how far noise blurs them, and the fit without them."""
+"""Stairs of quantisers in a fit: how far noise blurs them, and the fit without them."""
 
 from __future__ import annotations
 
@@ -8,36 +8,13 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.linearised_chain import Linear, is_staircase
+from diagnosis.discovery.fitting.noise.rounding import blur_behind, coarsest_stair
 from twin.angles import Array, wrap
-from twin.chain import Chain
 
 
-def blur_behind(rms: float, step: float) -> float:
-    """RMS of the noise ahead of a quantiser, from the RMS of readings about their blurred expectation [rad]."""
-    if step <= 0.0 or rms <= 0.0:
-        return rms
-    ratio = np.geomspace(0.02, 3.0, 60)
-    phases = (np.arange(64) + 0.5) / 64
-    nodes = np.sort(np.random.default_rng(0).standard_normal(400))
-    words = np.round(phases[None, :, None] + ratio[:, None, None] * nodes)
-    spread = np.sqrt(np.mean(np.var(words, axis=-1), axis=-1))
-    if rms / step > spread[-1]:
-        return float(np.sqrt(max(rms**2 - step**2 / 12.0, 0.0)))
-    return float(np.interp(rms / step, spread, ratio) * step)
-
-
-def stair_step(chain: Chain, step: float) -> float:
-    """Step [rad] of the coarsest stairs in the chain: the output grid's (``step``), or the mean one of a finite set."""
-    steps = [0.0]
-    for _, effect, values in chain.active("angle"):
-        if effect.footprint == "values":
-            steps.append(step if effect.output_grid else effect.stair_rad(values))
-    return max(steps)
-
-
-def reblurred(fit: Fit, step: float) -> Fit:
+def reblurred(fit: Fit) -> Fit:
     """The fit with the blur of its stairs set from what is left."""
-    coarse = stair_step(fit.chain, step)
+    coarse = coarsest_stair(fit.chain)
     if coarse <= 0.0:
         return fit
     rms = float(np.sqrt(np.mean(fit.residual[0][fit.evidence.usable] ** 2)))

@@ -2,44 +2,49 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
-from diagnosis.discovery.fitting.noise_colour import Colour
-from diagnosis.discovery.fitting.noise_model import to_rows
+from diagnosis.discovery.fitting.noise.estimate import estimated
+from diagnosis.discovery.fitting.noise.rounding import ahead_of_stairs, coarsest_stair
+from diagnosis.discovery.marks.outliers import far_out, local_residual
 from twin.angles import Array, wrap
 from twin.catalogue import find
-
-_QUIETEST = 0.02
-"""Least noise ahead of the stairs at any frequency, as a share of its mean."""
-
-
-@dataclass(frozen=True, eq=False)
-class NoiseAhead:
-    """Noise ahead of the stairs: its spectrum (n,) of mean 1 over the cosine coefficients, and its RMS [rad]."""
-
-    spectrum: Array
-    rms: float
+from twin.hall.noise import NOISE, parameters
+from twin.noise.description import Noise
+from twin.noise.sequences import draw, turned
 
 
-def ahead_of_stairs(fit: Fit, colour: Colour) -> NoiseAhead:
-    """The noise of a fit's readings before they were rounded: rounding adds white noise of its own."""
-    rms = float(np.sqrt(np.mean((fit.residual[0] / fit.evidence.scale)[fit.evidence.usable] ** 2)))
-    blur = fit.setting.blur
-    if not 0.0 < blur < rms:
-        return NoiseAhead(colour.spectrum, rms)
-    ahead = colour.spectrum * rms**2 - (rms**2 - blur**2)
-    ahead = np.maximum(ahead, _QUIETEST * blur**2)
-    return NoiseAhead(ahead / np.mean(ahead), blur)
+def noise_of(fit: Fit) -> Noise:
+    """The noise of a fit's readings, as it stands behind all stairs."""
+    return estimated(fit, limit_rad=far_out(local_residual(fit.residual[0]), fit.settings) + coarsest_stair(fit.chain))
 
 
-def simulated(fit: Fit, noise: NoiseAhead, *, count: int, rng: np.random.Generator) -> Array:
-    """Residuals (count, n) [rad] of sweeps simulated at a fit's parameters, before they are fitted themselves."""
-    draws = rng.standard_normal((count, len(fit.evidence)))
-    turned = noise.rms * to_rows(np.sqrt(noise.spectrum) * draws) * fit.evidence.scale
-    return _behind_stairs(fit, turned)
+def row_scale(fit: Fit, noise: Noise) -> Array | float:
+    """RMS of each row (n,) against that of a row at null conditions, beside the rows' own scale in the fit."""
+    return 1.0 if noise.scale.even else noise.scale.of(fit.linear.motion, fit.linear.sensor_angle)
+
+
+def twin_parameters(fit: Fit, noise: Noise) -> dict[str, float]:
+    """The parameters with which the twin's own noise simulates that of a fit, beside the fit's stairs and spreads."""
+    ahead = ahead_of_stairs(fit, noise)
+    # What causes in the spread add is white, and nothing in the quietest rows.
+    variance = fit.evidence.scale[fit.evidence.usable] ** 2
+    quietest = float(np.min(variance))
+    coloured = min((1.0 - ahead.white_share) / (quietest * float(np.mean(1.0 / variance))), 1.0)
+    return parameters(replace(ahead, rms_rad=ahead.rms_rad * np.sqrt(quietest), white_share=1.0 - coloured))
+
+
+def simulated(fit: Fit, noise: Noise, *, count: int, rng: np.random.Generator) -> Array:
+    """Residuals (count, n) [rad] of sweeps simulated at a fit's parameters, before they are fitted themselves.
+
+    ``noise`` is that ahead of the stairs.
+    """
+    n = len(fit.evidence)
+    unit = draw(rng, (count, n), noise.spectrum(n), dof=noise.dof)
+    return _behind_stairs(fit, noise.rms_rad * unit * (fit.evidence.scale * row_scale(fit, noise)))
 
 
 def _behind_stairs(fit: Fit, noise: Array) -> Array:
@@ -51,10 +56,8 @@ def _behind_stairs(fit: Fit, noise: Array) -> Array:
     signal = (linear.sensor_angle + noise)[:, None]
     if stepped:
         # The channels' stairs want the noise ahead of them.
-        place = [effect.name for effect in chain.effects].index("noise")
-        x, y = linear.at(find("noise", chain.effects)).signal
-        cos, sin = np.cos(noise), np.sin(noise)
-        signal = np.stack([x * cos - y * sin, x * sin + y * cos], axis=1)
+        place = [effect.name for effect in chain.effects].index(NOISE.name)
+        signal = turned(linear.at(find(NOISE.name, chain.effects)).signal, noise)
         for _, effect, values in chain.active("channels"):
             if chain.effects.index(effect) > place:
                 signal = effect.forward(signal, linear.motion, values, None)

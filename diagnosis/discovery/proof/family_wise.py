@@ -1,12 +1,13 @@
 """Family-wise false alarms: how strong each effect looks on sweeps simulated from the fitted baseline.
 
-The F test's probability of a cause holds for noise of exactly the family's spectra, for independent looks, and without
-stairs. None of this is quite so, for some effects less than for others: slow noise passes for a drift long before it
-passes for an order. So sweeps are simulated from the baseline with the noise that is left (its colour, its dependence
-on the rows, the stairs behind it), and every effect is screened on each as on the measured one. An effect's own
-simulated scores calibrate its probability; the smallest of these on each simulated sweep calibrate the probability that
-any effect reaches it (the single-step minP procedure of Westfall and Young, Resampling-Based Multiple Testing, 1993).
-Beyond the simulated scores a tail is taken to fall off exponentially, and never faster than a single F test's.
+The F test's probability of a cause holds for Gaussian noise of exactly the family's spectra, for independent looks, and
+without stairs. None of this is quite so, for some effects less than for others: slow noise passes for a drift long
+before it passes for an order, and a wild reading for a narrow shape. So sweeps are simulated from the baseline with the
+noise that is left (its colour, its tails, its dependence on the rows, the stairs behind it), and every effect is
+screened on each as on the measured one. An effect's own simulated scores calibrate its probability; the smallest of
+these on each simulated sweep calibrate the probability that any effect reaches it (the single-step minP procedure of
+Westfall and Young, Resampling-Based Multiple Testing, 1993). Beyond the simulated scores a tail is taken to fall off
+exponentially, and never faster than a single F test's.
 """
 
 from __future__ import annotations
@@ -16,19 +17,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnosis.discovery.fitting.coefficients import to_cosine
 from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
-from diagnosis.discovery.fitting.noise_colour import Colour
-from diagnosis.discovery.fitting.noise_model import to_cosine
-from diagnosis.discovery.proof.bootstrap import ahead_of_stairs, simulated
+from diagnosis.discovery.fitting.noise.rounding import ahead_of_stairs
+from diagnosis.discovery.proof.bootstrap import simulated
 from diagnosis.discovery.search.periodogram import line_shapes
 from diagnosis.discovery.search.screening import Base, by_chance, gains_of, matched_to
 from twin.angles import Array
 from twin.effect import Effect
+from twin.noise.description import Noise
 
-SWEEPS = (32, 96)
-"""Fewest and most simulated sweeps."""
 _NUMBERS = 400_000
-"""Numbers in the simulated residuals, between these bounds: the family's sixteen whitened copies take 50 MB."""
+"""Numbers in the simulated residuals, between fewest and most sweeps: the family's sixteen whitened copies take 50 MB.
+"""
 TAIL = 0.5
 """Share of the simulated scores that the tail is fitted to."""
 FEWEST = 8
@@ -76,14 +77,15 @@ class FamilyWise:
 
 
 def family_wise(
-    baseline: Fit, extended: Fit, colour: Colour, effects: Sequence[Effect], *, rng: np.random.Generator
+    baseline: Fit, extended: Fit, noise: Noise, effects: Sequence[Effect], *, rng: np.random.Generator
 ) -> FamilyWise:
-    """Simulate the baseline with the noise of the extended fit, and screen ``effects`` on every sweep."""
+    """Simulate the baseline with the ``noise`` of the extended fit, and screen ``effects`` on every sweep."""
     base = Base.of(baseline)
-    noise = ahead_of_stairs(extended, colour)
-    count = int(np.clip(_NUMBERS // len(baseline.evidence), *SWEEPS))
+    ahead = ahead_of_stairs(extended, noise)
+    settings = baseline.settings
+    count = int(np.clip(_NUMBERS // len(baseline.evidence), settings.fewest_simulated, settings.most_simulated))
     residuals = np.empty((count, baseline.evidence.observables, len(baseline.evidence)))
-    residuals[:, 0] = to_cosine(baseline.evidence, simulated(baseline, noise, count=count, rng=rng))
+    residuals[:, 0] = to_cosine(baseline.evidence, simulated(baseline, ahead, count=count, rng=rng))
     if baseline.evidence.observables == 2:
         residuals[:, 1] = _radius(extended, count, rng)
     base = base.with_residuals(residuals)

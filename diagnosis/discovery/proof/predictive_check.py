@@ -1,7 +1,7 @@
 """Likeness: whether sweeps simulated from the extended twin can be told from the measured one.
 
-Residuals are simulated with the twin's noise (its colour, its dependence on the rows, the stairs behind it) on the
-measured motion, and are fitted as the measured one was: to first order, by the same projection off the fit's
+Residuals are simulated with the twin's noise (its colour, its tails, its dependence on the rows, the stairs behind it)
+on the measured motion, and are fitted as the measured one was: to first order, by the same projection off the fit's
 Jacobian. A set of statistics of their distribution and their correlation then stands beside the measured ones. The
 p-value is the rank of the worst of them, the same for every sweep: an exact test if all are exchangeable (Barnard's
 Monte Carlo test: J. R. Stat. Soc. B 25 (1963) 294).
@@ -14,14 +14,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnosis.discovery.fitting.coefficients import to_cosine
 from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
-from diagnosis.discovery.fitting.noise_colour import Colour, colour_of
-from diagnosis.discovery.fitting.noise_model import to_cosine, to_rows
-from diagnosis.discovery.proof.bootstrap import ahead_of_stairs, simulated
+from diagnosis.discovery.fitting.noise.rounding import ahead_of_stairs
+from diagnosis.discovery.proof.bootstrap import noise_of, row_scale, simulated
 from twin.angles import TAU, Array, IntArray
+from twin.noise.description import Noise
+from twin.noise.spectrum import to_rows
 
-SWEEPS = 199
-"""Simulated sweeps: the smallest p is 0.005."""
 FEWEST_ROWS = 30
 _BINS = 360
 _COARSE = 12
@@ -30,7 +30,6 @@ _LAGS = (2, 3, 4, 5, 8, 13, 21, 34)
 _BLOCKS = 24
 _CHUNK = 1_500_000
 """Numbers in one array while sweeps are simulated: 12 MB."""
-_SMALLEST_RMS_RAD = 1e-6
 _LEAST_SPREAD = 1e-3
 """Smallest spread that a statistic is credited with: any that is not projected away scatters more."""
 
@@ -47,28 +46,34 @@ class Likeness:
     worst_sigma: float
 
 
-def likeness(fit: Fit, *, rng: np.random.Generator, colour: Colour | None = None) -> Likeness | None:
-    """Hold the measured residual of a fit against simulated ones; ``colour``: the noise's, fitted if not given.
+def likeness(fit: Fit, *, rng: np.random.Generator, noise: Noise | None = None) -> Likeness | None:
+    """Hold the measured residual of a fit against simulated ones; ``noise``: its noise, estimated if not given.
 
     None where there are too few readings, or nothing but digits is left.
     """
     use = fit.evidence.usable
     left = float(np.mean(fit.residual[0][use] ** 2))
+    smallest = float(np.radians(fit.settings.smallest_rms_deg))
     # Less than the noise ahead of the stairs: no reading lies near an edge, and only the file's digits are left.
-    if fit.rows < FEWEST_ROWS + len(fit.free) or left < max(_SMALLEST_RMS_RAD, 0.9 * fit.setting.blur) ** 2:
+    if fit.rows < FEWEST_ROWS + len(fit.free) or left < max(smallest, 0.9 * fit.setting.blur) ** 2:
         return None
-    colour = colour or colour_of(fit)
+    noise = noise or noise_of(fit)
     plan = _Plan.of(fit)
-    whiten = 1.0 / np.sqrt(colour.spectrum)
+    weight = 1.0 / np.sqrt(noise.spectrum(len(use)))
+    scale = row_scale(fit, noise)
+
+    def whitened(coefficients: Array) -> Array:
+        return to_rows(coefficients * weight) / scale
+
     refit = _Refit.of(fit)
-    names, measured = plan.statistics(to_rows(refit.settled(fit.cosine_residual[0])[None] * whiten))
+    names, measured = plan.statistics(whitened(refit.settled(fit.cosine_residual[0])[None]))
     table = [measured]
-    noise = ahead_of_stairs(fit, colour)
-    to_come = SWEEPS
+    ahead = ahead_of_stairs(fit, noise)
+    to_come = fit.settings.predictive_sweeps
     while to_come > 0:
         count = min(to_come, max(_CHUNK // len(use), 1))
-        residual = to_cosine(fit.evidence, simulated(fit, noise, count=count, rng=rng))
-        table.append(plan.statistics(to_rows(refit(residual, rng) * whiten))[1])
+        residual = to_cosine(fit.evidence, simulated(fit, ahead, count=count, rng=rng))
+        table.append(plan.statistics(whitened(refit(residual, rng)))[1])
         to_come -= count
     scores = _standardised(np.concatenate(table))
     together = scores.max(axis=1)

@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnosis.discovery.finding import Named
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
-from diagnosis.discovery.fitting.noise_colour import colour_of
+from diagnosis.discovery.proof.bootstrap import noise_of
 from diagnosis.discovery.proof.cross_validation import folds, held_out_residuals, rms_deg, scattered
 from diagnosis.discovery.proof.family_wise import FamilyWise, family_wise
 from diagnosis.discovery.search.likelihood_ratio import drop, settle, take_out
@@ -133,7 +133,7 @@ def _calibrated(
     baseline = fit
     for cause in causes:
         baseline = take_out(baseline, cause.key)
-    return family_wise(solve(baseline), fit, colour_of(fit), effects, rng=rng)
+    return family_wise(solve(baseline), fit, noise_of(fit), effects, rng=rng)
 
 
 def _views(fit: Fit, effects: Sequence[Effect]) -> list[Fit]:

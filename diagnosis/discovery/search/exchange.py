@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
-from diagnosis.discovery.fitting.noise_choice import either, plausible_members
+from diagnosis.discovery.fitting.noise.plausible import either, plausible_members
 from diagnosis.discovery.search.forward_step import best_addition, candidates, retuned
 from diagnosis.discovery.search.likelihood_ratio import (
     Trial,

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
-from diagnosis.discovery.fitting.noise_choice import either
-from diagnosis.discovery.fitting.noise_model import NoiseFamily
+from diagnosis.discovery.fitting.noise.plausible import either
 from diagnosis.discovery.search.likelihood_ratio import (
     Trial,
     degrees,
@@ -103,7 +102,7 @@ def best_together(
     if base.member == 0:
         return None
     family = fit.setting.family
-    only_white = NoiseFamily(family.spectra[:1], family.labels[:1], family.correlation[:1])
+    only_white = family.white_alone()
     setting = replace(fit.setting, family=only_white, member=0, members=(), radius_member=0)
     trial, white = settle(solve(evaluate(fit.chain, fit.free, fit.evidence, setting)))
     added: dict[str, Sequence[Effect]] = {}

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
-from diagnosis.discovery.fitting.noise_choice import radius_noise
+from diagnosis.discovery.fitting.noise.plausible import radius_noise
 from diagnosis.discovery.marks.row_masks import mask_spikes
 from diagnosis.discovery.marks.stairs import reblurred
 from diagnosis.discovery.search.likelihood_ratio import settle
@@ -25,7 +25,7 @@ def searched(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, step: 
     for _ in range(fit.settings.most_rounds):
         before = found.keys
         found = search(fit, effects, before)
-        refined = reblurred(mask_spikes(found.fit, step, also), step)
+        refined = reblurred(mask_spikes(found.fit, step, also))
         if found.keys == before and np.array_equal(refined.evidence.usable, found.fit.evidence.usable):
             return found
         fit = solve(refined)

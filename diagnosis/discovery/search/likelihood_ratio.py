@@ -11,7 +11,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, tidy
-from diagnosis.discovery.fitting.noise_choice import plausible_members, radius_noise
+from diagnosis.discovery.fitting.noise.plausible import plausible_members, radius_noise
 from diagnosis.discovery.search.screening import Base, Candidate
 from twin.catalogue import unnamed
 from twin.chain import Chain

@@ -13,14 +13,15 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.discovery.fitting.coefficients import observables_to_cosine
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, radius_nuisance, root_weights
 from diagnosis.discovery.fitting.linearised_chain import Term
-from diagnosis.discovery.fitting.noise_model import observables_to_cosine, to_rows
 from diagnosis.discovery.fitting.observations import Evidence
 from diagnosis.discovery.search.periodogram import line_shapes
 from twin.angles import Array
 from twin.effect import Effect
+from twin.noise.spectrum import to_rows
 
 _CHUNK = 4_000_000
 _ZOOMS = 3
@@ -67,7 +68,7 @@ class Base:
         roots: list[Array] = []
         rows: list[Array] = []
         log_det: list[float] = []
-        for member in range(len(fit.setting.family.labels)):
+        for member in range(len(fit.setting.family.members)):
             if member not in fit.setting.plausible:
                 roots.append(np.zeros_like(fit.cosine_residual))
                 rows.append(np.zeros((0, 0)))

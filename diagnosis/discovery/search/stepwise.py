@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
-from diagnosis.discovery.marks.spread import stairs_rule
+from diagnosis.discovery.fitting.noise.rounding import stairs_rule
 from diagnosis.discovery.search.exchange import Search, improve, in_its_place
 from diagnosis.discovery.search.forward_step import best_addition, best_together
 from diagnosis.discovery.search.likelihood_ratio import settle

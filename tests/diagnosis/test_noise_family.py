@@ -8,7 +8,10 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from diagnosis.discovery.fitting.noise_model import noise_family, to_cosine, to_rows
+from diagnosis.discovery.fitting.coefficients import to_cosine
+from diagnosis.discovery.fitting.noise_family import noise_family
+from diagnosis.discovery.settings import DiscoverySettings
+from twin.noise.spectrum import to_rows
 
 ROWS = 600
 DRAWS = 20
@@ -21,7 +24,7 @@ def test_the_noise_that_made_a_sequence_is_chosen_whatever_is_masked(label: str,
 
     Over 200 draws it was 0.7 or more of them for each; fewer than 10 of 20 then has a chance of 2 %, seeds fixed.
     """
-    family = noise_family(ROWS)
+    family = noise_family(ROWS, DiscoverySettings().colour_log_odds)
     member = family.labels.index(label)
     rng = np.random.default_rng([member, int(10 * masked)])
     chosen = 0

@@ -10,31 +10,27 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.discovery.fitting.noise_model import radius_to_cosine, to_cosine
+from diagnosis.discovery.fitting.coefficients import radius_to_cosine, to_cosine
 from twin.angles import Array
 from twin.motion import Motion
 
 if TYPE_CHECKING:
     from diagnosis.discovery.fitting.joint_fit import Fit
-    from diagnosis.discovery.fitting.noise_model import NoiseFamily
-
-FEWEST_TURNS = 3.5
-REACH = 4.0
-"""Members whose log likelihood lies within this of the best are plausible."""
+    from diagnosis.discovery.fitting.noise_family import NoiseFamily
 
 
 def plausible_members(fit: Fit) -> tuple[int, ...]:
     """The family members that the noise may be, given the fit's residual; all where there are too few turns to tell."""
-    everyone = tuple(range(len(fit.setting.family.labels)))
+    everyone = tuple(range(len(fit.setting.family.members)))
     motion = fit.evidence.motion
-    if motion.turns < FEWEST_TURNS:
+    if motion.turns < fit.settings.noise_turns:
         return everyone
     aside = locked_shapes(motion)
     if fit.rows < 4 * (len(aside) + len(fit.free)):
         return everyone
     columns = np.concatenate([fit.cosine_jacobian[:, 0], to_cosine(fit.evidence, aside)])
     score, _ = _scores(fit.cosine_residual[0], columns, fit.setting.family, fit.rows)
-    return tuple(int(k) for k in np.flatnonzero(score > score.max() - REACH))
+    return tuple(int(k) for k in np.flatnonzero(score > score.max() - fit.settings.noise_reach))
 
 
 def either(*members: tuple[int, ...]) -> tuple[int, ...]:
@@ -63,7 +59,7 @@ def _scores(residual: Array, columns: Array, family: NoiseFamily, rows: int) -> 
     """Restricted log likelihood and variance of each family member, the columns (q, n) projected out."""
     columns = columns / np.maximum(np.linalg.norm(columns, axis=1, keepdims=True), 1e-300)
     dof = rows - len(columns)
-    score, variance = np.empty(len(family.labels)), np.empty(len(family.labels))
+    score, variance = np.empty(len(family.members)), np.empty(len(family.members))
     cost = family.cost(rows)
     for member, weight in enumerate(family.weights):
         white = columns * weight

@@ -1,0 +1,52 @@
+"""Spectra over the cosine basis of a record: white, first-order autoregressive and 1/f noise.
+
+In the cosine basis (DCT-II) stationary noise is very nearly independent from coefficient to coefficient, with the
+variance given by its spectrum: the basis is the limit of the Karhunen-Loeve basis of first-order autoregressive noise
+(N. Ahmed, T. Natarajan, K. R. Rao, IEEE Trans. Comput. C-23 (1974) 90).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from twin.angles import Array
+
+
+def spectrum(n: int, *, correlation: float = 0.0, flicker_exponent: float = 0.0, white_share: float = 0.0) -> Array:
+    """Variance of each cosine coefficient of a noise of unit variance.
+
+    Parameters
+    ----------
+    n : int
+        Readings in the sequence.
+    correlation : float
+        Of first-order autoregressive noise, from one reading to the next; 0: none.
+    flicker_exponent : float
+        Exponent a of 1/f^a noise; 0: none. With a correlation beside it the two spectra are multiplied.
+    white_share : float
+        Share of the variance that is white noise beside the coloured one.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Spectrum of mean 1, from the lowest frequency to half the rate of the readings.
+    """
+    omega = np.pi * (np.arange(n) + 0.5) / n
+    coloured = (1.0 - correlation**2) / (1.0 + correlation**2 - 2.0 * correlation * np.cos(omega))
+    if flicker_exponent:
+        coloured = coloured * (omega / np.pi) ** -flicker_exponent
+    return np.asarray((1.0 - white_share) * coloured / np.mean(coloured) + white_share)
+
+
+def to_cosine(values: Array) -> Array:
+    """Values (..., n) of a sequence as coefficients (..., n) of its orthonormal cosine basis."""
+    from scipy.fft import dct
+
+    return np.asarray(dct(values, type=2, norm="ortho", axis=-1))
+
+
+def to_rows(coefficients: Array) -> Array:
+    """Back from cosine coefficients (..., n) to the sequence (..., n)."""
+    from scipy.fft import idct
+
+    return np.asarray(idct(coefficients, type=2, norm="ortho", axis=-1))

@@ -1,0 +1,98 @@
+"""Answer: one entry a cause, strongest first, with the RMS of single readings before and after it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.discovery.finding import Named
+from diagnosis.discovery.fitting.joint_fit import evaluate
+from diagnosis.discovery.stages.answer import answer
+from diagnosis.discovery.state import State
+from tests.diagnosis.discovery.stages.test_repeated_frames import rows_hit
+from tests.diagnosis.discovery.sweeps import Made, before
+
+SATURATION, GRID, STALE, BURST = "saturation", "output_quantisation", "stale_frames", "unnamed_burst"
+MADE = Made(causes=((SATURATION, 0.08), (STALE, 0.05)), points=90, turns=2)
+ROUNDED = Made(causes=((SATURATION, 0.08), (GRID, 0.08)), points=120, turns=2)
+NOISE_DEG = 0.02
+
+
+def figures(state: State) -> dict[str, tuple[float, float]]:
+    """Before and after of each cause of the answer."""
+    return {cause.name: (cause.before_deg, cause.after_deg) for cause in answer(state).causes}
+
+
+def test_a_cause_of_the_mean_has_its_held_out_figures() -> None:
+    state = before(answer, MADE)
+    (finding,) = [one for one in state.findings if one.keys == (SATURATION,)]
+    assert figures(state)[SATURATION] == (finding.before_deg, finding.after_deg)
+
+
+def test_rows_that_are_touched_count_before_and_not_after() -> None:
+    """Each repeat is off by a step of 4 deg, among readings with the noise alone."""
+    before_deg, after_deg = figures(before(answer, MADE))[STALE]
+    share = len(rows_hit(MADE, STALE)) / (MADE.points * MADE.turns)
+    assert before_deg == pytest.approx(np.hypot(4.0 * np.sqrt(share), NOISE_DEG), rel=0.02)
+    # 174 readings tell their RMS to 1/sqrt(2n): five of these; ten parameters from three quarters of them, 4 %.
+    assert after_deg == pytest.approx(NOISE_DEG, rel=5.0 / np.sqrt(2.0 * 174) + 0.04)
+
+
+def test_of_stairs_what_knowing_them_gains() -> None:
+    """Rounding by 0.176 deg behind noise of 0.02 deg leaves step/sqrt(12) unless the stairs are known."""
+    state = before(answer, ROUNDED)
+    before_deg, after_deg = figures(state)[GRID]
+    step_deg = np.degrees(state.step)
+    assert before_deg == pytest.approx(step_deg / np.sqrt(12.0), rel=0.2)
+    assert after_deg == pytest.approx(np.degrees(np.sqrt(np.mean(state.fit.residual[0] ** 2))))
+    assert after_deg < 0.9 * before_deg
+
+
+def test_what_makes_readings_scatter_gains_nothing_in_their_mean() -> None:
+    state = before(answer, MADE)
+    state = state.with_(findings=(*state.findings, Named((BURST,), -20.0, 40.0)))
+    before_deg, after_deg = figures(state)["unnamed"]
+    assert before_deg == after_deg == figures(state)[STALE][1]
+
+
+def test_figures_are_those_of_single_readings() -> None:
+    """Of rows that average several, what averaging has taken away is put back."""
+    state = before(answer, MADE)
+    fit, within_deg = state.fit, 0.3
+    evidence = replace(fit.evidence, within=float(np.radians(within_deg)) ** 2)
+    averaged = state.with_(evaluate(fit.chain, fit.free, evidence, fit.setting))
+    plain = figures(state)
+    for name, (before_deg, after_deg) in figures(averaged).items():
+        assert before_deg == pytest.approx(np.hypot(plain[name][0], within_deg))
+        assert after_deg == pytest.approx(np.hypot(plain[name][1], within_deg))
+
+
+def test_instances_of_one_effect_are_one_entry_and_so_is_all_without_a_name() -> None:
+    """As improbable as the more improbable, as strong as both together; rivals are those of both."""
+    state = before(answer, MADE)
+    fit = state.fit
+
+    def finding(key: str, gain: float, **more: object) -> Named:
+        return replace(Named((key,), -0.5 * gain, gain, before_deg=0.3, after_deg=0.2, family_log_p=-gain), **more)
+
+    state = state.with_(
+        findings=(
+            finding("drive_ripple", 30.0, rivals={"cardan_coupling": fit, "magnet_harmonic": fit}),
+            finding("unnamed_order", 50.0),
+            finding("drive_ripple#2", 40.0, rivals={"magnet_harmonic": fit}, after_deg=0.1, before_deg=0.2),
+            finding("unnamed_bump#2", 5.0, family_log_p=None),
+        )
+    )
+    ripple, nameless = answer(state).causes
+    assert (ripple.keys, nameless.keys) == (("drive_ripple", "drive_ripple#2"), ("unnamed_order", "unnamed_bump#2"))
+    assert (ripple.gain, nameless.gain) == (70.0, 55.0)
+    assert (ripple.log_p, nameless.log_p) == (-20.0, -25.0)
+    assert (ripple.family_log_p, nameless.family_log_p) == (-40.0, -50.0)
+    assert set(ripple.rivals) == {"magnet_harmonic"}
+    assert (ripple.before_deg, ripple.after_deg) == (0.3, 0.1)
+
+
+def test_without_findings_there_is_no_entry() -> None:
+    assert answer(before(answer, Made(points=72))).causes == ()

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
+from twin.angles import Array
 from twin.chain import Chain
 from twin.noise.description import Noise
 
@@ -32,14 +34,20 @@ def blur_behind(rms: float, step: float) -> float:
     """RMS of the noise ahead of a quantiser, from the RMS of readings about their blurred expectation [rad]."""
     if step <= 0.0 or rms <= 0.0:
         return rms
+    ratio, spread = _spread_of_words()
+    if rms / step > spread[-1]:
+        return float(np.sqrt(max(rms**2 - step**2 / 12.0, 0.0)))
+    return float(np.interp(rms / step, spread, ratio) * step)
+
+
+@lru_cache(maxsize=1)
+def _spread_of_words() -> tuple[Array, Array]:
+    """RMS (60,) of noise ahead of a quantiser, and that of its words about their mean (60,), both in steps."""
     ratio = np.geomspace(0.02, 3.0, 60)
     phases = (np.arange(64) + 0.5) / 64
     nodes = np.sort(np.random.default_rng(0).standard_normal(400))
     words = np.round(phases[None, :, None] + ratio[:, None, None] * nodes)
-    spread = np.sqrt(np.mean(np.var(words, axis=-1), axis=-1))
-    if rms / step > spread[-1]:
-        return float(np.sqrt(max(rms**2 - step**2 / 12.0, 0.0)))
-    return float(np.interp(rms / step, spread, ratio) * step)
+    return ratio, np.asarray(np.sqrt(np.mean(np.var(words, axis=-1), axis=-1)))
 
 
 def stairs_rule(fit: Fit) -> bool:

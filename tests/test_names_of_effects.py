@@ -22,9 +22,6 @@ KEY = re.compile(rf"(?P<name>{NAMES})(#\w*|[.:](?P<param>\w+)(=.*)?)?")
 LOOK_UPS = {"get", "pop", "setdefault", "with_effect", "without", "find", "of", "Free"}
 ALLOWED: dict[str, str] = {
     "scenarios/bench/command.py": "what the closed loop hides unless told otherwise, as one would write it",
-    "diagnosis/discovery/marks/spread.py": "a noisy stretch, found by code of its own",
-    "diagnosis/discovery/proof/bootstrap.py": "the noise ahead of the stairs",
-    "diagnosis/discovery/stages/predictive_check.py": "the noise that is left",
 }
 """File or folder -> why it may name effects."""
 

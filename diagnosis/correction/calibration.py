@@ -92,7 +92,7 @@ def _averaged_orders(gram: Array, pull: Array, total: float, count: int) -> Arra
     push = pull[6:] - gram[6:, :6] @ across[:, -1]
     left = max(total - float(pull[:6] @ across[:, -1]), 0.0)
     freedom = max(count - 6, 1)
-    evidence, means = [], []
+    observations, means = [], []
     for fall in _FALLS:
         prior = np.tile(np.minimum((ORDERS / _FLAT_TO) ** (-2.0 * fall), 1.0), 2)
         root = np.sqrt(prior)
@@ -104,7 +104,7 @@ def _averaged_orders(gram: Array, pull: Array, total: float, count: int) -> Arra
             shrink = 1.0 + strength * values
             square = left - float(np.sum(strength * along**2 / shrink))
             variance = max(square / freedom, _NO_NOISE)
-            evidence.append(-0.5 * (freedom * np.log(variance) + np.sum(np.log(shrink))))
+            observations.append(-0.5 * (freedom * np.log(variance) + np.sum(np.log(shrink))))
             means.append(root * (vectors @ (strength * along / shrink)))
-    weight = np.exp(np.array(evidence) - max(evidence))
+    weight = np.exp(np.array(observations) - max(observations))
     return np.asarray(weight @ np.array(means) / weight.sum())

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Named:
+class Finding:
     """One entry of the answer: a cause, its probability, rivals, and the held-out RMS around it [deg].
 
     ``log_p`` is the log probability by chance of this effect alone, ``family_log_p`` that of any effect, where known.
@@ -38,7 +38,9 @@ class Named:
 
     def __repr__(self) -> str:
         rivals = f", cannot be told from {', '.join(self.rivals)}" if self.rivals else ""
-        return f"Named({', '.join(self.keys)}; held-out RMS {self.before_deg:.4g} -> {self.after_deg:.4g} deg{rivals})"
+        return (
+            f"Finding({', '.join(self.keys)}; held-out RMS {self.before_deg:.4g} -> {self.after_deg:.4g} deg{rivals})"
+        )
 
     def false_alarm_probability(self, looked_at: int) -> float:
         """Probability that noise looks as much like any of so many effects."""
@@ -52,9 +54,9 @@ class Named:
         return "unnamed" if unnamed(name) else name
 
 
-def merge(entries: Sequence[Named]) -> list[Named]:
+def merge(entries: Sequence[Finding]) -> list[Finding]:
     """Instances of one effect, and all structure without a name, as one entry each; strongest first."""
-    merged: dict[str, Named] = {}
+    merged: dict[str, Finding] = {}
     for entry in entries:
         if entry.name in merged:
             first = merged[entry.name]

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.observations import of_readings
 from diagnosis.discovery.proof.cross_validation import rms_deg
-from diagnosis.discovery.proof.predictive_check import Likeness
+from diagnosis.discovery.proof.predictive_check import PredictiveCheck
 from diagnosis.discovery.state import State
 from twin.catalogue import unnamed
 from twin.chain import Chain
@@ -29,7 +29,7 @@ class Discovery:
     sweep: Sweep
     baseline: Fit
     fit: Fit
-    causes: tuple[Named, ...]
+    causes: tuple[Finding, ...]
     masked: BoolArray
     bits: int | None
     baseline_held_deg: float
@@ -38,7 +38,7 @@ class Discovery:
     looked_at: int
     given: Chain | None = None
     invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    likeness: Likeness | None = None
+    likeness: PredictiveCheck | None = None
 
     def __repr__(self) -> str:
         names = ", ".join(cause.name for cause in self.causes) or "no cause"
@@ -48,9 +48,9 @@ class Discovery:
     @classmethod
     def of(cls, state: State) -> Discovery:
         """The answer that a state holds after the last stage."""
-        fit, evidence = state.fit, state.fit.evidence
-        held = [of_readings(rms_deg(state.held[place], evidence.usable), evidence) for place in (0, -1)]
-        provides = evidence.motion.provides
+        fit, observations = state.fit, state.fit.observations
+        held = [of_readings(rms_deg(state.held[place], observations.usable), observations) for place in (0, -1)]
+        provides = observations.motion.provides
         assert state.baseline is not None
         return cls(
             sweep=state.sweep,
@@ -61,7 +61,7 @@ class Discovery:
             bits=state.bits,
             baseline_held_deg=held[0],
             extended_held_deg=held[1],
-            noise_floor_deg=float(np.degrees(evidence.repeat_rms)) if evidence.repeat_rms else held[1],
+            noise_floor_deg=float(np.degrees(observations.repeat_rms)) if observations.repeat_rms else held[1],
             looked_at=state.looked_at,
             given=state.given,
             invisible={

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import TAU, Array
@@ -17,7 +17,7 @@ from twin.effect import BoolArray, Effect
 from twin.sweep import Sweep
 
 if TYPE_CHECKING:
-    from diagnosis.discovery.proof.predictive_check import Likeness
+    from diagnosis.discovery.proof.predictive_check import PredictiveCheck
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -49,11 +49,11 @@ class State:
     baseline: Fit | None = None
     bits: int | None = None
     keys: tuple[str, ...] = ()
-    findings: tuple[Named, ...] = ()
+    findings: tuple[Finding, ...] = ()
     looked_at: int = 0
     held: tuple[Array, ...] = ()
-    causes: tuple[Named, ...] = ()
-    likeness: Likeness | None = None
+    causes: tuple[Finding, ...] = ()
+    likeness: PredictiveCheck | None = None
 
     @classmethod
     def of(

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.marks.row_masks import raw_residual
@@ -41,7 +41,7 @@ def to_json(found: Discovery) -> dict[str, Any]:
                 "heldout_rms_deg": found.baseline_held_deg,
             },
             "noise_floor_deg": found.noise_floor_deg,
-            "noise": found.fit.setting.family.labels[found.fit.setting.member],
+            "noise": found.fit.weighting.family.labels[found.fit.weighting.member],
             "verdict": found.verdict,
             "causes": [_cause(found, cause) for cause in found.causes],
             "unexplained": {
@@ -74,7 +74,7 @@ def _sweep(found: Discovery) -> dict[str, Any]:
         "set_aside": sweep.set_aside,
         "rejected": len(sweep.rejected),
         "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:100]},
-        "turns": found.fit.evidence.motion.turns,
+        "turns": found.fit.observations.motion.turns,
         "columns": list(sweep.columns),
         **facts(found),
         "output_bits": found.bits,
@@ -107,7 +107,7 @@ def standard_deviations(fit: Fit) -> Deviations:
     }
 
 
-def _cause(found: Discovery, cause: Named) -> dict[str, Any]:
+def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
     fit = found.fit
     effect = find(cause.keys[0], fit.chain.effects)
     answer: dict[str, Any] = {
@@ -128,7 +128,7 @@ def _cause(found: Discovery, cause: Named) -> dict[str, Any]:
     return answer
 
 
-def parameters(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
+def parameters(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
     """Every parameter of a cause's instances with its interval; further instances carry their number."""
     deviation = standard_deviations(found.fit)
     answer: dict[str, dict[str, Any]] = {}
@@ -168,7 +168,7 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
             frequency_Hz=float(values[effect.line.param]),
             deviation_Hz=deviation.get((key, effect.line.param), 0.0),
         )
-    if fit.evidence.observables == 1:
+    if fit.observations.observables == 1:
         for name, (low, high) in effect.angle_only(values).items():
             told, value = figures[name], float(values[name])
             told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
@@ -182,7 +182,7 @@ def _figure(value: float, low: float, high: float, unit: str) -> dict[str, Any]:
 
 def _between_readings(fit: Fit, value_s: float) -> dict[str, float]:
     """Limits of a step's instant, which lies between two readings."""
-    clock = fit.evidence.motion.time_s
+    clock = fit.observations.motion.time_s
     place = int(np.searchsorted(clock, value_s))
     return {
         "low": float(min(clock[max(place - 2, 0)], value_s)),
@@ -194,13 +194,13 @@ def _phase_at_first_row(
     fit: Fit, phase: dict[str, Any], *, frequency_Hz: float, deviation_Hz: float
 ) -> dict[str, float]:
     """A phase [deg], fitted in the middle of the record, where it is known best, as it is at the record's first row."""
-    half_s = 0.5 * float(np.ptp(fit.evidence.motion.time_s))
+    half_s = 0.5 * float(np.ptp(fit.observations.motion.time_s))
     value = float(wrap_deg(phase["value"] - 360.0 * frequency_Hz * half_s))
     half = float(np.hypot(0.5 * (phase["high"] - phase["low"]), 360.0 * half_s * _T95 * deviation_Hz))
     return {"value": value, "low": value - half, "high": value + half}
 
 
-def _counted(found: Discovery, cause: Named) -> dict[str, dict[str, Any]]:
+def _counted(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
     """Figures of causes that touch single rows: how many, or which share of them."""
     effect = find(cause.keys[0], found.fit.chain.effects)
     if effect.marks is None:
@@ -220,8 +220,8 @@ def _structure(found: Discovery, key: str) -> dict[str, Any]:
 
 def wild_rows(found: Discovery) -> list[int]:
     """Numbers of the readings that stand alone far out of their neighbours and that no cause has claimed."""
-    evidence = found.fit.evidence
-    wild = (evidence.sure & ~evidence.usable)[evidence.group] & ~found.masked
+    observations = found.fit.observations
+    wild = (observations.sure & ~observations.usable)[observations.group] & ~found.masked
     return [int(number) for number in found.sweep.numbers[wild]]
 
 

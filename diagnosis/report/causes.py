@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.data import Readings, binned, share_deg, unexplained_by
 from diagnosis.report.pictures import ANGLE, angle_bins, ways
@@ -34,7 +34,7 @@ class Across(NamedTuple):
     window: tuple[float, float]
 
 
-def pictures(found: Discovery, read: Readings, cause: Named) -> Iterator[tuple[str, Plot]]:
+def pictures(found: Discovery, read: Readings, cause: Finding) -> Iterator[tuple[str, Plot]]:
     """Caption and picture of each instance of a cause; instances with a name of their own share one picture."""
     effect = find(cause.keys[0], found.fit.chain.effects)
     if cause.rows:
@@ -159,7 +159,7 @@ def _spread(found: Discovery, read: Readings, effect: Effect, values: Any) -> tu
         note = "The stretch that scatters more than the rest."
         return note, Plot(Axis(name), Axis("residual / deg"), layers, "residual in the order of the readings")
     sigma = np.degrees(np.sqrt(effect.spread(fit.linear.sensor_angle, values)))
-    added = sigma if len(sigma) == len(read.after_deg) else sigma[fit.evidence.group]
+    added = sigma if len(sigma) == len(read.after_deg) else sigma[fit.observations.group]
     rest = np.sqrt(max(float(np.mean(read.after_deg[read.plain] ** 2) - np.mean(added**2)), 0.0))
     middles, means = binned(read.angle_deg, np.hypot(added, rest), angle_bins(len(added), each=3))
     kept = np.isfinite(means)
@@ -171,7 +171,7 @@ def _spread(found: Discovery, read: Readings, effect: Effect, values: Any) -> tu
     return "The scatter over the angle.", Plot(ANGLE, Axis("residual / deg"), layers, "scatter over the shaft angle")
 
 
-def _single_readings(read: Readings, cause: Named) -> tuple[str, Plot]:
+def _single_readings(read: Readings, cause: Finding) -> tuple[str, Plot]:
     """The touched readings among the others."""
     clock, name = read.clock
     touched = np.array(cause.rows)

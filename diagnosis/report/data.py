@@ -63,9 +63,9 @@ def readings(found: Discovery) -> Readings:
 def share_deg(found: Discovery, keys: Sequence[str]) -> Array:
     """What these effects do to each reading [deg] (n,): the extended chain with them minus without them."""
     fit = found.fit
-    without = Linear(fit.chain.without(*keys), fit.evidence.motion, blur=fit.setting.blur, observables=1)
+    without = Linear(fit.chain.without(*keys), fit.observations.motion, blur=fit.weighting.blur, observables=1)
     share = np.degrees(wrap(fit.linear.angle - without.angle))
-    return share if len(share) == len(found.sweep) else np.asarray(share[fit.evidence.group])
+    return share if len(share) == len(found.sweep) else np.asarray(share[fit.observations.group])
 
 
 def spectrum(motion: Motion, values: Array, use: BoolArray, highest: float) -> tuple[Array, Array]:

@@ -20,14 +20,14 @@ _DIRECTIONS = ((1.0, "#0072B2", "o", "forward"), (-1.0, "#D55E00", "^", "backwar
 def residual_figure(found: Discovery) -> Figure:
     """Three panels over the reference angle [deg], directions apart. Raises UserError without matplotlib."""
     sweep = found.sweep
-    evidence = found.fit.evidence
-    kept = evidence.usable[evidence.group] & ~found.masked
+    observations = found.fit.observations
+    kept = observations.usable[observations.group] & ~found.masked
     angle = np.mod(sweep.reference_deg, 360.0)[kept]
     way = sweep.motion().direction[kept]
     panels = (
         ("as measured", angle_error_deg(found.baseline, sweep)[kept]),
-        ("left by the error model", np.degrees(found.baseline.residual[0])[evidence.group][kept]),
-        ("left by the extended twin", np.degrees(found.fit.residual[0])[evidence.group][kept]),
+        ("left by the error model", np.degrees(found.baseline.residual[0])[observations.group][kept]),
+        ("left by the extended twin", np.degrees(found.fit.residual[0])[observations.group][kept]),
     )
     with drawing() as new_figure:
         figure = new_figure(figsize=(10.0, 3.2), layout="constrained")

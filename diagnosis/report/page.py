@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.result import Discovery
 from diagnosis.report import causes as cause_pictures
 from diagnosis.report import pictures as drawn
@@ -142,7 +142,7 @@ def _causes(answer: Mapping[str, Any], found: Discovery, read: Readings) -> Iter
 
 def _cause(
     cause: Mapping[str, Any],
-    named: Named,
+    named: Finding,
     *,
     place: int,
     answer: Mapping[str, Any],
@@ -176,7 +176,7 @@ def _cause(
     )
 
 
-def _picture_names(named: Named) -> list[str]:
+def _picture_names(named: Finding) -> list[str]:
     if named.name != "unnamed":
         return [named.name]
     return [f"structure {k}" for k in range(1, len(named.keys) + 1)]

@@ -11,7 +11,7 @@ import numpy as np
 
 from diagnosis.correction.compensation import Correction, correction_of
 from diagnosis.correction.compensation_c import header
-from tests.diagnosis.study import device
+from tests.diagnosis.error_model.study import device
 from twin.angles import TAU, wrap
 from twin.chain import Chain
 

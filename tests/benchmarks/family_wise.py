@@ -42,7 +42,7 @@ def baseline_of(seed: int, bench: str) -> Fit:
 
 def smallest(fit: Fit, rng: np.random.Generator) -> tuple[float, float]:
     """Family-wise probability of the effect that stands out most: calibrated, and by the F test."""
-    provides = fit.evidence.motion.provides
+    provides = fit.observations.motion.provides
     effects = [e for e in CATALOGUE if not e.baseline and e.footprint == "mean" and e.visible_in(provides)]
     family = family_wise(fit, fit, noise_of(fit), effects, rng=rng)
     found = screen(Base.of(fit), effects)

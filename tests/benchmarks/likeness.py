@@ -17,7 +17,7 @@ import numpy as np
 
 from diagnosis import explain
 from diagnosis.discovery.proof.bootstrap import noise_of
-from diagnosis.discovery.proof.predictive_check import Likeness, likeness
+from diagnosis.discovery.proof.predictive_check import PredictiveCheck, likeness
 from diagnosis.discovery.result import Discovery
 from diagnosis.discovery.search.likelihood_ratio import drop
 from tests.hidden.scoring import verdict
@@ -52,7 +52,7 @@ def main() -> None:
     left_out: list[float] = []
     white: list[float] = []
 
-    def p_of(found: Likeness | None, into: list[float]) -> None:
+    def p_of(found: PredictiveCheck | None, into: list[float]) -> None:
         if found is not None:
             into.append(found.p)
 

@@ -23,7 +23,7 @@ SHOWN = {
     "factors": "Findings('bench_sweep.csv', BaselineFit(",
     "discovery": "Discovery('bench_sweep.csv', explained: hysteresis; held-out RMS 0.1",
     "joint fit": "Fit(Chain(zero, offset, ",
-    "cause": "Named(hysteresis; held-out RMS 0.1",
+    "cause": "Finding(hysteresis; held-out RMS 0.1",
 }
 """What tells an object from others of its kind."""
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from tests.mutations.mutation import Mutation
 
 _SWARM = "diagnosis/error_model/swarm.py"
-_SWARM_TESTS = "tests/diagnosis/test_swarm.py"
+_SWARM_TESTS = "tests/diagnosis/error_model/test_swarm.py"
 _BAND = "diagnosis/error_model/error_band.py"
 _DESIGN = "tests/scenarios/test_design.py"
 _GAPS = "diagnosis/factors/air_gaps.py"
-_LAW = "tests/diagnosis/test_findings.py::test_an_exact_law_leaves_nothing_of_the_change"
+_LAW = "tests/diagnosis/factors/test_findings.py::test_an_exact_law_leaves_nothing_of_the_change"
 
 ERROR_MODEL: tuple[Mutation, ...] = (
     Mutation(
@@ -101,7 +101,7 @@ FACTORS: tuple[Mutation, ...] = (
         "diagnosis/factors/series.py",
         "limit_for(run_length * len(factors))",
         "limit_for(run_length)",
-        ("tests/diagnosis/test_control_chart.py::test_charts_of_a_series_share_its_run_length",),
+        ("tests/diagnosis/factors/test_control_chart.py::test_charts_of_a_series_share_its_run_length",),
         short=True,
     ),
 )
@@ -140,7 +140,7 @@ TWIN: tuple[Mutation, ...] = (
 )
 
 _LINEAR = "diagnosis/discovery/fitting/linearised_chain.py"
-_DERIVATIVE = "tests/diagnosis/test_derivatives.py::test_derivative"
+_DERIVATIVE = "tests/diagnosis/discovery/fitting/test_derivatives.py::test_derivative"
 
 FITTING: tuple[Mutation, ...] = (
     Mutation(

@@ -1,4 +1,4 @@
-"""Evidence in the cosine basis, where noise is nearly independent from coefficient to coefficient.
+"""Observations in the cosine basis, where noise is nearly independent from coefficient to coefficient.
 
 Masked rows count as zero. Angles are divided by their rows' scale; radii are not: the radius need not be loud where
 the angle is.
@@ -6,23 +6,23 @@ the angle is.
 
 from __future__ import annotations
 
-from diagnosis.discovery.fitting.observations import Evidence
+from diagnosis.discovery.fitting.observations import Observations
 from twin.angles import Array
 from twin.noise import spectrum
 
 
-def to_cosine(evidence: Evidence, values: Array) -> Array:
+def to_cosine(observations: Observations, values: Array) -> Array:
     """Angles (..., n) over the rows as cosine coefficients (..., n)."""
-    return spectrum.to_cosine(values * (evidence.usable / evidence.scale))
+    return spectrum.to_cosine(values * (observations.usable / observations.scale))
 
 
-def observables_to_cosine(evidence: Evidence, values: Array) -> Array:
+def observables_to_cosine(observations: Observations, values: Array) -> Array:
     """Observables (..., O, n), the angle first, as cosine coefficients (..., O, n)."""
-    out = values * evidence.usable
-    out[..., 0, :] /= evidence.scale
+    out = values * observations.usable
+    out[..., 0, :] /= observations.scale
     return spectrum.to_cosine(out)
 
 
-def radius_to_cosine(evidence: Evidence, values: Array) -> Array:
+def radius_to_cosine(observations: Observations, values: Array) -> Array:
     """Radii (..., n) as cosine coefficients (..., n)."""
-    return spectrum.to_cosine(values * evidence.usable)
+    return spectrum.to_cosine(values * observations.usable)

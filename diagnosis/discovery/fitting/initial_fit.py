@@ -11,14 +11,14 @@ from diagnosis.discovery.fitting.joint_fit import (
     ZERO_ANGLE,
     Fit,
     Free,
-    Setting,
+    Weighting,
     evaluate,
     free_of,
     solve,
     tidy,
 )
 from diagnosis.discovery.fitting.noise_family import noise_family
-from diagnosis.discovery.fitting.observations import Evidence
+from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
 from twin.catalogue import find
@@ -44,39 +44,41 @@ def senses_of_channels(sweep: Sweep) -> tuple[int, int] | None:
     return together(measured, reference) * output, output
 
 
-def unfitted(evidence: Evidence, start: Chain, settings: DiscoverySettings) -> Fit:
+def unfitted(observations: Observations, start: Chain, settings: DiscoverySettings) -> Fit:
     """A chain held against the observations as it is, nothing fitted."""
-    weight = 1.0 if evidence.observables == 2 else 0.0
-    setting = Setting(noise_family(len(evidence), settings.colour_log_odds), radius_weight=weight, settings=settings)
-    return evaluate(start, (), evidence, setting)
+    weight = 1.0 if observations.observables == 2 else 0.0
+    weighting = Weighting(
+        noise_family(len(observations), settings.colour_log_odds), radius_weight=weight, settings=settings
+    )
+    return evaluate(start, (), observations, weighting)
 
 
 def baseline_fit(fit: Fit) -> Fit:
     """The paper's error model, all six factors free."""
-    return solve(evaluate(awake(fit.chain), BASELINE, fit.evidence, fit.setting))
+    return solve(evaluate(awake(fit.chain), BASELINE, fit.observations, fit.weighting))
 
 
 def fit_of_given(fit: Fit) -> Fit:
     """A given twin with only its zeros free: the zero, and each turn's own where the reference finds it anew."""
-    evidence, setting = fit.evidence, fit.setting
-    turns = int(evidence.motion.turn.max(initial=0)) + 1
+    observations, weighting = fit.observations, fit.weighting
+    turns = int(observations.motion.turn.max(initial=0)) + 1
     start = fit.chain
     each_turn = {key: effect for key in start.values if (effect := find(key, start.effects)).zeroes_turns}
     chain = start.without(*each_turn)
     chain = chain.with_values({ZERO_ANGLE.key: {ZERO_ANGLE.name: 0.0, **chain.values.get(ZERO_ANGLE.key, {})}})
-    chain = aligned(chain, evidence.motion, evidence.measured)
+    chain = aligned(chain, observations.motion, observations.measured)
     free: list[Free] = [ZERO_ANGLE]
     if each_turn and turns > 1:
         # Each turn's zero from its own readings: zeros that all begin alike would be held there by their own scatter.
-        motion = chain.shaft(evidence.motion)
-        off = wrap(evidence.measured - chain.readings(motion))
+        motion = chain.shaft(observations.motion)
+        off = wrap(observations.measured - chain.readings(motion))
         sense = chain.sensor_sense * chain.output_sense
         zeros = np.array([-sense * np.degrees(np.median(off[motion.turn == turn])) for turn in range(turns)])
         for key, effect in each_turn.items():
             chain = chain.with_values({key: {**effect.null(), effect.roles("per turn")[0]: zeros}})
             free += free_of(effect, key, turns=turns, channels=False)
-    fit = solve(evaluate(chain, tuple(free), evidence, setting))
-    return solve(evaluate(fit.chain, fit.free, evidence, setting))
+    fit = solve(evaluate(chain, tuple(free), observations, weighting))
+    return solve(evaluate(fit.chain, fit.free, observations, weighting))
 
 
 def awake(chain: Chain) -> Chain:

@@ -9,7 +9,7 @@ import numpy as np
 from diagnosis.discovery.fitting.coefficients import observables_to_cosine
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import NoiseFamily
-from diagnosis.discovery.fitting.observations import Evidence
+from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
 from twin.baseline import FACTORS
@@ -35,7 +35,7 @@ BASELINE = (ZERO_ANGLE, *(Free(f.key, f.param) for f in FACTORS if f.effect is n
 
 
 @dataclass(frozen=True, eq=False)
-class Setting:
+class Weighting:
     """How residuals are weighed: the family member in force, the blur of stairs, the radius against the angle.
 
     ``radius_weight`` multiplies the radius' whitened squares; ``radius_member`` is its own family member. ``members``
@@ -64,7 +64,7 @@ class Setting:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A chain fitted to the evidence.
+    """A chain fitted to observations.
 
     ``residual`` (O, n) over the rows, ``jacobian`` (P, O, n) there too; ``cosine_residual`` and ``cosine_jacobian``
     their coefficients with the priors of per-turn zeros appended, flattened to (N,) and (P, N) by :func:`flat`.
@@ -72,8 +72,8 @@ class Fit:
 
     chain: Chain
     free: tuple[Free, ...]
-    evidence: Evidence
-    setting: Setting
+    observations: Observations
+    weighting: Weighting
     linear: Linear
     residual: Array
     jacobian: Array
@@ -83,22 +83,22 @@ class Fit:
     prior_jacobian: Array
 
     def __repr__(self) -> str:
-        left = np.degrees(np.sqrt(np.mean(self.residual[0][self.evidence.usable] ** 2)))
+        left = np.degrees(np.sqrt(np.mean(self.residual[0][self.observations.usable] ** 2)))
         return f"Fit({self.chain!r}, {len(self.free)} free parameters, {self.rows} rows, {left:.4g} deg RMS)"
 
     @property
     def settings(self) -> DiscoverySettings:
         """The thresholds by which the fit is judged."""
-        return self.setting.settings
+        return self.weighting.settings
 
     @property
     def rows(self) -> int:
         """Rows in use."""
-        return int(np.count_nonzero(self.evidence.usable))
+        return int(np.count_nonzero(self.observations.usable))
 
     def whitened(self, member: int | None = None) -> tuple[Array, Array]:
         """Residual (N,) and Jacobian (P, N) whitened by a family member (the one in force if not given)."""
-        root = root_weights(self.setting, self.evidence.observables, member)
+        root = root_weights(self.weighting, self.observations.observables, member)
         r = (self.cosine_residual * root).ravel()
         j = (self.cosine_jacobian * root).reshape(len(self.free), -1)
         return np.concatenate([r, self.prior_residual]), np.concatenate([j, self.prior_jacobian], axis=1)
@@ -111,11 +111,11 @@ class Fit:
         u, s, _ = np.linalg.svd(j / scale[:, None], full_matrices=False)
         good = s > 1e-9 * s[0]
         inverse = (u[:, good] / s[good] ** 2) @ u[:, good].T
-        dof = max(self.rows * self.evidence.observables - int(good.sum()), 1)
-        if self.setting.slopes:
+        dof = max(self.rows * self.observations.observables - int(good.sum()), 1)
+        if self.weighting.slopes:
             # At the edges of stairs a reading is either above or below: just where it tells most it scatters most.
             rows = inverse @ (self._in_rows(j) * self._in_rows(r) / scale[:, None])
-            spread = rows @ rows.T * (self.rows * self.evidence.observables / dof)
+            spread = rows @ rows.T * (self.rows * self.observations.observables / dof)
         else:
             spread = inverse * (float(r @ r) / dof)
         if not good.all():
@@ -124,65 +124,65 @@ class Fit:
 
     def _in_rows(self, whitened: Array) -> Array:
         """Whitened coefficients (..., N) of the observables back over the rows; the priors' stay as they are."""
-        size = self.evidence.observables * len(self.evidence)
-        shape = (*whitened.shape[:-1], self.evidence.observables, len(self.evidence))
+        size = self.observations.observables * len(self.observations)
+        shape = (*whitened.shape[:-1], self.observations.observables, len(self.observations))
         rows = to_rows(whitened[..., :size].reshape(shape)).reshape(*whitened.shape[:-1], size)
         return np.concatenate([rows, whitened[..., size:]], axis=-1)
 
 
-def root_weights(setting: Setting, observables: int, member: int | None = None) -> Array:
+def root_weights(weighting: Weighting, observables: int, member: int | None = None) -> Array:
     """Square roots of the weights (O, n) on cosine coefficients."""
-    weights = setting.family.weights
-    rows = [weights[setting.member if member is None else member]]
+    weights = weighting.family.weights
+    rows = [weights[weighting.member if member is None else member]]
     if observables == 2:
-        rows.append(setting.radius_weight * weights[setting.radius_member])
+        rows.append(weighting.radius_weight * weights[weighting.radius_member])
     return np.asarray(np.sqrt(np.stack(rows)))
 
 
-def evaluate(chain: Chain, free: tuple[Free, ...], evidence: Evidence, setting: Setting) -> Fit:
+def evaluate(chain: Chain, free: tuple[Free, ...], observations: Observations, weighting: Weighting) -> Fit:
     """Residual and Jacobian of a chain at its present parameters."""
-    observables = evidence.observables
-    linear = Linear(chain, evidence.motion, blur=setting.blur, observables=observables, slopes=setting.slopes)
-    residual = np.empty((evidence.observables, len(evidence)))
-    residual[0] = wrap(evidence.measured - linear.angle)
+    observables = observations.observables
+    linear = Linear(chain, observations.motion, blur=weighting.blur, observables=observables, slopes=weighting.slopes)
+    residual = np.empty((observations.observables, len(observations)))
+    residual[0] = wrap(observations.measured - linear.angle)
     nuisance: list[Array] = []
-    if evidence.log_radius is not None:
-        residual[1] = evidence.log_radius - linear.log_radius
-        nuisance = radius_nuisance(evidence)
+    if observations.log_radius is not None:
+        residual[1] = observations.log_radius - linear.log_radius
+        nuisance = radius_nuisance(observations)
     columns = [linear.derivative(f.key, find(f.key, chain.effects), f.name, f.turn) for f in free]
-    jacobian = np.stack(columns) if columns else np.zeros((0, evidence.observables, len(evidence)))
+    jacobian = np.stack(columns) if columns else np.zeros((0, observations.observables, len(observations)))
     if nuisance:
         # The channels' common scale and its drift with temperature tell nothing about an angle: projected out.
         basis = np.linalg.qr(np.stack(nuisance).T)[0].T
         residual[1] -= (residual[1] @ basis.T) @ basis
         jacobian[:, 1] -= (jacobian[:, 1] @ basis.T) @ basis
-    prior_residual, prior_jacobian = _priors(chain, free, evidence, residual[0])
+    prior_residual, prior_jacobian = _priors(chain, free, observations, residual[0])
     return Fit(
         chain=chain,
         free=free,
-        evidence=evidence,
-        setting=setting,
+        observations=observations,
+        weighting=weighting,
         linear=linear,
         residual=residual,
         jacobian=jacobian,
-        cosine_residual=observables_to_cosine(evidence, residual),
-        cosine_jacobian=observables_to_cosine(evidence, jacobian),
+        cosine_residual=observables_to_cosine(observations, residual),
+        cosine_jacobian=observables_to_cosine(observations, jacobian),
         prior_residual=prior_residual,
         prior_jacobian=prior_jacobian,
     )
 
 
-def radius_nuisance(evidence: Evidence) -> list[Array]:
+def radius_nuisance(observations: Observations) -> list[Array]:
     """What the radius may do for reasons of its own: a scale, and a quadratic in temperature. Masked rows are zero."""
-    usable = evidence.usable.astype(np.float64)
+    usable = observations.usable.astype(np.float64)
     columns = [usable]
-    if "two temperatures" in evidence.motion.provides:
-        warm = (evidence.motion.temperature_c - 25.0) / 50.0
+    if "two temperatures" in observations.motion.provides:
+        warm = (observations.motion.temperature_c - 25.0) / 50.0
         columns += [usable * warm, usable * warm**2]
     return columns
 
 
-def _priors(chain: Chain, free: tuple[Free, ...], evidence: Evidence, residual: Array) -> tuple[Array, Array]:
+def _priors(chain: Chain, free: tuple[Free, ...], observations: Observations, residual: Array) -> tuple[Array, Array]:
     """Per-turn zeros scatter: each is held by the scatter of all, in units of the residual's RMS.
 
     This makes the turns' zeros a random effect, so that an effect common to many turns (a direction) is not given
@@ -193,7 +193,7 @@ def _priors(chain: Chain, free: tuple[Free, ...], evidence: Evidence, residual: 
         return np.zeros(0), np.zeros((0 if not free else len(free), 0))
     zeros = np.array([float(np.asarray(chain.values[free[k].key][free[k].name])[free[k].turn or 0]) for k in places])
     spread = max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
-    unit = float(np.degrees(np.sqrt(np.mean(residual[evidence.usable] ** 2))))
+    unit = float(np.degrees(np.sqrt(np.mean(residual[observations.usable] ** 2))))
     # Whitened residuals are in radians: a prior of one sigma counts as one residual RMS.
     strength = np.radians(unit) / spread
     jacobian = np.zeros((len(free), len(places)))
@@ -223,7 +223,7 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
         for _ in range(6):
             system = normal + (1e-12 + damping) * np.eye(len(unit))
             step = np.where(alive, np.linalg.solve(system, gradient), 0.0)
-            trial = evaluate(_moved(fit, step / unit), fit.free, fit.evidence, fit.setting)
+            trial = evaluate(_moved(fit, step / unit), fit.free, fit.observations, fit.weighting)
             new_cost = _cost(trial)
             if new_cost <= cost * (1.0 + 1e-12):
                 improved = True

@@ -1,4 +1,4 @@
-"""Evidence: a sweep prepared for fitting; repeats at one angle averaged, rows that are no part of the mean masked."""
+"""Observations: a sweep prepared for fitting; repeats at one angle averaged, rows that are not for the mean masked."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DENSE_POINTS = 360
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class Observations:
     """Rows that count as independent angles, arrays of shape (n,).
 
     ``motion`` holds the reference's readings as shaft angles. ``log_radius`` is log |(vx, vy)| where the channels
@@ -48,12 +48,12 @@ class Evidence:
         """1 for the angle alone, 2 with the radius."""
         return 1 if self.log_radius is None else 2
 
-    def masked(self, usable: BoolArray) -> Evidence:
+    def masked(self, usable: BoolArray) -> Observations:
         """The same rows with another mask."""
         return replace(self, usable=usable)
 
 
-def collect(sweep: Sweep) -> Evidence:
+def collect(sweep: Sweep) -> Observations:
     """Prepare a sweep. Consecutive readings at one angle are one row: ten readings are not ten angles."""
     motion = sweep.motion()
     measured = np.radians(sweep.measured_deg)
@@ -80,7 +80,7 @@ def collect(sweep: Sweep) -> Evidence:
             log_radius = np.log(radius)
     n = count.size
     sure = _sure_of_direction(motion, sweep)
-    return Evidence(
+    return Observations(
         motion=motion,
         measured=measured,
         log_radius=log_radius,
@@ -94,9 +94,9 @@ def collect(sweep: Sweep) -> Evidence:
     )
 
 
-def of_readings(row_rms_deg: float, evidence: Evidence) -> float:
+def of_readings(row_rms_deg: float, observations: Observations) -> float:
     """RMS [deg] over single readings, from that over rows which average several of them."""
-    return float(np.hypot(row_rms_deg, np.degrees(np.sqrt(evidence.within))))
+    return float(np.hypot(row_rms_deg, np.degrees(np.sqrt(observations.within))))
 
 
 def block_length(motion: Motion) -> int:

@@ -52,7 +52,7 @@ def options(fit: Fit, rivals: Mapping[str, Fit], menu: Sequence[Measurement] = M
     """What each measurement of the menu would part a fit's cause by from its rivals' fits; cheapest first."""
     if not rivals:
         return ()
-    motion, found = fit.evidence.motion, []
+    motion, found = fit.observations.motion, []
     # A long record is planned on a part of itself: the square of the separation grows with the readings.
     part = motion.part(stretches(motion, MOST_PLANNED)) if len(motion) > MOST_PLANNED else motion
     longer = float(np.sqrt(len(motion) / len(part)))
@@ -139,7 +139,7 @@ def _missed(parts: Sequence[Fit], planned: tuple[Recording, ...]) -> float:
 def _noise_rms(fit: Fit) -> float:
     """RMS [rad] of the fit's whitened residual."""
     r, _ = fit.whitened()
-    dof = max(fit.rows * fit.evidence.observables - len(fit.free), 1)
+    dof = max(fit.rows * fit.observations.observables - len(fit.free), 1)
     return max(float(np.sqrt(r @ r / dof)), 1e-12)
 
 
@@ -149,9 +149,9 @@ def expected(fit: Fit, rival: Fit, recording: Recording) -> Fit:
     turns = int(motion.turn.max(initial=0)) + 1
     truth, other = (_planned_chain(chain, recording, turns) for chain in (fit.chain, rival.chain))
     observables = 2 if recording.channels else 1
-    read = Linear(truth, motion, blur=fit.setting.blur, observables=observables)
-    evidence = replace(
-        fit.evidence,
+    read = Linear(truth, motion, blur=fit.weighting.blur, observables=observables)
+    observations = replace(
+        fit.observations,
         motion=motion,
         measured=read.angle,
         log_radius=read.log_radius if recording.channels else None,
@@ -161,17 +161,17 @@ def expected(fit: Fit, rival: Fit, recording: Recording) -> Fit:
         group=np.arange(n),
         ahead=np.zeros(n),
     )
-    weight = fit.setting.radius_weight if fit.evidence.observables == 2 else 1.0
-    setting = replace(
-        fit.setting,
+    weight = fit.weighting.radius_weight if fit.observations.observables == 2 else 1.0
+    weighting = replace(
+        fit.weighting,
         family=_family(n, fit.settings.colour_log_odds),
-        radius_member=fit.setting.radius_member if fit.evidence.observables == 2 else fit.setting.member,
+        radius_member=fit.weighting.radius_member if fit.observations.observables == 2 else fit.weighting.member,
         radius_weight=weight if recording.channels else 0.0,
     )
     free: list[Free] = [one for one in rival.free if one in BASELINE]
     for key in dict.fromkeys(one.key for one in rival.free if one not in BASELINE):
         free += free_of(find(key, other.effects), key, turns=turns, channels=recording.channels)
-    return evaluate(other, tuple(free), evidence, setting)
+    return evaluate(other, tuple(free), observations, weighting)
 
 
 def _planned_chain(chain: Chain, recording: Recording, turns: int) -> Chain:
@@ -202,11 +202,11 @@ def _at_field(key: str, name: str, chain: Chain, recording: Recording) -> float:
 
 def _mounting(part: Fit) -> Array:
     """Whitened columns (q, N) of what comes anew with a second mounting: zero, offsets, gain and phase."""
-    angle, n = part.linear.sensor_angle, len(part.evidence)
+    angle, n = part.linear.sensor_angle, len(part.observations)
     shapes = np.stack([np.ones(n), *(turned(k * angle) for k in (1, 2) for turned in (np.cos, np.sin))])
-    columns = np.zeros((len(shapes), part.evidence.observables, n))
-    weight = np.sqrt(part.setting.family.weights[part.setting.member])
-    columns[:, 0] = to_cosine(part.evidence, shapes) * weight
+    columns = np.zeros((len(shapes), part.observations.observables, n))
+    weight = np.sqrt(part.weighting.family.weights[part.weighting.member])
+    columns[:, 0] = to_cosine(part.observations, shapes) * weight
     size = part.prior_residual.size
     return np.concatenate([columns.reshape(len(shapes), -1), np.zeros((len(shapes), size))], axis=1)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.noise.rounding import coarsest_stair
@@ -66,7 +66,7 @@ def finite_set(
     return best
 
 
-def with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | None) -> tuple[Fit, tuple[Named, ...]]:
+def with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | None) -> tuple[Fit, tuple[Finding, ...]]:
     """The fit with the stairs that the set of values shows, and those of them that are causes by that alone.
 
     ``bits`` is the word length on whose grid all readings lie, if there is one. The grid becomes part of the model
@@ -75,16 +75,16 @@ def with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | N
     step = TAU / 2.0**bits if bits is not None else 0.0
     chain, grid, settings = fit.chain, output_grid(effects), fit.settings
     measured = np.radians(sweep.measured_deg)
-    found: list[Named] = []
+    found: list[Finding] = []
     for effect in effects:
         if effect.footprint != "values" or effect is grid or effect.name in chain.values:
             continue
         name = effect.roles("level")[0]
-        tried = [shape[name] for shape in effect.shapes(fit.evidence.motion)]
+        tried = [shape[name] for shape in effect.shapes(fit.observations.motion)]
         level, log_p = finite_set(measured, effect, tried, step=step, settings=settings)
         if level and log_p < settings.effect_log_p(len(tried)):
             chain = chain.with_values({effect.name: {name: level}})
-            found.append(Named((effect.name,), log_p, -2.0 * log_p))
+            found.append(Finding((effect.name,), log_p, -2.0 * log_p))
     if grid is not None and bits is not None and grid.name not in chain.values:
         sigma = robust_rms(local_residual(fit.residual[0]))
         if step / np.sqrt(12.0) > settings.stairs_in_noise * sigma:
@@ -98,23 +98,23 @@ def _blurred(fit: Fit, chain: Chain) -> Fit:
     if coarse == 0.0:
         return fit
     # Before the stairs are modelled they add step/sqrt(12) to what the noise leaves.
-    rest = float(np.mean(fit.residual[0][fit.evidence.usable] ** 2)) - coarse**2 / 12.0
+    rest = float(np.mean(fit.residual[0][fit.observations.usable] ** 2)) - coarse**2 / 12.0
     blur = float(np.sqrt(max(rest, (0.05 * coarse) ** 2)))
-    fit = solve(evaluate(chain, fit.free, fit.evidence, replace(fit.setting, blur=blur)))
+    fit = solve(evaluate(chain, fit.free, fit.observations, replace(fit.weighting, blur=blur)))
     return solve(reblurred(fit))
 
 
-def grid_as_cause(fit: Fit, grid: Effect, step: float) -> Named | None:
+def grid_as_cause(fit: Fit, grid: Effect, step: float) -> Finding | None:
     """The output's grid as a cause: where its noise exceeds half of what is left otherwise, and its stairs are seen.
 
     Noise ahead of the grid blurs the stairs; where it blurs them away, nothing is gained by knowing them.
     """
-    blur, settings = fit.setting.blur, fit.settings
+    blur, settings = fit.weighting.blur, fit.settings
     if grid.name not in fit.chain.values or blur <= 0.0 or step / np.sqrt(12.0) <= settings.stairs_cause_share * blur:
         return None
-    use = fit.evidence.usable
+    use = fit.observations.usable
     plain = without_stairs(fit, grid.name)[use]
     gain = int(use.sum()) * float(np.log(np.mean(plain**2) / np.mean(fit.residual[0][use] ** 2)))
     log_p = float(log_probability(np.array(gain), 1, int(use.sum())))
     # The squares of correlated noise count for less than their number: so five sigma, of noise taken to be white.
-    return Named((grid.name,), log_p, gain) if gain > settings.sigma_enough**2 else None
+    return Finding((grid.name,), log_p, gain) if gain > settings.sigma_enough**2 else None

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.noise.rounding import coarsest_stair
-from diagnosis.discovery.fitting.observations import Evidence
+from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.marks.outliers import spikes
 from diagnosis.discovery.marks.spread import row_scale
 from twin.angles import Array, wrap
@@ -24,45 +24,45 @@ def mask_spikes(fit: Fit, step: float, also: BoolArray) -> Fit:
 
     ``step`` [rad] is that of the output's grid; raw rows in ``also`` (n_raw,) stay out too.
     """
-    settings, motion = fit.settings, fit.evidence.motion
+    settings, motion = fit.settings, fit.observations.motion
     for _ in range(_PASSES):
         mask = spikes(fit.residual[0], motion, max(step, coarsest_stair(fit.chain)), settings)
-        usable = ~mask & fit.evidence.sure & ~rows_of(fit.evidence, also)
-        if fit.evidence.observables == 2:
+        usable = ~mask & fit.observations.sure & ~rows_of(fit.observations, also)
+        if fit.observations.observables == 2:
             # Channels that fall out say nothing true about the radius: alone for a reading, or by more than any cause
             # would change it.
             radius = fit.residual[1]
             alone = spikes(radius, motion, 0.0, settings)
             usable &= ~alone & (np.abs(radius - np.median(radius)) < settings.fallen_out)
-        if np.array_equal(usable, fit.evidence.usable):
+        if np.array_equal(usable, fit.observations.usable):
             break
-        fit = solve(evaluate(fit.chain, fit.free, fit.evidence.masked(usable), fit.setting))
+        fit = solve(evaluate(fit.chain, fit.free, fit.observations.masked(usable), fit.weighting))
     return fit
 
 
-def rows_of(evidence: Evidence, raw: BoolArray) -> BoolArray:
-    """Rows of the evidence whose raw rows are mostly marked."""
-    count = np.bincount(evidence.group)
-    return np.asarray(np.bincount(evidence.group, raw) > 0.5 * count)
+def rows_of(observations: Observations, raw: BoolArray) -> BoolArray:
+    """Rows of the observations whose raw rows are mostly marked."""
+    count = np.bincount(observations.group)
+    return np.asarray(np.bincount(observations.group, raw) > 0.5 * count)
 
 
 def without_rows(fit: Fit, raw: BoolArray) -> Fit:
     """The fit without the marked raw rows (n_raw,)."""
-    rows = rows_of(fit.evidence, raw)
-    if not np.any(rows & fit.evidence.usable):
+    rows = rows_of(fit.observations, raw)
+    if not np.any(rows & fit.observations.usable):
         return fit
-    return solve(evaluate(fit.chain, fit.free, fit.evidence.masked(fit.evidence.usable & ~rows), fit.setting))
+    return solve(evaluate(fit.chain, fit.free, fit.observations.masked(fit.observations.usable & ~rows), fit.weighting))
 
 
 def scaled(fit: Fit, variance: Array) -> Fit:
     """The fit with its rows weighed by a variance (n,)."""
-    evidence = replace(fit.evidence, scale=row_scale(fit.evidence, variance))
-    return solve(evaluate(fit.chain, fit.free, evidence, fit.setting))
+    observations = replace(fit.observations, scale=row_scale(fit.observations, variance))
+    return solve(evaluate(fit.chain, fit.free, observations, fit.weighting))
 
 
 def raw_residual(fit: Fit, sweep: Sweep) -> Array:
     """Residual [rad] of every raw reading (n_raw,) against the fit."""
-    if len(sweep) == len(fit.evidence):
+    if len(sweep) == len(fit.observations):
         return np.asarray(fit.residual[0])
-    predicted: Array = fit.linear.angle[fit.evidence.group] + fit.evidence.ahead
+    predicted: Array = fit.linear.angle[fit.observations.group] + fit.observations.ahead
     return wrap(np.radians(sweep.measured_deg) - predicted)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.noise.rounding import coarsest_stair
 from diagnosis.discovery.marks.outliers import local_residual, robust_rms
@@ -15,7 +15,7 @@ from twin.sweep import Sweep
 
 def touched_rows(
     fit: Fit, sweep: Sweep, effect: Effect, *, step: float, spoken_for: BoolArray
-) -> tuple[BoolArray, Named] | None:
+) -> tuple[BoolArray, Finding] | None:
     """Raw rows (n_raw,) that the effect has touched, and the effect as a cause; None where chance explains them.
 
     ``step`` [rad] is that of the output's grid; rows ``spoken_for`` (n_raw,) belong to another effect already.
@@ -30,4 +30,4 @@ def touched_rows(
         return None
     rows = tuple(int(row) for row in np.flatnonzero(mask))
     # Looked for by itself, on readings that no other effect touches: there is no family to pay for.
-    return mask, Named((effect.name,), log_p, -2.0 * log_p, rows=rows, family_log_p=log_p)
+    return mask, Finding((effect.name,), log_p, -2.0 * log_p, rows=rows, family_log_p=log_p)

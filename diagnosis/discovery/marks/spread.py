@@ -9,9 +9,10 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
 from diagnosis.discovery.fitting.noise.rounding import stairs_rule
-from diagnosis.discovery.fitting.observations import Evidence
+from diagnosis.discovery.fitting.observations import Observations
 from twin.angles import Array
 from twin.effect import BoolArray, Effect
+from twin.empirical.spread import UNNAMED_BURST
 from twin.noise.spectrum import to_rows
 
 _T95 = 1.959964
@@ -34,17 +35,17 @@ def white_rows(fit: Fit) -> Array:
 
     What the rows' scale has taken out of them is put back: this is what the spread is judged on.
     """
-    root = root_weights(fit.setting, fit.evidence.observables)[0]
-    rows = to_rows(fit.cosine_residual[0] * root) * fit.evidence.scale
-    sigma = float(np.sqrt(np.mean(rows[fit.evidence.usable] ** 2)))
-    return np.where(fit.evidence.usable, rows / max(sigma, 1e-300), 0.0)
+    root = root_weights(fit.weighting, fit.observations.observables)[0]
+    rows = to_rows(fit.cosine_residual[0] * root) * fit.observations.scale
+    sigma = float(np.sqrt(np.mean(rows[fit.observations.usable] ** 2)))
+    return np.where(fit.observations.usable, rows / max(sigma, 1e-300), 0.0)
 
 
 def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
     """Which declared shapes of the variance gain over constant variance, each at its best strength."""
     if stairs_rule(fit) or float(np.mean(fit.residual[0] ** 2)) < 1e-12:
         return []
-    use = fit.evidence.usable
+    use = fit.observations.usable
     square = np.clip(white_rows(fit)[use] ** 2, 0.0, 36.0)
     expected = _expected_variance(fit, square)
     found = [_spread_shape(fit, effect, square, expected) for effect in effects if effect.spread is not None]
@@ -54,7 +55,7 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
 def _spread_shape(fit: Fit, effect: Effect, square: Array, expected: Array) -> SpreadFinding | None:
     """One effect's shape of the variance at its best strength, given the squares (rows in use,); None: no gain."""
     assert effect.spread is not None
-    use, angle = fit.evidence.usable, fit.linear.sensor_angle
+    use, angle = fit.observations.usable, fit.linear.sensor_angle
     name = effect.roles("random")[0]
     typical = effect.params[name].typical
     shape = effect.spread(angle, {name: typical})[use]
@@ -84,7 +85,7 @@ def _expected_variance(fit: Fit, square: Array) -> Array:
     """
     if fit.linear.stair_variance is None:
         return np.ones(square.size)
-    stairs = fit.linear.stair_variance[fit.evidence.usable]
+    stairs = fit.linear.stair_variance[fit.observations.usable]
     if not np.mean(stairs) > 0.0:
         return np.ones(square.size)
     stairs = stairs / np.mean(stairs)
@@ -144,7 +145,7 @@ def bursts(fit: Fit) -> SpreadFinding | None:
     """The stretch of rows with the most outstanding variance, if its noise is clearly louder than that of the rest."""
     if stairs_rule(fit) or float(np.mean(fit.residual[0] ** 2)) < 1e-12:
         return None
-    use = fit.evidence.usable
+    use = fit.observations.usable
     stretch = _loudest_stretch(np.where(use, np.clip(white_rows(fit) ** 2, 0.0, 36.0), 0.0), use)
     if stretch is None or stretch.ratio < fit.settings.burst_ratio:
         return None
@@ -159,7 +160,7 @@ def bursts(fit: Fit) -> SpreadFinding | None:
     }
     square = np.clip(white_rows(fit)[use] ** 2, 0.0, 36.0)
     log_p = _half_chi_square(stretch.gain / _inflation(square / share[use])) + float(np.log(max(stretch.looks, 1)))
-    return SpreadFinding("unnamed_burst", values, stretch.gain, log_p, base**2 * share, {})
+    return SpreadFinding(UNNAMED_BURST.name, values, stretch.gain, log_p, base**2 * share, {})
 
 
 @dataclass(frozen=True)
@@ -200,6 +201,6 @@ def _loudest_stretch(square: Array, use: BoolArray) -> _Stretch | None:
     return None if best is None else replace(best, looks=looks)
 
 
-def row_scale(evidence: Evidence, variance: Array) -> Array:
+def row_scale(observations: Observations, variance: Array) -> Array:
     """Noise of each row against the usual one, from a variance (n,)."""
-    return np.sqrt(variance / np.median(variance)) if variance.size == len(evidence) else np.ones(len(evidence))
+    return np.sqrt(variance / np.median(variance)) if variance.size == len(observations) else np.ones(len(observations))

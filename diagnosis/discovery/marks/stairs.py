@@ -17,17 +17,17 @@ def reblurred(fit: Fit) -> Fit:
     coarse = coarsest_stair(fit.chain)
     if coarse <= 0.0:
         return fit
-    rms = float(np.sqrt(np.mean(fit.residual[0][fit.evidence.usable] ** 2)))
+    rms = float(np.sqrt(np.mean(fit.residual[0][fit.observations.usable] ** 2)))
     blur = blur_behind(rms, coarse)
-    if fit.setting.blur > 0.0 and abs(blur / fit.setting.blur - 1.0) < 0.1:
+    if fit.weighting.blur > 0.0 and abs(blur / fit.weighting.blur - 1.0) < 0.1:
         return fit
-    return evaluate(fit.chain, fit.free, fit.evidence, replace(fit.setting, blur=blur))
+    return evaluate(fit.chain, fit.free, fit.observations, replace(fit.weighting, blur=blur))
 
 
 def without_stairs(fit: Fit, key: str) -> Array:
     """Angle residual (n,) [rad] against the smooth angle ahead of one effect's stairs."""
-    smooth = Linear(fit.chain.without(key), fit.evidence.motion, blur=fit.setting.blur, observables=1)
-    return wrap(fit.evidence.measured - smooth.angle)
+    smooth = Linear(fit.chain.without(key), fit.observations.motion, blur=fit.weighting.blur, observables=1)
+    return wrap(fit.observations.measured - smooth.angle)
 
 
 def with_slopes(fit: Fit) -> Fit:
@@ -39,4 +39,4 @@ def with_slopes(fit: Fit) -> Fit:
     active = list(fit.chain.active("channels"))
     if not any(is_staircase(effect) and float(own.get("blur_percent", 0.0)) > 0.0 for _, effect, own in active):
         return fit
-    return solve(evaluate(fit.chain, fit.free, fit.evidence, replace(fit.setting, slopes=True)), iterations=30)
+    return solve(evaluate(fit.chain, fit.free, fit.observations, replace(fit.weighting, slopes=True)), iterations=30)

@@ -22,7 +22,7 @@ def folds(fit: Fit) -> IntArray:
 
     A block is shorter than a turn, so that each turn's own zero can be fitted from the rest of it.
     """
-    motion, count = fit.evidence.motion, fit.settings.folds
+    motion, count = fit.observations.motion, fit.settings.folds
     block = np.floor(motion.travel_rad / TAU * fit.settings.blocks_a_turn + 1e-9).astype(np.int64)
     if block.max(initial=0) < 2 * count:
         block = np.floor(np.arange(len(motion)) * (3 * count) / max(len(motion), 1)).astype(np.int64)
@@ -31,7 +31,7 @@ def folds(fit: Fit) -> IntArray:
 
 def scattered(fit: Fit) -> IntArray:
     """Fold (n,) of each row where neighbours share none: for what is narrower than a block, in white noise."""
-    return np.arange(len(fit.evidence), dtype=np.int64) % fit.settings.folds
+    return np.arange(len(fit.observations), dtype=np.int64) % fit.settings.folds
 
 
 def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray) -> list[Array]:
@@ -39,23 +39,23 @@ def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray) -> list[Ar
 
     ``fold`` (n,) is that of each row.
     """
-    use = fit.evidence.usable
+    use = fit.observations.usable
     base_free = [f for f in fit.free if base_name(f.key) not in {base_name(k) for k in keys}] or list(BASELINE)
     stages: list[tuple[list[str], list[Free]]] = []
     for count in range(len(keys) + 1):
         present = set(keys[:count])
         stages.append(([k for k in keys if k not in present], [*base_free, *(f for f in fit.free if f.key in present)]))
-    residuals = [np.full(len(fit.evidence), np.nan) for _ in stages]
+    residuals = [np.full(len(fit.observations), np.nan) for _ in stages]
     for number in range(fit.settings.folds):
         held = fold == number
         if not np.any(held & use) or np.count_nonzero(use & ~held) < _FEWEST_ROWS:
             continue
-        evidence = fit.evidence.masked(use & ~held)
+        observations = fit.observations.masked(use & ~held)
         for place, (absent, free) in enumerate(stages):
             chain = fit.chain.without(*absent)
-            trained = solve(evaluate(chain, tuple(free), evidence, fit.setting), iterations=6)
-            seen = replace(trained, evidence=fit.evidence)
-            residuals[place][held] = wrap(seen.evidence.measured - trained.linear.angle)[held]
+            trained = solve(evaluate(chain, tuple(free), observations, fit.weighting), iterations=6)
+            seen = replace(trained, observations=fit.observations)
+            residuals[place][held] = wrap(seen.observations.measured - trained.linear.angle)[held]
     return residuals
 
 

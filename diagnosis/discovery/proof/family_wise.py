@@ -83,15 +83,15 @@ def family_wise(
     base = Base.of(baseline)
     ahead = ahead_of_stairs(extended, noise)
     settings = baseline.settings
-    count = int(np.clip(_NUMBERS // len(baseline.evidence), settings.fewest_simulated, settings.most_simulated))
-    residuals = np.empty((count, baseline.evidence.observables, len(baseline.evidence)))
-    residuals[:, 0] = to_cosine(baseline.evidence, simulated(baseline, ahead, count=count, rng=rng))
-    if baseline.evidence.observables == 2:
+    count = int(np.clip(_NUMBERS // len(baseline.observations), settings.fewest_simulated, settings.most_simulated))
+    residuals = np.empty((count, baseline.observations.observables, len(baseline.observations)))
+    residuals[:, 0] = to_cosine(baseline.observations, simulated(baseline, ahead, count=count, rng=rng))
+    if baseline.observations.observables == 2:
         residuals[:, 1] = _radius(extended, count, rng)
     base = base.with_residuals(residuals)
     # Lines are looked for in what the baseline's own parameters leave.
-    member = baseline.setting.member
-    left = base.residuals[member][:, : len(baseline.evidence)] / base.roots[member][0]
+    member = baseline.weighting.member
+    left = base.residuals[member][:, : len(baseline.observations)] / base.roots[member][0]
     scores = {effect.name: _scores(base, effect, left) for effect in effects}
     tails = {name: Tail.of(values) for name, values in scores.items()}
     smallest = np.min([tails[name].log_p(values) for name, values in scores.items()], axis=0)
@@ -100,7 +100,7 @@ def family_wise(
 
 def _radius(extended: Fit, count: int, rng: np.random.Generator) -> Array:
     """Cosine coefficients (count, n) of radii with the noise that the extended fit has left there."""
-    root = root_weights(extended.setting, 2)[1]
+    root = root_weights(extended.weighting, 2)[1]
     sigma = float(np.sqrt(np.mean((extended.cosine_residual[1] * root) ** 2)))
     return np.asarray(sigma * rng.standard_normal((count, root.size)) / root)
 

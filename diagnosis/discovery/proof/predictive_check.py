@@ -35,7 +35,7 @@ _LEAST_SPREAD = 1e-3
 
 
 @dataclass(frozen=True)
-class Likeness:
+class PredictiveCheck:
     """``p``: how often a sweep simulated from the twin stands out as much as the measured one.
 
     ``worst`` says in words which statistic of the measured one stands out most, ``worst_sigma`` by how much.
@@ -46,16 +46,16 @@ class Likeness:
     worst_sigma: float
 
 
-def likeness(fit: Fit, *, rng: np.random.Generator, noise: Noise | None = None) -> Likeness | None:
+def likeness(fit: Fit, *, rng: np.random.Generator, noise: Noise | None = None) -> PredictiveCheck | None:
     """Hold the measured residual of a fit against simulated ones; ``noise``: its noise, estimated if not given.
 
     None where there are too few readings, or nothing but digits is left.
     """
-    use = fit.evidence.usable
+    use = fit.observations.usable
     left = float(np.mean(fit.residual[0][use] ** 2))
     smallest = float(np.radians(fit.settings.smallest_rms_deg))
     # Less than the noise ahead of the stairs: no reading lies near an edge, and only the file's digits are left.
-    if fit.rows < FEWEST_ROWS + len(fit.free) or left < max(smallest, 0.9 * fit.setting.blur) ** 2:
+    if fit.rows < FEWEST_ROWS + len(fit.free) or left < max(smallest, 0.9 * fit.weighting.blur) ** 2:
         return None
     noise = noise or noise_of(fit)
     plan = _Plan.of(fit)
@@ -72,14 +72,14 @@ def likeness(fit: Fit, *, rng: np.random.Generator, noise: Noise | None = None) 
     to_come = fit.settings.predictive_sweeps
     while to_come > 0:
         count = min(to_come, max(_CHUNK // len(use), 1))
-        residual = to_cosine(fit.evidence, simulated(fit, ahead, count=count, rng=rng))
+        residual = to_cosine(fit.observations, simulated(fit, ahead, count=count, rng=rng))
         table.append(plan.statistics(whitened(refit(residual, rng)))[1])
         to_come -= count
     scores = _standardised(np.concatenate(table))
     together = scores.max(axis=1)
     worst = int(np.argmax(scores[0]))
     rank = 1 + int(np.count_nonzero(together[1:] >= together[0]))
-    return Likeness(rank / len(scores), names[worst], float(scores[0, worst]))
+    return PredictiveCheck(rank / len(scores), names[worst], float(scores[0, worst]))
 
 
 # ---- the fit's own projection ---------------------------------------------------------------------------------------
@@ -101,15 +101,17 @@ class _Refit:
         norm = np.linalg.norm(j, axis=1, keepdims=True)
         _, size, right = np.linalg.svd(j / np.where(norm > 0.0, norm, 1.0), full_matrices=False)
         right = right[size > 1e-7 * size.max(initial=0.0)]
-        n = len(fit.evidence)
+        n = len(fit.observations)
         # The radius has noise of its own, which moves the parameters too; the turns' zeros are the twin's.
-        radius = slice(n, n * fit.evidence.observables)
-        sigma = float(np.sqrt(np.mean(r[radius] ** 2))) if fit.evidence.observables == 2 else 0.0
+        radius = slice(n, n * fit.observations.observables)
+        sigma = float(np.sqrt(np.mean(r[radius] ** 2))) if fit.observations.observables == 2 else 0.0
         square = right[:, radius] @ right[:, radius].T
         values, vectors = np.linalg.eigh(square)
         elsewhere = sigma * vectors * np.sqrt(np.maximum(values, 0.0))
-        pull = right[:, n * fit.evidence.observables :] @ fit.prior_residual
-        return cls(root_weights(fit.setting, fit.evidence.observables)[0], right[:, :n], elsewhere, pull, right @ r)
+        pull = right[:, n * fit.observations.observables :] @ fit.prior_residual
+        return cls(
+            root_weights(fit.weighting, fit.observations.observables)[0], right[:, :n], elsewhere, pull, right @ r
+        )
 
     def settled(self, coefficients: Array) -> Array:
         """The fit's own cosine coefficients (n,) after the last fraction of a step that its solver has left undone."""
@@ -140,8 +142,8 @@ class _Plan:
 
     @classmethod
     def of(cls, fit: Fit) -> _Plan:
-        motion = fit.evidence.motion
-        use = np.flatnonzero(fit.evidence.usable)
+        motion = fit.observations.motion
+        use = np.flatnonzero(fit.observations.usable)
         place = (np.floor(motion.shaft_rad[use] * (_BINS / TAU)).astype(np.int64)) % _BINS
         order = np.argsort(place, kind="stable")
         filled, starts, counts = np.unique(place[order], return_index=True, return_counts=True)

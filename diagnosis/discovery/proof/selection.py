@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.proof.bootstrap import noise_of
 from diagnosis.discovery.proof.cross_validation import folds, held_out_residuals, rms_deg, scattered
@@ -48,12 +48,12 @@ class Proof:
             return cause.log_p + float(np.log(max(len(self.effects), 1)))
         return self.family.log_p(base_name(cause.key), cause.log_p)
 
-    def entries(self) -> tuple[Named, ...]:
+    def entries(self) -> tuple[Finding, ...]:
         """The causes as entries of the answer, with their held-out figures over all rows in use."""
-        use = self.fit.evidence.usable
+        use = self.fit.observations.usable
         figures = [rms_deg(residual, use) for residual in self.held]
         return tuple(
-            Named(
+            Finding(
                 (cause.key,),
                 cause.log_p,
                 cause.gain,
@@ -71,7 +71,7 @@ def select(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.
 
     ``rng`` draws the sweeps on which the family-wise probabilities are calibrated.
     """
-    visible = tuple(effect for effect in effects if effect.visible_in(fit.evidence.motion.provides))
+    visible = tuple(effect for effect in effects if effect.visible_in(fit.observations.motion.provides))
     kept = list(keys)
     while True:
         proof = prove(fit, visible, kept, rng=rng)
@@ -89,7 +89,7 @@ def prove(fit: Fit, effects: tuple[Effect, ...], keys: Sequence[str], *, rng: np
     ordered = [cause.key for cause in causes]
     fold = folds(fit)
     held, weighed = _held_out(fit, ordered, fold)
-    if fit.setting.member == 0 and _lost(weighed, fit.settings.heldout_lost):
+    if fit.weighting.member == 0 and _lost(weighed, fit.settings.heldout_lost):
         # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere.
         fold = scattered(fit)
         held, weighed = _held_out(fit, ordered, fold)
@@ -116,7 +116,7 @@ def _proven(proof: Proof, place: int) -> bool:
 def _held_out(fit: Fit, keys: Sequence[str], fold: IntArray) -> tuple[list[Array], list[float]]:
     """Held-out residuals (n,) [rad] as the causes are added one by one, and their RMS [deg] with weighed rows."""
     held = held_out_residuals(fit, keys, fold)
-    return held, [rms_deg(residual / fit.evidence.scale, fit.evidence.usable) for residual in held]
+    return held, [rms_deg(residual / fit.observations.scale, fit.observations.usable) for residual in held]
 
 
 def _lost(rms: Sequence[float], most: float) -> bool:
@@ -142,9 +142,9 @@ def _views(fit: Fit, effects: Sequence[Effect]) -> list[Fit]:
     A slow noise shifts whole runs of readings against the stairs, which a cause may then seem to set right.
     """
     grid = output_grid(fit.chain.effects)
-    if fit.setting.member == 0 or grid is None or grid.name not in fit.chain.values:
+    if fit.weighting.member == 0 or grid is None or grid.name not in fit.chain.values:
         return [fit]
-    return [fit, settle(solve(evaluate(fit.chain.without(grid.name), fit.free, fit.evidence, fit.setting)))[0]]
+    return [fit, settle(solve(evaluate(fit.chain.without(grid.name), fit.free, fit.observations, fit.weighting)))[0]]
 
 
 def _judged(views: Sequence[Fit], key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Judged:

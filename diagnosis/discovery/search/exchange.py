@@ -20,7 +20,7 @@ from diagnosis.discovery.search.likelihood_ratio import (
     likelihood,
     settle,
 )
-from diagnosis.discovery.search.removal import Standing
+from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import Candidate
 from twin.catalogue import find, unnamed
 from twin.effect import Effect
@@ -41,9 +41,9 @@ class Search:
     @classmethod
     def among(cls, effects: Sequence[Effect], fit: Fit) -> Search:
         """The search of a fit for these effects."""
-        visible = tuple(effect for effect in effects if effect.visible_in(fit.evidence.motion.provides))
+        visible = tuple(effect for effect in effects if effect.visible_in(fit.observations.motion.provides))
         threshold = fit.settings.effect_log_p(len(visible))
-        if fit.setting.coarse:
+        if fit.weighting.coarse:
             # No smooth model of coarse stairs takes all of them out: only what is beyond doubt counts.
             threshold = min(threshold, -fit.settings.stairs_log_odds)
         return cls(visible, threshold, {})
@@ -74,31 +74,31 @@ def improve(fit: Fit, keys: Sequence[str], plan: Search) -> tuple[Fit, list[str]
 def _held_or_exchanged(fit: Fit, key: str, keys: list[str], plan: Search) -> tuple[Fit, list[str], Search]:
     """The fit with this cause, without it, or with another in its place."""
     others = [other for other in keys if other != key]
-    standing = Standing.of(fit, key)
-    if standing.log_p + handicap(standing.effect, fit) > plan.level_beside(fit, others):
-        return standing.without, others, plan
-    for rival in _rivals(fit, standing, plan.contenders.get(key, plan.effects), others):
-        trial = Trial.of(standing.removed, rival)
+    removal = Removal.of(fit, key)
+    if removal.log_p + handicap(removal.effect, fit) > plan.level_beside(fit, others):
+        return removal.without, others, plan
+    for rival in _rivals(fit, removal, plan.contenders.get(key, plan.effects), others):
+        trial = Trial.of(removal.removed, rival)
         members = either(plausible_members(fit), trial.members)
-        own_gain = 2.0 * (likelihood(fit, members) - likelihood(standing.without, members))
-        own_p = standing.judged(own_gain) + handicap(standing.effect, fit)
-        rival_p = trial.log_p(standing.without, members, standing.base.dof) + handicap(rival.effect, fit)
+        own_gain = 2.0 * (likelihood(fit, members) - likelihood(removal.without, members))
+        own_p = removal.judged(own_gain) + handicap(removal.effect, fit)
+        rival_p = trial.log_p(removal.without, members, removal.base.dof) + handicap(rival.effect, fit)
         if own_p - rival_p > fit.settings.swap_log_odds:
             plan = plan.with_contenders({trial.key: plan.contenders.get(key, plan.effects)})
             return trial.fit, [*others, trial.key], plan
     return fit, keys, plan
 
 
-def _rivals(fit: Fit, standing: Standing, contenders: Sequence[Effect], others: Sequence[str]) -> list[Candidate]:
+def _rivals(fit: Fit, removal: Removal, contenders: Sequence[Effect], others: Sequence[str]) -> list[Candidate]:
     """Candidates that may do better in the place of a cause, by their first-order scores."""
     # First order undervalues a large gain, of the cause itself as of its rivals: like is held against like.
-    own_first = standing.own.log_p if standing.own is not None else standing.log_p
-    score = max(standing.log_p, own_first) + handicap(standing.effect, fit) + fit.settings.contender_nats
-    ranked = candidates(standing.base, contenders, others)
+    own_first = removal.own.log_p if removal.own is not None else removal.log_p
+    score = max(removal.log_p, own_first) + handicap(removal.effect, fit) + fit.settings.contender_nats
+    ranked = candidates(removal.base, contenders, others)
     most = fit.settings.most_rivals
     # The zeros of the turns cost a scatter, not a coefficient each: first order undervalues them.
     chosen = [*ranked[:most], *(c for c in ranked[most:] if c.effect.roles("per turn"))]
-    return [c for c in chosen if c.effect.name != standing.effect.name and c.log_p + handicap(c.effect, fit) <= score]
+    return [c for c in chosen if c.effect.name != removal.effect.name and c.log_p + handicap(c.effect, fit) <= score]
 
 
 def in_its_place(fit: Fit, key: str, keys: list[str], plan: Search) -> tuple[Fit, list[str]]:
@@ -120,7 +120,7 @@ def in_its_place(fit: Fit, key: str, keys: list[str], plan: Search) -> tuple[Fit
         added += step.added
         terms, log_looks = terms + step.terms, log_looks + step.log_looks
         trial, base = settle(step.fit)
-        members = either(fit.setting.plausible, trial.setting.plausible)
+        members = either(fit.weighting.plausible, trial.weighting.plausible)
         before = likelihood(without, members)
         own = 2.0 * (likelihood(fit, members) - before)
         own_p = judged_p(own, degrees(effect, len(without.linear.terms(effect))), base.dof, 1.0) + handicap(effect, fit)

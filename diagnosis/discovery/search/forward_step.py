@@ -39,7 +39,7 @@ def multiples(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> lis
     """The multiples at which a line that is in the fit already may show again, also where these alias."""
     found = []
     # Near the number of points a turn an order is a slow function of the row: no line is told from it.
-    highest = _HIGHEST_SHARE * base.fit.evidence.motion.points_per_turn
+    highest = _HIGHEST_SHARE * base.fit.observations.motion.points_per_turn
     for effect in effects:
         if effect.line is None or not effect.line.multiples:
             continue
@@ -101,10 +101,10 @@ def best_together(
     """
     if base.member == 0:
         return None
-    family = fit.setting.family
+    family = fit.weighting.family
     only_white = family.white_alone()
-    setting = replace(fit.setting, family=only_white, member=0, members=(), radius_member=0)
-    trial, white = settle(solve(evaluate(fit.chain, fit.free, fit.evidence, setting)))
+    weighting = replace(fit.weighting, family=only_white, member=0, members=(), radius_member=0)
+    trial, white = settle(solve(evaluate(fit.chain, fit.free, fit.observations, weighting)))
     added: dict[str, Sequence[Effect]] = {}
     terms, log_looks = 0, 0.0
     for depth in range(fit.settings.most_together):
@@ -115,8 +115,8 @@ def best_together(
         terms, log_looks = terms + step.terms, log_looks + step.log_looks
         trial, white = settle(retuned(step.fit, keys))
         # White at first: by another weight it might be led astray again.
-        joint, _ = settle(solve(evaluate(trial.chain, trial.free, fit.evidence, replace(fit.setting, member=0))))
-        members = either(fit.setting.plausible, joint.setting.plausible)
+        joint, _ = settle(solve(evaluate(trial.chain, trial.free, fit.observations, replace(fit.weighting, member=0))))
+        members = either(fit.weighting.plausible, joint.weighting.plausible)
         gain = 2.0 * (likelihood(joint, members) - likelihood(fit, members))
         choices = depth * float(np.log(max(len(effects), 1)))
         if judged_p(gain, terms, base.dof, 1.0) + log_looks + choices < threshold:
@@ -138,6 +138,6 @@ def retuned(fit: Fit, keys: Sequence[str]) -> Fit:
         if again is None:
             continue
         trial = Trial.of(removed, again)
-        if likelihood(trial.fit, fit.setting.plausible) > likelihood(fit) + fit.settings.swap_log_odds:
+        if likelihood(trial.fit, fit.weighting.plausible) > likelihood(fit) + fit.settings.swap_log_odds:
             fit = trial.fit
     return fit

@@ -26,7 +26,7 @@ def searched(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, step: 
         before = found.keys
         found = search(fit, effects, before)
         refined = reblurred(mask_spikes(found.fit, step, also))
-        if found.keys == before and np.array_equal(refined.evidence.usable, found.fit.evidence.usable):
+        if found.keys == before and np.array_equal(refined.observations.usable, found.fit.observations.usable):
             return found
         fit = solve(refined)
     return replace(found, fit=settle(fit)[0])
@@ -39,10 +39,12 @@ def trusting(fit: Fit, effects: Sequence[Effect], step: float, also: BoolArray) 
     field that changes over the turn for reasons of its own would pass for such an error. So the search is given up
     (None) where its causes leave some of the radius unexplained, and not made where there is nothing to explain.
     """
-    if fit.evidence.observables == 1 or _radius_explained(settle(fit)[0]):
+    if fit.observations.observables == 1 or _radius_explained(settle(fit)[0]):
         return None
-    setting = replace(fit.setting, radius_trusted=True)
-    found = searched(solve(evaluate(fit.chain, fit.free, fit.evidence, setting)), effects, [], step=step, also=also)
+    weighting = replace(fit.weighting, radius_trusted=True)
+    found = searched(
+        solve(evaluate(fit.chain, fit.free, fit.observations, weighting)), effects, [], step=step, also=also
+    )
     return found if _radius_explained(found.fit) else None
 
 
@@ -51,5 +53,5 @@ def _radius_explained(fit: Fit) -> bool:
     noise = radius_noise(fit)
     if noise is None:
         return True
-    left = fit.cosine_residual[1] ** 2 @ fit.setting.family.weights[noise[0]]
+    left = fit.cosine_residual[1] ** 2 @ fit.weighting.family.weights[noise[0]]
     return float(left / fit.rows) < fit.settings.radius_left * noise[1]

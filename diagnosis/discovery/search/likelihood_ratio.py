@@ -29,15 +29,15 @@ def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
     The baseline's coefficients are integrated out, and so are the turns' own zeros, which are draws from a
     distribution with the scatter that they show: a common cause of many turns' zeros gains by making them scatter less.
     """
-    family = fit.setting.family
+    family = fit.weighting.family
     base = [k for k, free in enumerate(fit.free) if free in BASELINE]
     turns = [k for k, free in enumerate(fit.free) if free.turn is not None]
     integrated = [*base, *turns]
-    dof = fit.rows * fit.evidence.observables - len(base)
+    dof = fit.rows * fit.observations.observables - len(base)
     prior = float(np.sum(np.log(np.abs(fit.prior_jacobian[turns].sum(axis=1))))) if turns else 0.0
     cost = family.cost(fit.rows)
     best = -np.inf
-    for member in members or fit.setting.plausible:
+    for member in members or fit.weighting.plausible:
         r, j = fit.whitened(member)
         _, log_det = np.linalg.slogdet(j[integrated] @ j[integrated].T + 1e-300 * np.eye(len(integrated)))
         best = max(best, -0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + cost[member] + log_det))
@@ -55,8 +55,8 @@ def degrees(effect: Effect, terms: int) -> int:
 
 
 def refit(chain: Chain, free: Sequence[Free], like: Fit, *, iterations: int = 12) -> Fit:
-    """Fit a chain's free parameters to the evidence of another fit."""
-    return solve_tidy(evaluate(chain, tuple(free), like.evidence, like.setting), iterations=iterations)
+    """Fit a chain's free parameters to the observations of another fit."""
+    return solve_tidy(evaluate(chain, tuple(free), like.observations, like.weighting), iterations=iterations)
 
 
 def solve_tidy(fit: Fit, *, iterations: int = 12) -> Fit:
@@ -67,31 +67,31 @@ def solve_tidy(fit: Fit, *, iterations: int = 12) -> Fit:
 
 def replace_chain(fit: Fit, chain: Chain) -> Fit:
     """The fit with an equivalent chain (phases and signs made tidy)."""
-    return evaluate(chain, fit.free, fit.evidence, fit.setting)
+    return evaluate(chain, fit.free, fit.observations, fit.weighting)
 
 
 def settle(fit: Fit) -> tuple[Fit, Base]:
     """Let the fit take the noise that fits it best, the radius its own noise, and solve again."""
-    fit = replace(fit, setting=replace(fit.setting, members=plausible_members(fit)))
+    fit = replace(fit, weighting=replace(fit.weighting, members=plausible_members(fit)))
     for _ in range(SETTLING):
         base = Base.of(fit)
-        setting = replace(fit.setting, member=base.member, **_radius_setting(fit))
-        same = setting.member == fit.setting.member and np.isclose(
-            setting.radius_weight, fit.setting.radius_weight, rtol=0.05
+        weighting = replace(fit.weighting, member=base.member, **_radius_setting(fit))
+        same = weighting.member == fit.weighting.member and np.isclose(
+            weighting.radius_weight, fit.weighting.radius_weight, rtol=0.05
         )
-        if same and setting.radius_member == fit.setting.radius_member:
+        if same and weighting.radius_member == fit.weighting.radius_member:
             return fit, base
-        fit = solve(evaluate(fit.chain, fit.free, fit.evidence, setting))
+        fit = solve(evaluate(fit.chain, fit.free, fit.observations, weighting))
     return fit, Base.of(fit)
 
 
 def _radius_setting(fit: Fit) -> dict[str, Any]:
     """Noise member of the radius and its weight against the angle, each from its own residual."""
-    if fit.evidence.observables == 1:
+    if fit.observations.observables == 1:
         return {}
-    family = fit.setting.family
-    angle = float(np.mean(fit.cosine_residual[0] ** 2 * family.weights[fit.setting.member]))
-    told = radius_noise(fit) if fit.setting.radius_trusted else None
+    family = fit.weighting.family
+    angle = float(np.mean(fit.cosine_residual[0] ** 2 * family.weights[fit.weighting.member]))
+    told = radius_noise(fit) if fit.weighting.radius_trusted else None
     member, radius = told if told is not None else radius_as_left(fit)
     # The channels' noise is as large along the radius as across it: the radius never counts for more than that.
     return {"radius_member": member, "radius_weight": min(angle / max(radius, 1e-300), 1.0)}
@@ -99,10 +99,10 @@ def _radius_setting(fit: Fit) -> dict[str, Any]:
 
 def radius_as_left(fit: Fit) -> tuple[int, float]:
     """Family member and variance that describe all that is left of the radius, as if it were noise."""
-    family = fit.setting.family
+    family = fit.weighting.family
     squares = (fit.cosine_residual[1] ** 2) @ family.weights.T
     member = int(np.argmax(-0.5 * (fit.rows * np.log(np.maximum(squares, 1e-300)) + family.cost(fit.rows))))
-    return member, float(squares[member] / len(fit.evidence))
+    return member, float(squares[member] / len(fit.observations))
 
 
 def add(fit: Fit, candidate: Candidate) -> tuple[Fit, str]:
@@ -111,8 +111,8 @@ def add(fit: Fit, candidate: Candidate) -> tuple[Fit, str]:
     further = (f"{name}#{number}" for number in itertools.count(2))
     key = next(key for key in itertools.chain([name], further) if key not in fit.chain.values)
     chain = fit.chain.with_values({key: dict(candidate.effect.begin(candidate.values))})
-    turns = int(fit.evidence.motion.turn.max(initial=0)) + 1
-    free = free_of(candidate.effect, key, turns=turns, channels=fit.evidence.observables == 2)
+    turns = int(fit.observations.motion.turn.max(initial=0)) + 1
+    free = free_of(candidate.effect, key, turns=turns, channels=fit.observations.observables == 2)
     return refit(chain, (*fit.free, *free), fit), key
 
 
@@ -127,7 +127,7 @@ def take_out(fit: Fit, key: str) -> Fit:
     Fitted anew first, the other causes would bend to what the missing one did, some of them beyond return.
     """
     free = tuple(f for f in fit.free if f.key != key)
-    return evaluate(fit.chain.without(key), free, fit.evidence, fit.setting)
+    return evaluate(fit.chain.without(key), free, fit.observations, fit.weighting)
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +155,7 @@ class Trial:
 def handicap(effect: Effect, fit: Fit) -> float:
     """What an effect has to gain beyond the others [nats]: without a name, or of the kind that stairs pass for."""
     settings = fit.settings
-    stairs = settings.stairs_log_odds if fit.setting.coarse and _aliased(effect, fit) else 0.0
+    stairs = settings.stairs_log_odds if fit.weighting.coarse and _aliased(effect, fit) else 0.0
     return stairs + effect.handicap + (settings.unnamed_log_odds if unnamed(effect.name) else 0.0)
 
 
@@ -165,7 +165,7 @@ def doubt_beside(fit: Fit, keys: Sequence[str]) -> float:
     Such a shape describes something only nearly, and what it leaves may pass for a weak cause; unless the noise is
     coloured, which what it leaves is taken for.
     """
-    nearly = fit.setting.member == 0 and any(unnamed(key) for key in keys)
+    nearly = fit.weighting.member == 0 and any(unnamed(key) for key in keys)
     return fit.settings.unnamed_log_odds if nearly else 0.0
 
 

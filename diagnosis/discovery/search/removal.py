@@ -12,7 +12,7 @@ from twin.effect import Effect
 
 
 @dataclass(frozen=True, eq=False)
-class Standing:
+class Removal:
     """A cause against the fit without it.
 
     ``without`` is fitted anew; ``removed`` has all else left where it is, and ``base`` screens what comes back there.
@@ -29,7 +29,7 @@ class Standing:
     log_p: float
 
     @classmethod
-    def of(cls, fit: Fit, key: str) -> Standing:
+    def of(cls, fit: Fit, key: str) -> Removal:
         """Take the cause out and see what is lost."""
         effect = find(key, fit.chain.effects)
         removed = take_out(fit, key)
@@ -38,8 +38,8 @@ class Standing:
         # Without it the noise stays what it is with it: else structure that comes back would pass for noise.
         gain = 2.0 * (likelihood(fit) - likelihood(without))
         own = screen_one(base, effect)
-        standing = cls(effect, without, removed, base, own, gain, 0.0)
-        return replace(standing, log_p=standing.judged(gain))
+        removal = cls(effect, without, removed, base, own, gain, 0.0)
+        return replace(removal, log_p=removal.judged(gain))
 
     def judged(self, gain: float) -> float:
         """Log probability that noise gains as much by this effect."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.search.likelihood_ratio import add, likelihood
-from diagnosis.discovery.search.removal import Standing
+from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import screen_one
 from twin.catalogue import base_name, unnamed
 from twin.effect import Effect
@@ -26,27 +26,27 @@ class Judged:
 
 def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Judged:
     """What a cause gains in the final fit, and which named effects (of these, all visible) would fit as well."""
-    standing = Standing.of(fit, key)
+    removal = Removal.of(fit, key)
     rivals: dict[str, Fit] = {}
-    if not unnamed(standing.effect.name):
-        present = {*(base_name(other) for other in keys), standing.effect.name}
+    if not unnamed(removal.effect.name):
+        present = {*(base_name(other) for other in keys), removal.effect.name}
         for other in effects:
             if other.name not in present and not unnamed(other.name):
-                rival = _as_good(fit, standing, other)
+                rival = _as_good(fit, removal, other)
                 if rival is not None:
                     rivals[other.name] = rival
-    return Judged(key, standing.gain, standing.log_p, rivals)
+    return Judged(key, removal.gain, removal.log_p, rivals)
 
 
-def _as_good(fit: Fit, standing: Standing, other: Effect) -> Fit | None:
+def _as_good(fit: Fit, removal: Removal, other: Effect) -> Fit | None:
     """The fit with another effect in the place of a cause, if it cannot be told from the fit with the cause."""
-    settings, gain, own = fit.settings, standing.gain, standing.own
-    same = settings.same_fit(coarse=fit.setting.coarse)
-    rival = screen_one(standing.base, other)
+    settings, gain, own = fit.settings, removal.gain, removal.own
+    same = settings.same_fit(coarse=fit.weighting.coarse)
+    rival = screen_one(removal.base, other)
     if rival is None or rival.gain < settings.rival_share * min(gain, own.gain if own is not None else gain) - same:
         return None
-    trial, _ = add(standing.removed, rival)
-    rival_gain = 2.0 * (likelihood(trial) - likelihood(standing.without))
+    trial, _ = add(removal.removed, rival)
+    rival_gain = 2.0 * (likelihood(trial) - likelihood(removal.without))
     if other.roles("per turn"):
         # A step between two turns is a special case of a zero for each turn: what fits counts, not its price.
         rival_gain = max(rival_gain, rival.gain)

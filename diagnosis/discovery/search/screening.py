@@ -17,7 +17,7 @@ from diagnosis.discovery.fitting.coefficients import observables_to_cosine
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, radius_nuisance, root_weights
 from diagnosis.discovery.fitting.linearised_chain import Term
-from diagnosis.discovery.fitting.observations import Evidence
+from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.search.periodogram import line_shapes
 from twin.angles import Array
 from twin.effect import Effect
@@ -68,13 +68,13 @@ class Base:
         roots: list[Array] = []
         rows: list[Array] = []
         log_det: list[float] = []
-        for member in range(len(fit.setting.family.members)):
-            if member not in fit.setting.plausible:
+        for member in range(len(fit.weighting.family.members)):
+            if member not in fit.weighting.plausible:
                 roots.append(np.zeros_like(fit.cosine_residual))
                 rows.append(np.zeros((0, 0)))
                 log_det.append(np.inf)
                 continue
-            roots.append(root_weights(fit.setting, fit.evidence.observables, member))
+            roots.append(root_weights(fit.weighting, fit.observations.observables, member))
             _, j = fit.whitened(member)
             scale = np.linalg.norm(j, axis=1, keepdims=True)
             q, triangle = np.linalg.qr((j / np.where(scale > 0.0, scale, 1.0)).T)
@@ -85,18 +85,18 @@ class Base:
                 2.0 * float(np.sum(np.log(np.abs(np.diag(triangle)[kept]))))
                 + 2.0 * float(np.sum(np.log(scale[scale > 0])))
             )
-        dof = fit.rows * fit.evidence.observables - len(fit.free) + fit.prior_residual.size
+        dof = fit.rows * fit.observations.observables - len(fit.free) + fit.prior_residual.size
         empty = cls(fit, np.stack(roots), [], rows, np.array(log_det), np.zeros((0, 0)), dof)
         return empty.with_residuals(fit.cosine_residual[None])
 
     def with_residuals(self, cosine_residuals: Array) -> Base:
         """The same fit with residuals (batch, O, n) in the place of its own, as cosine coefficients."""
         prior = self.fit.prior_residual
-        costs = self.fit.setting.family.cost(self.fit.rows)
+        costs = self.fit.weighting.family.cost(self.fit.rows)
         residuals: list[Array] = []
         likelihood = np.full((len(cosine_residuals), len(self.rows)), -np.inf)
         for member, q in enumerate(self.rows):
-            if member not in self.fit.setting.plausible:
+            if member not in self.fit.weighting.plausible:
                 residuals.append(np.zeros((0, 0)))
                 continue
             white = (cosine_residuals * self.roots[member]).reshape(len(cosine_residuals), -1)
@@ -170,8 +170,8 @@ def matched_to(base: Base, cosine_residual: Array, best: int) -> list[Array]:
     fit = base.fit
     rows = []
     for member in dict.fromkeys((0, best)):
-        weighted = cosine_residual * fit.setting.family.weights[member]
-        rows.append(to_rows(weighted) * (fit.evidence.usable / fit.evidence.scale))
+        weighted = cosine_residual * fit.weighting.family.weights[member]
+        rows.append(to_rows(weighted) * (fit.observations.usable / fit.observations.scale))
     return rows
 
 
@@ -188,9 +188,9 @@ def _is_line(effect: Effect, name: str) -> bool:
 def gains_of(base: Base, effect: Effect, shapes: Sequence[Mapping[str, float]]) -> tuple[Array, Array]:
     """Gain (batch, G) of each shape, and the coefficients (batch, G, T) of its fit."""
     fit = base.fit
-    n = len(fit.evidence)
+    n = len(fit.observations)
     terms = len(fit.linear.terms(effect))
-    per = max(1, _CHUNK // max(n * terms * fit.evidence.observables, 1))
+    per = max(1, _CHUNK // max(n * terms * fit.observations.observables, 1))
     gains, coefficients = [], []
     for start in range(0, len(shapes), per):
         columns = fit.linear.columns(effect, shapes[start : start + per])
@@ -200,11 +200,11 @@ def gains_of(base: Base, effect: Effect, shapes: Sequence[Mapping[str, float]]) 
     return np.concatenate(gains, axis=1), np.concatenate(coefficients, axis=1)
 
 
-def project_radius(evidence: Evidence, columns: Array) -> Array:
+def project_radius(observations: Observations, columns: Array) -> Array:
     """Columns (..., O, n) with the radius' nuisances taken out, as the fit's Jacobian has them."""
-    if evidence.observables == 1:
+    if observations.observables == 1:
         return columns
-    basis = np.linalg.qr(np.stack(radius_nuisance(evidence)).T)[0].T
+    basis = np.linalg.qr(np.stack(radius_nuisance(observations)).T)[0].T
     columns = np.array(columns)
     columns[..., 1, :] -= (columns[..., 1, :] @ basis.T) @ basis
     return columns
@@ -214,12 +214,14 @@ def _gains_of_columns(base: Base, effect: Effect, columns: Array) -> tuple[Array
     fit = base.fit
     count, terms = columns.shape[:2]
     batch = len(base.likelihood)
-    cosine = observables_to_cosine(fit.evidence, project_radius(fit.evidence, columns))
+    cosine = observables_to_cosine(fit.observations, project_radius(fit.observations, columns))
     best_gain = np.full((batch, count), -np.inf)
     best_coefficient = np.zeros((batch, count, terms))
     top = base.likelihood.max(axis=1)
-    for member in sorted({base.member, *COARSE} if len(fit.setting.plausible) > len(COARSE) else fit.setting.plausible):
-        if member not in fit.setting.plausible:
+    for member in sorted(
+        {base.member, *COARSE} if len(fit.weighting.plausible) > len(COARSE) else fit.weighting.plausible
+    ):
+        if member not in fit.weighting.plausible:
             continue
         white = (cosine * base.roots[member]).reshape(count * terms, -1)
         q = base.rows[member]

@@ -45,7 +45,7 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = ()) -> Fou
         The fit is settled with its noise. The causes come without a judgement of their rivals: see
         :func:`~diagnosis.discovery.search.rivals.judge`.
     """
-    fit = replace(fit, setting=replace(fit.setting, coarse=stairs_rule(fit)))
+    fit = replace(fit, weighting=replace(fit.weighting, coarse=stairs_rule(fit)))
     plan = Search.among(effects, fit)
     held = list(keys)
     barred: set[str] = set()
@@ -82,5 +82,5 @@ def _improved(fit: Fit, base: Base, keys: Sequence[str], plan: Search) -> tuple[
 
 def _stands_out(fit: Fit) -> bool:
     """Whether anything is left that a file's digits could carry: below, the last digit itself is the structure."""
-    rms_rad = float(np.sqrt(np.mean(fit.residual[0][fit.evidence.usable] ** 2)))
+    rms_rad = float(np.sqrt(np.mean(fit.residual[0][fit.observations.usable] ** 2)))
     return rms_rad > float(np.radians(fit.settings.smallest_rms_deg))

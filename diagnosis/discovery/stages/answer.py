@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.discovery.finding import Named, merge
+from diagnosis.discovery.finding import Finding, merge
 from diagnosis.discovery.fitting.observations import of_readings
 from diagnosis.discovery.marks.stairs import without_stairs
 from diagnosis.discovery.proof.cross_validation import rms_deg
@@ -19,10 +19,10 @@ def answer(state: State) -> State:
     return state.with_(causes=tuple(_with_figures(entry, state) for entry in merge(state.findings)))
 
 
-def _with_figures(entry: Named, state: State) -> Named:
+def _with_figures(entry: Finding, state: State) -> Finding:
     """The entry with its RMS before and after; of causes that no fit of the mean carries from what they leave."""
     fit, held = state.fit, state.held
-    use = fit.evidence.usable
+    use = fit.observations.usable
     before, after = entry.before_deg, entry.after_deg
     if not np.isfinite(before):
         before = after = rms_deg(held[-1], use)
@@ -30,4 +30,6 @@ def _with_figures(entry: Named, state: State) -> Named:
             before = rms_deg(held[-1], np.ones_like(use))
         elif find(entry.keys[0], fit.chain.effects).footprint == "values":
             before, after = rms_deg(without_stairs(fit, entry.keys[0]), use), rms_deg(fit.residual[0], use)
-    return replace(entry, before_deg=of_readings(before, fit.evidence), after_deg=of_readings(after, fit.evidence))
+    return replace(
+        entry, before_deg=of_readings(before, fit.observations), after_deg=of_readings(after, fit.observations)
+    )

@@ -13,5 +13,5 @@ def final_fit(state: State) -> State:
     assert baseline is not None
     by_values = {effect.name for effect in state.effects if effect.footprint == "values"}
     stairs = [finding.keys[0] for finding in state.findings if finding.keys[0] in by_values]
-    plain = solve(evaluate(baseline.chain.without(*stairs), baseline.free, fit.evidence, fit.setting))
+    plain = solve(evaluate(baseline.chain.without(*stairs), baseline.free, fit.observations, fit.weighting))
     return state.with_(with_slopes(fit), baseline=plain)

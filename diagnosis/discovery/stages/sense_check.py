@@ -13,10 +13,10 @@ def sense_check(state: State) -> State:
     Angles alone tell who counts which way by the quadratic term only, and a cause may have stood in for it.
     """
     fit, baseline = state.fit, state.baseline
-    if state.given is not None or baseline is None or fit.evidence.observables == 2:
+    if state.given is not None or baseline is None or fit.observations.observables == 2:
         return state
-    other = solve(evaluate(fit.chain.mirrored(), fit.free, fit.evidence, fit.setting))
+    other = solve(evaluate(fit.chain.mirrored(), fit.free, fit.observations, fit.weighting))
     if likelihood(other) <= likelihood(fit) + state.settings.swap_log_odds:
         return state
-    fresh = solve(evaluate(other.chain.without(*state.keys), baseline.free, fit.evidence, fit.setting))
+    fresh = solve(evaluate(other.chain.without(*state.keys), baseline.free, fit.observations, fit.weighting))
     return state.with_(fresh, keys=(), baseline=fresh)

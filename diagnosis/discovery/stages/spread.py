@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.marks.row_masks import scaled
 from diagnosis.discovery.marks.spread import bursts, spread_shapes
@@ -31,11 +31,11 @@ def spread(state: State) -> State:
     judged = [(shape.log_p + (odds if unnamed(shape.name) else 0.0), shape) for shape in shapes]
     score, best = min(judged, key=lambda item: item[0], default=(0.0, None))
     if best is None or score > limit:
-        if np.all(fit.evidence.scale == 1.0):
+        if np.all(fit.observations.scale == 1.0):
             return state
         # What looked like uneven noise before the search was structure: a scale that no cause carries goes.
-        return state.with_(scaled(fit, np.ones(len(fit.evidence))))
+        return state.with_(scaled(fit, np.ones(len(fit.observations))))
     chain = fit.chain.with_values({best.name: best.values})
-    named = Named((best.name,), best.log_p, best.gain, intervals=best.intervals)
-    weighed = scaled(evaluate(chain, fit.free, fit.evidence, fit.setting), best.variance)
+    named = Finding((best.name,), best.log_p, best.gain, intervals=best.intervals)
+    weighed = scaled(evaluate(chain, fit.free, fit.observations, fit.weighting), best.variance)
     return state.with_(weighed, findings=(*state.findings, named))

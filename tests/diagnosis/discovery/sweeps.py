@@ -155,9 +155,9 @@ def with_residual(state: State, residual_rad: Array) -> State:
     """The state whose readings lie so far (n,) [rad] from what its fit predicts."""
     fit = state.fit
     measured = fit.linear.angle + residual_rad
-    evidence = replace(fit.evidence, measured=measured)
+    observations = replace(fit.observations, measured=measured)
     sweep = replace(state.sweep, measured_deg=np.degrees(measured) % 360.0)
-    return state.with_(evaluate(fit.chain, fit.free, evidence, fit.setting), sweep=sweep)
+    return state.with_(evaluate(fit.chain, fit.free, observations, fit.weighting), sweep=sweep)
 
 
 def with_settings(state: State, **changed: Any) -> State:
@@ -166,7 +166,7 @@ def with_settings(state: State, **changed: Any) -> State:
     if state.fitted is None:
         return state.with_(settings=settings)
     fit = state.fit
-    return state.with_(replace(fit, setting=replace(fit.setting, settings=settings)), settings=settings)
+    return state.with_(replace(fit, weighting=replace(fit.weighting, settings=settings)), settings=settings)
 
 
 def noise(n: int, rms_deg: float = 0.02, seed: int = 3) -> Array:

@@ -8,7 +8,7 @@ from dataclasses import FrozenInstanceError, dataclass
 import numpy as np
 import pytest
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.observe import observe
 from diagnosis.discovery.state import Stage, State, until_still
@@ -83,7 +83,7 @@ def test_a_loop_may_be_run_again() -> None:
 def test_before_the_observations_there_is_no_fit() -> None:
     with pytest.raises(RuntimeError, match="expected `observe` first"):
         _ = start_of(MADE).fit
-    assert len(observe(start_of(MADE)).fit.evidence) == MADE.points
+    assert len(observe(start_of(MADE)).fit.observations) == MADE.points
 
 
 def test_the_state_is_frozen_and_changed_by_a_copy() -> None:
@@ -106,7 +106,9 @@ def test_what_is_searched_is_what_the_error_model_lacks() -> None:
 
 
 def test_what_has_been_found_is_told_by_place_and_by_name() -> None:
-    state = start_of(MADE).with_(findings=(Named(("stale_frames",), -20.0, 40.0), Named(("hysteresis#2",), -9.0, 18.0)))
+    state = start_of(MADE).with_(
+        findings=(Finding(("stale_frames",), -20.0, 40.0), Finding(("hysteresis#2",), -9.0, 18.0))
+    )
     assert {place: state.found(place) for place in ("sequence", "values", "spread")} == {
         "sequence": True,
         "values": False,

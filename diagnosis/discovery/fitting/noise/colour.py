@@ -29,10 +29,10 @@ def coloured(fit: Fit) -> Noise:
     """The colour of highest restricted likelihood near the plausible members, the best of each kind, and its RMS.
 
     These were chosen with structure set aside; farther away structure that is left could pass for colour. The RMS is
-    that of a reading whose row has the scale 1 in the evidence.
+    that of a reading whose row has the scale 1 in the observations.
     """
-    noise = fit.setting.family.members[fit.setting.member]
-    left = (fit.residual[0] / fit.evidence.scale)[fit.evidence.usable]
+    noise = fit.weighting.family.members[fit.weighting.member]
+    left = (fit.residual[0] / fit.observations.scale)[fit.observations.usable]
     rms = float(np.sqrt(np.mean(left**2)))
     if fit.rows <= 2 * len(fit.free) or rms < np.radians(fit.settings.smallest_rms_deg):
         return replace(noise, rms_rad=rms)
@@ -44,11 +44,11 @@ def coloured(fit: Fit) -> Noise:
 
 def _one_of_each_kind(fit: Fit, cost: _Cost) -> list[Noise]:
     """The member in force and, where it is coloured, the best plausible one of the other coloured kind."""
-    family = fit.setting.family
-    noise = family.members[fit.setting.member]
+    family = fit.weighting.family
+    noise = family.members[fit.weighting.member]
     if noise.white:
         return [noise]
-    plausible = [family.members[place] for place in fit.setting.plausible]
+    plausible = [family.members[place] for place in fit.weighting.plausible]
     other = [one for one in plausible if not one.white and _flickers(one) != _flickers(noise)]
     return [noise, *([min(other, key=cost)] if other else [])]
 

@@ -40,13 +40,13 @@ def estimated(fit: Fit, *, limit_rad: float) -> Noise:
         Heavy tails and a scale that depends on conditions only where the likelihood ratio leaves no doubt of them.
     """
     noise = coloured(fit)
-    use = fit.evidence.usable
+    use = fit.observations.usable
     if noise.rms_rad < np.radians(fit.settings.smallest_rms_deg) or stairs_rule(fit):
         return noise
-    provided = fit.evidence.motion.provides
+    provided = fit.observations.motion.provides
     shown = {
         name: rows[:, use]
-        for name, rows in conditions(fit.evidence.motion, fit.linear.sensor_angle).items()
+        for name, rows in conditions(fit.observations.motion, fit.linear.sensor_angle).items()
         if _NEEDS[name] in provided
     }
     log_p = fit.settings.effect_log_p(1 + len(shown))
@@ -61,7 +61,7 @@ def estimated(fit: Fit, *, limit_rad: float) -> Noise:
 
 def whitened_rows(fit: Fit, noise: Noise) -> Array:
     """Residual (n,) [rad] of the angle over the rows, without the noise's colour and the rows' own scale."""
-    return to_rows(fit.cosine_residual[0] / np.sqrt(noise.spectrum(len(fit.evidence))))
+    return to_rows(fit.cosine_residual[0] / np.sqrt(noise.spectrum(len(fit.observations))))
 
 
 def peak(noise: Noise, n: int) -> float:

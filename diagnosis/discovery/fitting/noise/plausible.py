@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 
 def plausible_members(fit: Fit) -> tuple[int, ...]:
     """The family members that the noise may be, given the fit's residual; all where there are too few turns to tell."""
-    everyone = tuple(range(len(fit.setting.family.members)))
-    motion = fit.evidence.motion
+    everyone = tuple(range(len(fit.weighting.family.members)))
+    motion = fit.observations.motion
     if motion.turns < fit.settings.noise_turns:
         return everyone
     aside = locked_shapes(motion)
     if fit.rows < 4 * (len(aside) + len(fit.free)):
         return everyone
-    columns = np.concatenate([fit.cosine_jacobian[:, 0], to_cosine(fit.evidence, aside)])
-    score, _ = _scores(fit.cosine_residual[0], columns, fit.setting.family, fit.rows)
+    columns = np.concatenate([fit.cosine_jacobian[:, 0], to_cosine(fit.observations, aside)])
+    score, _ = _scores(fit.cosine_residual[0], columns, fit.weighting.family, fit.rows)
     return tuple(int(k) for k in np.flatnonzero(score > score.max() - fit.settings.noise_reach))
 
 
@@ -43,13 +43,13 @@ def radius_noise(fit: Fit) -> tuple[int, float] | None:
 
     None where there are too few rows to set it aside.
     """
-    motion = fit.evidence.motion
+    motion = fit.observations.motion
     low = [turned(k * motion.shaft_rad) for k in (1, 2) for turned in (np.cos, np.sin)]
     aside = np.concatenate([np.stack([np.ones(len(motion)), *low]), locked_shapes(motion)])
     if fit.rows < 2 * len(aside):
         return None
     score, variance = _scores(
-        fit.cosine_residual[1], radius_to_cosine(fit.evidence, aside), fit.setting.family, fit.rows
+        fit.cosine_residual[1], radius_to_cosine(fit.observations, aside), fit.weighting.family, fit.rows
     )
     best = int(np.argmax(score))
     return best, float(variance[best])

@@ -15,7 +15,7 @@ from twin.noise.description import Noise
 
 def ahead_of_stairs(fit: Fit, noise: Noise) -> Noise:
     """The noise of a fit's readings before they were rounded: rounding adds white noise of its own."""
-    use = fit.evidence.usable
+    use = fit.observations.usable
     total = float(np.sqrt(np.mean(fit.residual[0][use] ** 2)))
     ahead = blur_behind(total, coarsest_stair(fit.chain))
     if not 0.0 < ahead < total:
@@ -56,6 +56,6 @@ def stairs_rule(fit: Fit) -> bool:
     The variance is no evidence of anything else there.
     """
     stairs = fit.linear.stair_variance
-    if stairs is not None and float(np.mean(stairs)) > 2.0 * fit.setting.blur**2:
+    if stairs is not None and float(np.mean(stairs)) > 2.0 * fit.weighting.blur**2:
         return True
     return any(effect.line and effect.line.clock == "channels" for _, effect, _ in fit.chain.active("channels"))

@@ -27,9 +27,9 @@ def fitted() -> Fit:
 
 def changed(fit: Fit, rows: list[int], wild_rad: float) -> Fit:
     """The fit of a sweep that reads otherwise in these rows, not yet fitted to them."""
-    measured = fit.evidence.measured.copy()
+    measured = fit.observations.measured.copy()
     measured[rows] += wild_rad
-    return evaluate(fit.chain, fit.free, replace(fit.evidence, measured=measured), fit.setting)
+    return evaluate(fit.chain, fit.free, replace(fit.observations, measured=measured), fit.weighting)
 
 
 @pytest.mark.parametrize("wild_rad", [1.0, -2.5])
@@ -53,7 +53,7 @@ def test_a_wild_value_in_a_held_out_fold_moves_no_other_reading_of_it(number: in
 def test_each_cause_in_turn_leaves_less_until_the_noise_is_left() -> None:
     """Strengths of 0.1 deg have an RMS of 0.07 each; n readings tell theirs to 1/sqrt(2n), five of these."""
     fit = fitted()
-    figures = [rms_deg(residual, fit.evidence.usable) for residual in held_out_residuals(fit, KEYS, folds(fit))]
+    figures = [rms_deg(residual, fit.observations.usable) for residual in held_out_residuals(fit, KEYS, folds(fit))]
     assert figures[0] > figures[1] > figures[2]
     # The fits see three quarters of the readings: nine parameters of theirs add a twelfth of the variance.
     assert figures[2] == pytest.approx(NOISE_DEG, rel=5.0 / np.sqrt(2.0 * fit.rows) + 0.05)
@@ -62,9 +62,9 @@ def test_each_cause_in_turn_leaves_less_until_the_noise_is_left() -> None:
 
 def test_masked_rows_count_neither_for_the_fits_nor_for_the_figure() -> None:
     fit = fitted()
-    usable = np.ones(len(fit.evidence), dtype=bool)
+    usable = np.ones(len(fit.observations), dtype=bool)
     usable[[3, 50, 100]] = False
-    kept = evaluate(fit.chain, fit.free, fit.evidence.masked(usable), fit.setting)
+    kept = evaluate(fit.chain, fit.free, fit.observations.masked(usable), fit.weighting)
     fold = folds(fit)
     plain = held_out_residuals(kept, KEYS, fold)[-1]
     wild = held_out_residuals(changed(kept, [3, 50, 100], 2.0), KEYS, fold)[-1]
@@ -102,8 +102,8 @@ def test_blocks_are_dealt_out_in_turn(case: Case) -> None:
     lengths = np.diff([0, *ends, len(fold)])
     # Stops lie a thousandth of a degree off: a row may fall into the next block.
     assert np.all(np.abs(lengths[1:-1] - case.block) <= 1)
-    if fit.evidence.motion.turns > 4.5:
-        third = np.floor(fit.evidence.motion.shaft_rad / (2.0 * np.pi) * 3.0 + 1e-6).astype(int) % 3
+    if fit.observations.motion.turns > 4.5:
+        third = np.floor(fit.observations.motion.shaft_rad / (2.0 * np.pi) * 3.0 + 1e-6).astype(int) % 3
         assert {(int(a), int(b)) for a, b in zip(third, fold, strict=True)} >= {
             (a, b) for a in range(3) for b in range(4)
         }
@@ -119,7 +119,7 @@ def test_a_fold_is_not_held_out_where_too_few_rows_are_left() -> None:
     fit = fitted()
     fold = folds(fit)
     usable = (fold == 0) | (np.cumsum(fold != 0) <= 7)
-    few = evaluate(fit.chain, fit.free, fit.evidence.masked(usable), fit.setting)
+    few = evaluate(fit.chain, fit.free, fit.observations.masked(usable), fit.weighting)
     held = held_out_residuals(few, KEYS, fold)[0]
     assert np.all(np.isnan(held[fold == 0]))
     assert np.all(np.isfinite(held[(fold == 1) & usable]))

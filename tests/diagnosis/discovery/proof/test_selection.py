@@ -119,7 +119,7 @@ def test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost(
 ) -> None:
     """The growth of the held-out RMS on either side of what is too much; never in coloured noise."""
     fit = handed().fit
-    fit = replace(fit, setting=replace(fit.setting, member=member))
+    fit = replace(fit, weighting=replace(fit.weighting, member=member))
     monkeypatch.setattr(selection, "_held_out", lambda *_: ([], [0.02, 0.02 * growth * LIMITS.heldout_lost]))
     monkeypatch.setattr(selection, "_calibrated", lambda *_: None)
     proof = prove(fit, handed().searched[:EFFECTS], [SATURATION], rng=np.random.default_rng(0))
@@ -132,7 +132,7 @@ def test_in_coloured_noise_a_cause_must_stand_without_the_outputs_stairs_too(
 ) -> None:
     fit = handed().fit
     chain = fit.chain.with_values({"output_quantisation": {"bits": 12.0}}) if grid else fit.chain
-    fit = replace(fit, chain=chain, setting=replace(fit.setting, member=member))
+    fit = replace(fit, chain=chain, weighting=replace(fit.weighting, member=member))
     seen = selection._views(fit, handed().searched)
     assert len(seen) == views
     assert all("output_quantisation" not in view.chain.values for view in seen[1:])

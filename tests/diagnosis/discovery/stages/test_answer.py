@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.stages.answer import answer
 from diagnosis.discovery.state import State
@@ -52,7 +52,7 @@ def test_of_stairs_what_knowing_them_gains() -> None:
 
 def test_what_makes_readings_scatter_gains_nothing_in_their_mean() -> None:
     state = before(answer, MADE)
-    state = state.with_(findings=(*state.findings, Named((BURST,), -20.0, 40.0)))
+    state = state.with_(findings=(*state.findings, Finding((BURST,), -20.0, 40.0)))
     before_deg, after_deg = figures(state)["unnamed"]
     assert before_deg == after_deg == figures(state)[STALE][1]
 
@@ -61,8 +61,8 @@ def test_figures_are_those_of_single_readings() -> None:
     """Of rows that average several, what averaging has taken away is put back."""
     state = before(answer, MADE)
     fit, within_deg = state.fit, 0.3
-    evidence = replace(fit.evidence, within=float(np.radians(within_deg)) ** 2)
-    averaged = state.with_(evaluate(fit.chain, fit.free, evidence, fit.setting))
+    observations = replace(fit.observations, within=float(np.radians(within_deg)) ** 2)
+    averaged = state.with_(evaluate(fit.chain, fit.free, observations, fit.weighting))
     plain = figures(state)
     for name, (before_deg, after_deg) in figures(averaged).items():
         assert before_deg == pytest.approx(np.hypot(plain[name][0], within_deg))
@@ -74,8 +74,8 @@ def test_instances_of_one_effect_are_one_entry_and_so_is_all_without_a_name() ->
     state = before(answer, MADE)
     fit = state.fit
 
-    def finding(key: str, gain: float, **more: object) -> Named:
-        return replace(Named((key,), -0.5 * gain, gain, before_deg=0.3, after_deg=0.2, family_log_p=-gain), **more)
+    def finding(key: str, gain: float, **more: object) -> Finding:
+        return replace(Finding((key,), -0.5 * gain, gain, before_deg=0.3, after_deg=0.2, family_log_p=-gain), **more)
 
     state = state.with_(
         findings=(

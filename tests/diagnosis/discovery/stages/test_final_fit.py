@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
 from diagnosis.discovery.stages.final_fit import final_fit
 from diagnosis.discovery.state import State
@@ -28,7 +28,7 @@ def test_the_weight_of_a_stuck_bit_is_that_of_the_optimum() -> None:
     """Where edges count as slopes: it costs less there than where the search has stopped, and holds the true weight."""
     state = before(final_fit, STUCK)
     after = final_fit(state)
-    assert (state.fit.setting.slopes, after.fit.setting.slopes) == (False, True)
+    assert (state.fit.weighting.slopes, after.fit.weighting.slopes) == (False, True)
     assert cost(after.fit) < cost(state.fit)
     deviation = dict(zip((f.name for f in after.fit.free), np.sqrt(np.diag(after.fit.covariance())), strict=True))
     found, true = after.fit.chain.values["adc_stuck_bit"], truth_of(STUCK, "adc_stuck_bit")
@@ -71,11 +71,11 @@ def test_the_baseline_is_the_error_model_without_any_cause(case: Case) -> None:
 
 def masked(state: State, rows: list[int]) -> State:
     """The state whose fit does without some rows, and weighs others by half."""
-    usable, scale = np.ones(len(state.fit.evidence), dtype=bool), np.ones(len(state.fit.evidence))
+    usable, scale = np.ones(len(state.fit.observations), dtype=bool), np.ones(len(state.fit.observations))
     usable[rows], scale[60:] = False, 2.0
     fit = state.fit
-    evidence = replace(fit.evidence.masked(usable), scale=scale)
-    return state.with_(evaluate(fit.chain, fit.free, evidence, replace(fit.setting, member=2)))
+    observations = replace(fit.observations.masked(usable), scale=scale)
+    return state.with_(evaluate(fit.chain, fit.free, observations, replace(fit.weighting, member=2)))
 
 
 def test_the_baseline_is_fitted_by_the_same_rows_and_weights() -> None:
@@ -83,8 +83,8 @@ def test_the_baseline_is_fitted_by_the_same_rows_and_weights() -> None:
     state = masked(before(final_fit, PLAIN), [3, 4, 50])
     after = final_fit(state)
     assert after.baseline is not None
-    assert after.baseline.evidence is state.fit.evidence
-    assert after.baseline.setting is state.fit.setting
+    assert after.baseline.observations is state.fit.observations
+    assert after.baseline.weighting is state.fit.weighting
     # At its optimum: no parameter would move by a hundredth of its deviation.
     residual, jacobian = after.baseline.whitened()
     step = after.baseline.covariance() @ (jacobian @ residual) / (cost(after.baseline) / after.baseline.rows)
@@ -93,7 +93,7 @@ def test_the_baseline_is_fitted_by_the_same_rows_and_weights() -> None:
 
 def test_findings_that_are_no_stairs_leave_the_baseline_its_own() -> None:
     made = Made(causes=(("saturation", 0.08),), points=120, bits=14)
-    state = before(final_fit, made).with_(findings=(Named(("stale_frames",), -20.0, 40.0),))
+    state = before(final_fit, made).with_(findings=(Finding(("stale_frames",), -20.0, 40.0),))
     baseline = final_fit(state).baseline
     assert baseline is not None
     assert GRID in baseline.chain.values

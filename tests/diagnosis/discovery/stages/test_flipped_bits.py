@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.flipped_bits import flipped_bits
 from tests.diagnosis.discovery.claims import claiming, with_effects
@@ -82,5 +82,5 @@ def test_a_claim_is_believed_by_its_probability(margin: float, named: bool, earl
 
 def test_what_has_been_found_is_not_looked_for_again() -> None:
     state = with_effects(before(flipped_bits, CLEAN), claiming(STALE, (40, 90), -50.0, early=True))
-    state = state.with_(findings=(Named((STALE,), -20.0, 40.0),))
+    state = state.with_(findings=(Finding((STALE,), -20.0, 40.0),))
     assert flipped_bits(state) is state

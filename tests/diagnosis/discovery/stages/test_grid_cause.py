@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.stages.grid_cause import grid_cause
 from diagnosis.discovery.stages.quantisation import quantisation
@@ -43,7 +43,7 @@ def test_rounding_is_a_cause_from_half_of_the_noise_on(factor: float, named: boo
     blur = STEP / np.sqrt(12.0) / (0.5 * factor)
     fit = state.fit
     # The readings keep to their stairs, so that these are seen as before.
-    state = state.with_(replace(fit, setting=replace(fit.setting, blur=blur)))
+    state = state.with_(replace(fit, weighting=replace(fit.weighting, blur=blur)))
     assert (grid_cause(state) is not state) == named
 
 
@@ -63,11 +63,11 @@ def test_no_rounding_where_the_model_has_none() -> None:
     assert grid_cause(state) is state
     stairs = stepped(1.6)
     chain = stairs.fit.chain.without(GRID)
-    plain = stairs.with_(evaluate(chain, stairs.fit.free, stairs.fit.evidence, stairs.fit.setting))
+    plain = stairs.with_(evaluate(chain, stairs.fit.free, stairs.fit.observations, stairs.fit.weighting))
     assert grid_cause(plain) is plain
 
 
 def test_no_rounding_beside_another_finite_set() -> None:
     """Whose angles, rounded, lie on the grid anyway."""
-    state = stepped(1.6).with_(findings=(Named(("cordic_truncation",), -100.0, 200.0),))
+    state = stepped(1.6).with_(findings=(Finding(("cordic_truncation",), -100.0, 200.0),))
     assert grid_cause(state) is state

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.proof.cross_validation import rms_deg
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
@@ -62,7 +62,7 @@ def test_what_is_proven_stays(case: Case) -> None:
     assert [finding.keys for finding in after.findings] == [(key,) for key in after.keys]
     assert {free.key for free in after.fit.free} & set(state.keys) == set(case.stay)
     assert len(after.held) == len(case.stay) + 1
-    figures = [rms_deg(held, after.fit.evidence.usable) for held in after.held]
+    figures = [rms_deg(held, after.fit.observations.usable) for held in after.held]
     for finding, (before_deg, after_deg) in zip(after.findings, itertools.pairwise(figures), strict=True):
         assert (finding.before_deg, finding.after_deg) == (before_deg, after_deg)
         assert after_deg < before_deg
@@ -84,7 +84,7 @@ def test_a_cause_among_all_that_were_searched_must_be_improbable(strength_deg: f
 
 def test_what_was_found_beside_the_joint_fit_comes_after() -> None:
     state = before(held_out_selection, ONE)
-    found = Named(("stale_frames",), -50.0, 100.0)
+    found = Finding(("stale_frames",), -50.0, 100.0)
     after = held_out_selection(state.with_(findings=(found,)))
     assert [finding.keys for finding in after.findings] == [(SATURATION,), ("stale_frames",)]
     assert after.findings[-1] is found

@@ -46,21 +46,21 @@ CASES = {
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 def test_what_is_seen(case: Case) -> None:
     state = observe(start_of(case.made))
-    evidence = state.fit.evidence
-    assert len(evidence) == case.rows
-    assert tuple(np.flatnonzero(~evidence.usable)) == case.aside
+    observations = state.fit.observations
+    assert len(observations) == case.rows
+    assert tuple(np.flatnonzero(~observations.usable)) == case.aside
     assert state.bits == case.bits
     assert state.step == (2.0 * np.pi / 2.0**case.bits if case.bits else 0.0)
-    assert (evidence.observables == 2) == case.radius
-    assert state.fit.setting.radius_weight == float(case.radius)
+    assert (observations.observables == 2) == case.radius
+    assert state.fit.weighting.radius_weight == float(case.radius)
     assert state.fit.free == ()
     assert state.fit.settings is state.settings
     if case.repeat_deg is None:
-        assert evidence.repeat_rms is None
+        assert observations.repeat_rms is None
     else:
         # A standard deviation of n readings, a degree of freedom lost at each angle: five of its own deviations.
         dof = len(sweep_of(case.made)) - case.rows
-        assert evidence.repeat_rms == pytest.approx(np.radians(case.repeat_deg), rel=5.0 / np.sqrt(2.0 * dof))
+        assert observations.repeat_rms == pytest.approx(np.radians(case.repeat_deg), rel=5.0 / np.sqrt(2.0 * dof))
 
 
 @pytest.mark.parametrize(("missing", "bits"), [(0, 12), (1, None)])

@@ -46,7 +46,7 @@ def test_the_grid_is_modelled_where_it_is_not_small_against_the_noise(share: flo
     state = on_a_grid(share)
     after = quantisation(state)
     assert (GRID in after.fit.chain.values) == modelled
-    assert (after.fit.setting.blur > 0.0) == modelled
+    assert (after.fit.weighting.blur > 0.0) == modelled
     assert after.findings == ()
     if modelled:
         assert after.fit.chain.values[GRID] == {"bits": float(BITS)}
@@ -57,7 +57,7 @@ def test_the_blur_of_the_stairs_is_the_noise_ahead_of_them(ahead: float) -> None
     """In steps; the RMS of 720 readings is known to 2.6 %: four of these, and the words are tabled to 4 %."""
     plain = noise(720)
     after = quantisation(rounded(plain * ahead * STEP / np.sqrt(np.mean(plain**2))))
-    assert after.fit.setting.blur / STEP == pytest.approx(ahead, rel=4.0 / np.sqrt(2.0 * 720) + 0.04)
+    assert after.fit.weighting.blur / STEP == pytest.approx(ahead, rel=4.0 / np.sqrt(2.0 * 720) + 0.04)
 
 
 @pytest.mark.parametrize("known", [{"bits": 12.0}, {"bits": 10.0}])
@@ -83,7 +83,7 @@ def test_the_finite_set_of_a_truncated_cordic_is_a_cause(strength_deg: float) ->
     assert cause.log_p < LIMITS.effect_log_p(10)
     iterations = truth_of(made, CORDIC_TRUNCATION.name)["iterations"]
     assert after.fit.chain.values[CORDIC_TRUNCATION.name] == {"iterations": iterations}
-    assert after.fit.setting.blur > 0.0
+    assert after.fit.weighting.blur > 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -36,7 +36,7 @@ def test_every_repeated_frame_is_named_and_masked(made: Made) -> None:
     # Looked for by itself, so that there is no family to pay for.
     assert cause.family_log_p == cause.log_p < LIMIT
     assert tuple(np.flatnonzero(after.touched)) == rows
-    assert set(rows) <= set(np.flatnonzero(~after.fit.evidence.usable))
+    assert set(rows) <= set(np.flatnonzero(~after.fit.observations.usable))
     assert repeated_frames(after) is after
 
 
@@ -87,7 +87,7 @@ def test_rows_of_an_earlier_claim_stay_touched() -> None:
     state = state.with_(touched=np.isin(np.arange(len(state.sweep)), (7, 8)))
     after = repeated_frames(state)
     assert tuple(np.flatnonzero(after.touched)) == (7, 8, 40)
-    assert tuple(np.flatnonzero(~after.fit.evidence.usable)) == (7, 8, 40)
+    assert tuple(np.flatnonzero(~after.fit.observations.usable)) == (7, 8, 40)
 
 
 @pytest.mark.parametrize("made", [CLEAN, Made(turns=2, bits=10), Made(points=90, repeats=4)])

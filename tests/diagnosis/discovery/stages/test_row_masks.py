@@ -86,7 +86,7 @@ def handed(case: Case) -> State:
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 def test_which_rows_are_masked(case: Case) -> None:
     state = row_masks(handed(case))
-    assert tuple(np.flatnonzero(~state.fit.evidence.usable)) == case.masked
+    assert tuple(np.flatnonzero(~state.fit.observations.usable)) == case.masked
 
 
 def test_a_masked_row_moves_the_fit_no_more() -> None:
@@ -120,9 +120,9 @@ def recorded() -> State:
 def with_radius(state: State, change: Array) -> State:
     """The state whose log radius differs by so much (n,)."""
     fit = state.fit
-    assert fit.evidence.log_radius is not None
-    evidence = replace(fit.evidence, log_radius=fit.evidence.log_radius + change)
-    return state.with_(evaluate(fit.chain, fit.free, evidence, fit.setting))
+    assert fit.observations.log_radius is not None
+    observations = replace(fit.observations, log_radius=fit.observations.log_radius + change)
+    return state.with_(evaluate(fit.chain, fit.free, observations, fit.weighting))
 
 
 @pytest.mark.parametrize("case", RADII.values(), ids=RADII)
@@ -130,4 +130,4 @@ def test_channels_that_fall_out_are_masked(case: Radius) -> None:
     change = np.zeros(len(recorded().sweep))
     change[list(case.rows)] = -case.fallen
     state = row_masks(with_radius(recorded(), change))
-    assert tuple(np.flatnonzero(~state.fit.evidence.usable)) == (case.rows if case.masked else ())
+    assert tuple(np.flatnonzero(~state.fit.observations.usable)) == (case.rows if case.masked else ())

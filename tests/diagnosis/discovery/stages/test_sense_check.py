@@ -58,7 +58,7 @@ def handed(case: Case) -> State:
 def gain_of(state: State) -> float:
     """What the fit gains when both count the other way [nats]."""
     fit = state.fit
-    other = solve(evaluate(fit.chain.mirrored(), fit.free, fit.evidence, fit.setting))
+    other = solve(evaluate(fit.chain.mirrored(), fit.free, fit.observations, fit.weighting))
     return likelihood(other) - likelihood(fit)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from diagnosis.discovery.finding import Named
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.marks.row_masks import scaled
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.spread import spread
@@ -46,7 +46,7 @@ CASES = {
 
 def state_of(case: Case) -> State:
     state = handed(spread, case.loud).with_(keys=case.keys, looked_at=case.looked_at)
-    return state.with_(replace(state.fit, setting=replace(state.fit.setting, member=case.member)))
+    return state.with_(replace(state.fit, weighting=replace(state.fit.weighting, member=case.member)))
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
@@ -63,7 +63,7 @@ def test_what_is_named(case: Case) -> None:
         odds = LIMITS.unnamed_log_odds * (unnamed(case.named) + (case.keys == (BUMP,) and case.member == 0))
         assert 2.0 * limit < finding.log_p + odds < limit
         assert finding.keys[0] in after.fit.chain.values
-        assert not np.all(after.fit.evidence.scale == 1.0)
+        assert not np.all(after.fit.observations.scale == 1.0)
 
 
 def test_of_two_the_more_improbable_is_named() -> None:
@@ -92,7 +92,7 @@ def test_where_is_said_of_a_stretch() -> None:
 
 
 def test_it_is_judged_once() -> None:
-    state = handed(spread, Loud(stretch=4.0)).with_(findings=(Named((JITTER,), -30.0, 60.0),))
+    state = handed(spread, Loud(stretch=4.0)).with_(findings=(Finding((JITTER,), -30.0, 60.0),))
     assert spread(state) is state
 
 
@@ -101,7 +101,7 @@ def test_a_scale_that_no_cause_carries_goes() -> None:
     loud = np.ones(len(state.sweep))
     loud[100:140] = 4.0
     after = spread(state.with_(scaled(state.fit, loud)))
-    assert np.all(after.fit.evidence.scale == 1.0)
+    assert np.all(after.fit.observations.scale == 1.0)
     assert after.findings == ()
     assert spread(after) is after
 
@@ -112,4 +112,4 @@ def test_a_scale_that_is_named_stays() -> None:
     loud[100:140] = 16.0
     after = spread(state.with_(scaled(state.fit, loud)))
     assert [finding.keys for finding in after.findings] == [(BURST,)]
-    assert np.max(after.fit.evidence.scale) == pytest.approx(4.0, rel=0.25)
+    assert np.max(after.fit.observations.scale) == pytest.approx(4.0, rel=0.25)

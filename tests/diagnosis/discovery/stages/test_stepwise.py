@@ -25,7 +25,7 @@ Shape = Callable[[Fit], Array]
 
 def harmonic(fit: Fit) -> Array:
     """A fifth order of the shaft."""
-    return np.asarray(np.sin(5.0 * fit.evidence.motion.shaft_rad + 1.0))
+    return np.asarray(np.sin(5.0 * fit.observations.motion.shaft_rad + 1.0))
 
 
 def saturated(fit: Fit) -> Array:
@@ -35,11 +35,11 @@ def saturated(fit: Fit) -> Array:
 
 def without_name(fit: Fit) -> Array:
     """An order that belongs to no cause."""
-    return np.asarray(np.sin(13.0 * fit.evidence.motion.shaft_rad))
+    return np.asarray(np.sin(13.0 * fit.observations.motion.shaft_rad))
 
 
 def nothing(fit: Fit) -> Array:
-    return np.zeros(len(fit.evidence))
+    return np.zeros(len(fit.observations))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +136,7 @@ def test_rows_that_another_effect_has_claimed_stay_out() -> None:
     state = with_residual(state, residual).with_(touched=touched)
     after = stepwise(state.with_(without_rows(state.fit, touched)))
     assert after.keys == ("magnet_harmonic",)
-    assert tuple(np.flatnonzero(~after.fit.evidence.usable)) == (20, 21, 90)
+    assert tuple(np.flatnonzero(~after.fit.observations.usable)) == (20, 21, 90)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -144,4 +144,4 @@ def test_noise_that_is_coloured_is_no_cause(seed: int) -> None:
     """It is taken for what it is; by the policy one sweep in a hundred would be given a cause."""
     after = stepwise(before(stepwise, Made(points=72, turns=4, correlation=0.8, seed=seed)))
     assert after.keys == ()
-    assert after.fit.setting.member > 0
+    assert after.fit.weighting.member > 0

@@ -50,14 +50,14 @@ def test_what_is_beyond_doubt_weighs_the_rows(case: Case) -> None:
     after = variance(state)
     assert (after is state) == (not case.weighed)
     assert after.findings == ()
-    assert np.all(after.fit.evidence.scale == 1.0) == (not case.weighed)
+    assert np.all(after.fit.observations.scale == 1.0) == (not case.weighed)
 
 
 def test_the_rows_of_a_loud_stretch_weigh_by_how_loud_it_is() -> None:
     """Ends and loudness of a stretch of 40 rows are told to some rows and to a tenth: five sigma would be half."""
     factor = 4.0
     after = variance(handed(variance, Loud(stretch=factor)))
-    scale = after.fit.evidence.scale
+    scale = after.fit.observations.scale
     (first, *_, last) = np.flatnonzero(scale > 1.0)
     assert abs(first - Loud().first) <= 6
     assert abs(last - (Loud().first + Loud().length - 1)) <= 6
@@ -69,7 +69,7 @@ def test_the_rows_weigh_by_the_shape_where_that_stands_out_more() -> None:
     after = variance(handed(variance, Loud(jitter_percent=0.3)))
     shape = jitter_variance(after.fit.linear.sensor_angle, {"percent_rms": 0.3}) + np.radians(0.02) ** 2
     expected = np.sqrt(shape / np.median(shape))
-    assert np.max(np.abs(np.log(after.fit.evidence.scale / expected))) < 0.3
+    assert np.max(np.abs(np.log(after.fit.observations.scale / expected))) < 0.3
 
 
 def test_even_noise_is_left_as_it_is() -> None:

@@ -29,13 +29,15 @@ def _read(columns: dict[str, Array]) -> Sweep:
 
 def test_averaged_readings_keep_the_scatter_of_single_ones() -> None:
     sweep = _sweep(8 * MOST_ROWS, 8 * 360)
-    evidence = collect(sweep)
-    assert len(evidence) <= 1.05 * MOST_ROWS
+    observations = collect(sweep)
+    assert len(observations) <= 1.05 * MOST_ROWS
     # The shaft moves by 0.6 deg within a block of five: a scatter that counted it would be ten times the noise.
     # A standard deviation of n readings is known to 1 / sqrt(2 n); five times that.
     tolerance = 5.0 / np.sqrt(2.0 * len(sweep))
-    assert evidence.repeat_rms is not None
-    assert abs(np.degrees(evidence.repeat_rms) / NOISE_DEG - 1.0) < tolerance + 0.002  # the error's own slope, 0.7 %
+    assert observations.repeat_rms is not None
+    assert (
+        abs(np.degrees(observations.repeat_rms) / NOISE_DEG - 1.0) < tolerance + 0.002
+    )  # the error's own slope, 0.7 %
 
 
 def test_every_rms_of_an_averaged_sweep_is_that_of_single_readings() -> None:

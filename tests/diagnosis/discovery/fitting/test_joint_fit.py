@@ -10,7 +10,7 @@ import pytest
 from scipy.fft import dct
 from scipy.optimize import least_squares
 
-from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Setting, evaluate, free_of, solve
+from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Weighting, evaluate, free_of, solve
 from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.observations import collect
 from diagnosis.discovery.settings import DiscoverySettings
@@ -80,21 +80,21 @@ def started(case: Case) -> tuple[Fit, Array]:
     chain = Chain(sensor_sense=-1, magnet=case.magnet)
     for key, params in {**DEVICE, **case.causes}.items():
         chain = chain.with_effect(key, **params)
-    evidence = collect(chain.with_effect("noise", rms_deg=NOISE_DEG).simulate(motion, seed=3))
-    assert evidence.usable.all()
+    observations = collect(chain.with_effect("noise", rms_deg=NOISE_DEG).simulate(motion, seed=3))
+    assert observations.usable.all()
     free = [*BASELINE]
     for key in case.causes:
         free += free_of(find(key), key, turns=1, channels=case.channels)
-    setting = Setting(
-        noise_family(len(evidence), DiscoverySettings().colour_log_odds),
+    weighting = Weighting(
+        noise_family(len(observations), DiscoverySettings().colour_log_odds),
         member=case.member,
         radius_member=case.member,
         radius_weight=1.0 if case.channels else 0.0,
     )
-    true = evaluate(chain, tuple(free), evidence, setting)
+    true = evaluate(chain, tuple(free), observations, weighting)
     deviation = np.sqrt(np.diag(true.covariance()))
     off = AWAY * np.random.default_rng(5).choice([-1.0, 1.0], size=len(free))
-    return evaluate(at(true, values_of(true) + off * deviation), true.free, evidence, setting), deviation
+    return evaluate(at(true, values_of(true) + off * deviation), true.free, observations, weighting), deviation
 
 
 def values_of(fit: Fit) -> Array:
@@ -112,14 +112,14 @@ def at(fit: Fit, values: Array) -> Chain:
 
 def misfit(fit: Fit, values: Array) -> Array:
     """Whitened residuals of angle and radius, from the chain's own readings and channels."""
-    evidence, chain = fit.evidence, at(fit, values)
-    shaft = chain.shaft(evidence.motion)
-    parts = [wrap(evidence.measured - chain.readings(shaft))]
-    if evidence.log_radius is not None:
+    observations, chain = fit.observations, at(fit, values)
+    shaft = chain.shaft(observations.motion)
+    parts = [wrap(observations.measured - chain.readings(shaft))]
+    if observations.log_radius is not None:
         x, y = chain.channels(shaft)
-        radius = evidence.log_radius - np.log(np.hypot(x, y))
+        radius = observations.log_radius - np.log(np.hypot(x, y))
         parts.append(radius - np.mean(radius))
-    root = 1.0 / np.sqrt(fit.setting.family.spectra[fit.setting.member])
+    root = 1.0 / np.sqrt(fit.weighting.family.spectra[fit.weighting.member])
     return np.concatenate([root * dct(part, type=2, norm="ortho") for part in parts]) / np.radians(NOISE_DEG)
 
 
@@ -140,6 +140,6 @@ def test_the_optimum_is_that_of_least_squares(case: Case) -> None:
         gtol=1e-12,
     )
     away = np.abs((found - start) / deviation - oracle.x)
-    rows = len(fit.evidence) * fit.evidence.observables
+    rows = len(fit.observations) * fit.observations.observables
     assert np.max(np.abs(oracle.x)) > 0.5 * AWAY
     assert np.max(away) < np.sqrt(1e-7 * rows) + case.neglected

@@ -10,7 +10,7 @@ from diagnosis.discovery.proof.bootstrap import noise_of, simulated, twin_parame
 from diagnosis.discovery.proof.predictive_check import likeness
 from diagnosis.discovery.stages.quantisation import quantisation
 from diagnosis.discovery.stages.spread import spread
-from tests.diagnosis.noises import MOTION, RMS_RAD, fit_of, spectral_deviations
+from tests.diagnosis.discovery.fitting.noises import MOTION, RMS_RAD, fit_of, spectral_deviations
 from tests.hidden.noise import Noise as Hidden
 from twin.angles import TAU, Array, wrap
 from twin.contract import full_motion
@@ -92,7 +92,7 @@ def test_noise_ahead_of_a_grid_is_told_from_rounding(correlation: float, ratio: 
     noise = ratio * STEP * Hidden("ar1" if correlation else "white", 1.0, correlation).sample(rng, len(UNEVEN))
     reading = np.round((UNEVEN.shaft_rad + noise) / STEP) * STEP
     fit = fit_of(reading - UNEVEN.shaft_rad, UNEVEN, quantisation)
-    assert fit.setting.blur > 0.0
+    assert fit.weighting.blur > 0.0
     told = twin_parameters(fit, noise_of(fit))
     total = 1.0 + 1.0 / (12.0 * ratio**2)
     widened = (1.0 + correlation**2) / (1.0 - correlation**2)

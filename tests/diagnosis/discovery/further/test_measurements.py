@@ -64,9 +64,11 @@ def planned(motion: twin_motion.Motion) -> Motion:
 def achieved_sigma(found: Discovery, first: Fit, rival: Fit, recording: Recording) -> float:
     """Root of what the extended twin gains over the rival, fitted to the measured sweep in its place."""
     start = expected(first, rival, recording)
-    wrong = solve(evaluate(start.chain, start.free, found.fit.evidence, found.fit.setting), iterations=20)
+    wrong = solve(evaluate(start.chain, start.free, found.fit.observations, found.fit.weighting), iterations=20)
     squares = [float(np.sum(one.whitened()[0] ** 2)) for one in (found.fit, wrong)]
-    return float(np.sqrt((squares[1] - squares[0]) / (squares[0] / found.fit.rows / found.fit.evidence.observables)))
+    return float(
+        np.sqrt((squares[1] - squares[0]) / (squares[0] / found.fit.rows / found.fit.observations.observables))
+    )
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.cause}-{case.rival}-{case.advised}")
@@ -82,7 +84,7 @@ def test_advice_holds(case: Case, tmp_path: Path) -> None:
     assert option is not None
     assert option.name == advised
     assert option.sigma > first.fit.settings.sigma_enough
-    plan = PLAN[advised](first.fit.evidence.motion)
+    plan = PLAN[advised](first.fit.observations.motion)
     assert plan is not None
     (recording,) = plan
     channels = "+" if recording.channels else "-"

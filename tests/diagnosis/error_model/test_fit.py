@@ -11,7 +11,7 @@ from diagnosis import fit_baseline
 from diagnosis.error_model.fit import fit_equal, fit_many
 from diagnosis.error_model.model import NAMES, ZERO
 from tests.diagnosis.cases import NOISE_RAD, measured, points, senses, turn
-from tests.diagnosis.study import DEVICES, compensated, draw, ratio_and_coverage
+from tests.diagnosis.error_model.study import DEVICES, compensated, draw, ratio_and_coverage
 from twin.angles import Array, wrap
 from twin.motion import Motion
 

@@ -119,13 +119,13 @@ def test_expected_separation_is_the_mean_of_what_noise_then_shows(name: str) -> 
     rng, sigma, gains = np.random.default_rng(8), np.radians(0.02), []
     for _ in range(30):
         noisy = replace(
-            right.evidence,
-            measured=right.evidence.measured + sigma * rng.standard_normal(len(right.evidence)),
+            right.observations,
+            measured=right.observations.measured + sigma * rng.standard_normal(len(right.observations)),
             log_radius=None
-            if right.evidence.log_radius is None
-            else right.evidence.log_radius + sigma * rng.standard_normal(len(right.evidence)),
+            if right.observations.log_radius is None
+            else right.observations.log_radius + sigma * rng.standard_normal(len(right.observations)),
         )
-        fits = [solve(evaluate(part.chain, part.free, noisy, part.setting)) for part in (right, wrong)]
+        fits = [solve(evaluate(part.chain, part.free, noisy, part.weighting)) for part in (right, wrong)]
         gains.append(left(fits[1], sigma) - left(fits[0], sigma))
     # The rival has one free parameter more, which takes one from its squares; the fitted noise is known to 5 %.
     mean, spread = float(np.mean(gains)) + 1.0, 2.0 * max(told, 1.0) / np.sqrt(30.0)

@@ -1,4 +1,4 @@
-"""The diagnoser on cases drawn from Table 2: ``python -m tests.diagnosis.study``.
+"""The diagnoser on cases drawn from Table 2: ``python -m tests.diagnosis.error_model.study``.
 
 Convergence of the swarm over 100 cases, errors against the Cramer-Rao bound and coverage of the 95 % intervals over
 1,000 cases, and the four devices of Table 2 diagnosed on one sweep and compensated on another.

@@ -11,8 +11,8 @@ from diagnosis.error_model import swarm
 from diagnosis.error_model.error_band import SENTINELS, delta_e_rad, outside
 from diagnosis.error_model.model import NOMINAL, Readings
 from tests.diagnosis.cases import turn
-from tests.diagnosis.grid_search import full_grid_count, grid_search
-from tests.diagnosis.study import STEPS, device, draw, iterations_needed
+from tests.diagnosis.error_model.grid_search import full_grid_count, grid_search
+from tests.diagnosis.error_model.study import STEPS, device, draw, iterations_needed
 from twin.adc.adc_quantisation import FULL_SCALE
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain

@@ -19,7 +19,7 @@ from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.noise.distribution import TAIL, distribution
 from diagnosis.discovery.proof.bootstrap import noise_of, twin_parameters
 from diagnosis.discovery.proof.predictive_check import likeness
-from tests.diagnosis.noises import KINDS, MOTION, RMS_RAD, Kind, density, fit_of, spectral_deviations
+from tests.diagnosis.discovery.fitting.noises import KINDS, MOTION, RMS_RAD, Kind, density, fit_of, spectral_deviations
 from twin.angles import TAU, Array, wrap
 from twin.hall.noise import NOISE
 from twin.noise.description import Noise
@@ -59,8 +59,8 @@ def fitted(kind: Kind) -> tuple[Fitted, ...]:
 def simulated_error(fit: Fit, parameters: Mapping[str, float], seed: int) -> Array:
     """Error (n,) of a sweep simulated from the fit's chain with this noise, in units of RMS_RAD."""
     chain = fit.chain.with_values({NOISE.name: parameters})
-    sweep = chain.simulate(fit.evidence.motion, seed=seed)
-    return wrap(np.radians(sweep.measured_deg) - chain.readings(fit.evidence.motion)) / RMS_RAD
+    sweep = chain.simulate(fit.observations.motion, seed=seed)
+    return wrap(np.radians(sweep.measured_deg) - chain.readings(fit.observations.motion)) / RMS_RAD
 
 
 # ---- estimated to its sampling error ------------------------------------------------------------------------------

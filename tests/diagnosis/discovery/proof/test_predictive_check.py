@@ -74,6 +74,6 @@ def test_same_seed_same_p_and_too_few_readings_give_none() -> None:
     fit = found("clean", "easy").fit
     twice = [likeness(fit, rng=np.random.default_rng(3)) for _ in range(2)]
     assert twice[0] == twice[1]
-    few = fit.evidence.usable & (np.arange(len(fit.evidence)) < 20)
-    short = evaluate(fit.chain, fit.free, fit.evidence.masked(few), fit.setting)
+    few = fit.observations.usable & (np.arange(len(fit.observations)) < 20)
+    short = evaluate(fit.chain, fit.free, fit.observations.masked(few), fit.weighting)
     assert likeness(short, rng=np.random.default_rng(3)) is None

@@ -140,14 +140,14 @@ def _fit_batch(
     both = senses is None
     used, swap = first_look(plain, reference, both=both, robust=robust)
     used = used.oriented(swap)
-    valley = search(used, settings=settings, rng=rng, band_rad=band_rad)
+    found = search(used, settings=settings, rng=rng, band_rad=band_rad)
 
-    coarse = least_squares.descend(least_squares.on_gram(valley.gram), valley.best, count=n)
+    coarse = least_squares.descend(least_squares.on_gram(found.gram), found.best, count=n)
     exact = least_squares.descend(least_squares.on_readings(used), coarse.points, count=n)
     other: tuple[Array, Array] | None = None
     if both:
         swapped = least_squares.descend(
-            least_squares.on_gram(model.swapped_gram(valley.gram)), model.mirrored(coarse.points), count=n
+            least_squares.on_gram(model.swapped_gram(found.gram)), model.mirrored(coarse.points), count=n
         )
         exact, other, turned = _both_senses(used, exact, coarse, swapped)
         swap = swap ^ turned
@@ -159,14 +159,14 @@ def _fit_batch(
         output=output * sign,
         exact=exact,
         other=other,
-        valley=valley,
+        search=found,
     )
     return results(outcome)
 
 
 def _both_senses(
-    used: Readings, exact: least_squares.Polished, coarse: least_squares.Polished, swapped: least_squares.Polished
-) -> tuple[least_squares.Polished, tuple[Array, Array], NDArray[np.bool_]]:
+    used: Readings, exact: least_squares.Minimum, coarse: least_squares.Minimum, swapped: least_squares.Minimum
+) -> tuple[least_squares.Minimum, tuple[Array, Array], NDArray[np.bool_]]:
     """Fit the swapped senses to the readings too, where they are not clearly worse; keep the better pair of each sweep.
 
     Returns the better one, points (batch, 6) and costs (batch,) of the other, and where the swapped one is the better.
@@ -190,7 +190,7 @@ def _both_senses(
                 np.where(turned, exact.cost, cost),
                 np.where(turned, cost, exact.cost),
             )
-            exact = least_squares.Polished(best, least, curvature, exact.passes, settled)
+            exact = least_squares.Minimum(best, least, curvature, exact.passes, settled)
     return exact, (points, cost), turned
 
 

@@ -18,7 +18,7 @@ from twin.angles import Array
 _ROBUST_ROUNDS = 12
 
 
-class Valley:
+class GlobalSearch:
     """The swarm's outcome for each sweep of the batch, filled in round by round."""
 
     def __init__(self, box: Box, gram: Array) -> None:
@@ -39,18 +39,18 @@ class Valley:
 
 def search(
     readings: Readings, *, settings: swarm.SwarmSettings, rng: np.random.Generator, band_rad: float | None = None
-) -> Valley:
+) -> GlobalSearch:
     """Run each sweep's swarm in the range of Table 2, and in a wider one while its best particle stands at the edge.
 
     ``band_rad`` is the Delta E of the discard rule (Eq. 11); None leaves the rule out.
     """
     start = _ideal(readings)
-    valley = Valley(first_box(start[:, ZERO]), readings.gram())
-    valley.zero_only = model.cost(model.coefficients(start[:, None, :]), model.factor(valley.gram))[:, 0]
+    found = GlobalSearch(first_box(start[:, ZERO]), readings.gram())
+    found.zero_only = model.cost(model.coefficients(start[:, None, :]), model.factor(found.gram))[:, 0]
     active = np.arange(start.shape[0])
     while active.size:
-        root = model.factor(valley.gram[active])
-        lower, upper = valley.box.lower[active], valley.box.upper[active]
+        root = model.factor(found.gram[active])
+        lower, upper = found.box.lower[active], found.box.upper[active]
         result = swarm.run(
             lambda points, root=root: model.cost(model.coefficients(points), root),  # type: ignore[misc]
             lower,
@@ -59,21 +59,21 @@ def search(
             settings=settings,
             outside=None if band_rad is None else outside(readings.sweeps(active), band_rad),
         )
-        valley.best[active] = result.best
-        valley.cost[active] = result.best_cost
-        valley.evaluations[active] += result.evaluations
-        valley.rounds[active] += 1
-        valley.discarded[active] += result.discarded
+        found.best[active] = result.best
+        found.cost[active] = result.best_cost
+        found.evaluations[active] += result.evaluations
+        found.rounds[active] += 1
+        found.discarded[active] += result.discarded
         for k, sweep in enumerate(active):
-            valley.histories[sweep] = (result.best_history[k], result.own_history[k])
-        walls = np.zeros(valley.best.shape, dtype=np.bool_)
+            found.histories[sweep] = (result.best_history[k], result.own_history[k])
+        walls = np.zeros(found.best.shape, dtype=np.bool_)
         walls[active] = at_wall(result.best, lower, upper)
         active = np.flatnonzero(walls.any(axis=1))
         if active.size:
-            valley.box = widened(valley.box, walls)
+            found.box = widened(found.box, walls)
             # The errors are large: from here on the weights 1/r^2 count.
-            valley.gram[active] = readings.sweeps(active).gram(valley.best[active])
-    return valley
+            found.gram[active] = readings.sweeps(active).gram(found.best[active])
+    return found
 
 
 def first_look(

@@ -22,7 +22,7 @@ _ROUNDING = 1e-28
 """Sum of squares a reading below which a residual is rounding, [rad^2]."""
 
 
-class Polished(NamedTuple):
+class Minimum(NamedTuple):
     """Where the descent ended."""
 
     points: Array
@@ -69,7 +69,7 @@ def on_readings(readings: Readings) -> Normal:
     return sums
 
 
-def descend(normal: Normal, start: Array, *, count: int, fixed: NDArray[np.bool_] | None = None) -> Polished:
+def descend(normal: Normal, start: Array, *, count: int, fixed: NDArray[np.bool_] | None = None) -> Minimum:
     """Descend from ``start`` (batch, 6) within the twin's limits; ``count`` is the number of readings a sweep.
 
     Parameters marked in ``fixed`` (6,) stay where they start.
@@ -99,7 +99,7 @@ def descend(normal: Normal, start: Array, *, count: int, fixed: NDArray[np.bool_
         total = np.where(better, new_total, total)
         damping = np.clip(np.where(better, 0.1 * damping, 10.0 * damping), 1e-14, 1e12)
         settled |= damping >= 1e12
-    return Polished(points, total, curvature, passes, settled)
+    return Minimum(points, total, curvature, passes, settled)
 
 
 def _held(points: Array, descent: Array) -> NDArray[np.bool_]:

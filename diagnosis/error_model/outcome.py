@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.error_model.global_search import Valley
-from diagnosis.error_model.least_squares import Polished
+from diagnosis.error_model.global_search import GlobalSearch
+from diagnosis.error_model.least_squares import Minimum
 from diagnosis.error_model.model import LOWER_LIMIT, NAMES, UPPER_LIMIT, Readings
 from diagnosis.error_model.result import BaselineFit, Contributions, SearchRange, Senses
 from twin.angles import Array
@@ -26,11 +26,11 @@ class Outcome:
     """Sense s (batch,) of the sensor, +1 or -1."""
     output: Array
     """Sense h (batch,) of the output, +1 or -1."""
-    exact: Polished
+    exact: Minimum
     """The least squares on the readings."""
     other: tuple[Array, Array] | None
     """Points (batch, 6) and costs (batch,) with both senses swapped; None where the senses were given."""
-    valley: Valley
+    search: GlobalSearch
     """The global search before."""
 
 
@@ -63,7 +63,7 @@ def _result(
         high=point + half,
         at_bound=(point <= LOWER_LIMIT) | (point >= UPPER_LIMIT),
         senses=_senses(outcome, k, sigma),
-        search=_search_range(outcome.valley, k),
+        search=_search_range(outcome.search, k),
         contributions=_contributions(outcome, k, counted, rms),
         residual_rad=residual,
         outliers=outliers,
@@ -84,27 +84,27 @@ def _senses(outcome: Outcome, k: int, sigma_rad: float) -> Senses:
     return Senses(sensor=sensor, output=output, sigma=float(np.sqrt(excess)), other=points[k].copy())
 
 
-def _search_range(valley: Valley, k: int) -> SearchRange:
+def _search_range(found: GlobalSearch, k: int) -> SearchRange:
     """Where the swarm looked for the parameters of sweep ``k``."""
     return SearchRange(
-        lower=valley.box.lower[k].copy(),
-        upper=valley.box.upper[k].copy(),
-        widened=tuple(name for name, wide in zip(NAMES, valley.box.widened[k], strict=True) if wide),
-        rounds=int(valley.rounds[k]),
+        lower=found.box.lower[k].copy(),
+        upper=found.box.upper[k].copy(),
+        widened=tuple(name for name, wide in zip(NAMES, found.box.widened[k], strict=True) if wide),
+        rounds=int(found.rounds[k]),
     )
 
 
 def _contributions(outcome: Outcome, k: int, counted: NDArray[np.bool_], rms_rad: float) -> Contributions:
     """What each step brought to the fit of sweep ``k``."""
-    valley, given = outcome.valley, outcome.plain.weights
+    found, given = outcome.search, outcome.plain.weights
     total = float(np.count_nonzero(counted) if given is None else given[k].sum())
-    best, own = valley.histories[k]
+    best, own = found.histories[k]
     return Contributions(
-        zero_only_rms_rad=float(np.sqrt(valley.zero_only[k] / total)),
-        swarm_rms_rad=float(np.sqrt(valley.cost[k] / total)),
+        zero_only_rms_rad=float(np.sqrt(found.zero_only[k] / total)),
+        swarm_rms_rad=float(np.sqrt(found.cost[k] / total)),
         polished_rms_rad=rms_rad,
-        particles_evaluated=int(valley.evaluations[k]),
-        particles_discarded=int(valley.discarded[k]),
+        particles_evaluated=int(found.evaluations[k]),
+        particles_discarded=int(found.discarded[k]),
         passes=outcome.exact.passes,
         best_history_rad=np.sqrt(best / total),
         own_history_rad=np.sqrt(own / total),

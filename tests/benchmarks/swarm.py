@@ -146,7 +146,7 @@ def our_quick_swarm(task: Problem, seed: int) -> Outcome:
 
 
 def our_fit(task: Problem, seed: int) -> Outcome:
-    """Swarm, polish, covariance and residuals: everything that fit_baseline does."""
+    """Swarm, least squares, covariance and residuals: everything that fit_baseline does."""
     start = time.perf_counter()
     fit = fit_baseline(task.reference, task.measured, rng=np.random.default_rng(seed), senses=(1, 1))
     seconds = time.perf_counter() - start
@@ -286,7 +286,7 @@ def compare(task: Problem, seed: int, patience: float, evolved: int) -> int:
     readings = task.reference.size
     repeats = 5 if readings <= 20000 else 2
     print(f"{readings} readings{'':18}        time           RMS reached      evaluations   time over ours")
-    ours = _line("our swarm + polish + intervals", lambda: our_fit(task, seed), repeats=repeats)
+    ours = _line("our swarm + least squares + intervals", lambda: our_fit(task, seed), repeats=repeats)
     assert ours is not None
     base = ours.seconds
     _line("our swarm as the diagnoser runs it", lambda: our_quick_swarm(task, seed), base, repeats)

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from scenarios.commands.protocol import Protocol
-from scenarios.commands.row_chain import row_chain
 from scenarios.studies.training.draw import Draw, Ranges, draw, drawable, stripped, uniforms_needed
+from scenarios.studies.training.row_chain import row_chain
 from twin.angles import Array, wrap, wrap_deg
 from twin.chain import Chain
 from twin.errors import UserError

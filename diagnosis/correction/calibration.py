@@ -36,14 +36,14 @@ _NO_NOISE = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """The twin that the readings support, and the fit of the paper's model underneath."""
+    """The twin with as many orders as the readings support, and the fit of the paper's model that it builds on."""
 
     chain: Chain
     fit: BaselineFit
 
 
 def calibrate(reference_rad: Array, measured_rad: Array, *, rng: np.random.Generator) -> Calibration:
-    """The error curve of readings (n,), n >= 8; isolated gross errors are left out where there are enough others."""
+    """The twin with the error curve of readings (n,), n >= 8; isolated gross errors are left out where n is large."""
     n = reference_rad.size
     fit = fit_baseline(reference_rad, measured_rad, rng=rng, robust=n >= _FEWEST_ROBUST)
     used = ~fit.outliers
@@ -71,7 +71,10 @@ def calibrate(reference_rad: Array, measured_rad: Array, *, rng: np.random.Gener
 
 
 def _sums(readings: Readings, reference: Array, point: Array) -> tuple[Array, Array, float]:
-    """Gram matrix (66, 66) of the six slopes and the orders' cosines and sines, their pull (66,), sum of squares."""
+    """The normal equations of the six slopes and the orders' cosines and sines: matrix (66, 66), right side (66,).
+
+    And the sum of squares of the residual.
+    """
     size = 6 + 2 * ORDERS.size
     gram, pull, total = np.zeros((size, size)), np.zeros(size), 0.0
     for start in range(0, reference.size, _CHUNK):
@@ -86,7 +89,7 @@ def _sums(readings: Readings, reference: Array, point: Array) -> tuple[Array, Ar
 
 
 def _averaged_orders(gram: Array, pull: Array, total: float, count: int) -> Array:
-    """Mean of the orders (60,) over prior strengths and falls, weighted by evidence."""
+    """Cosines and sines of the orders (60,): the mean over the priors' strengths and falls, weighted by evidence."""
     across = np.linalg.lstsq(gram[:6, :6], np.column_stack([gram[:6, 6:], pull[:6]]), rcond=None)[0]
     inner = gram[6:, 6:] - gram[6:, :6] @ across[:, :-1]
     push = pull[6:] - gram[6:, :6] @ across[:, -1]

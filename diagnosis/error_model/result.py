@@ -103,7 +103,7 @@ class BaselineFit:
 
     @property
     def standard_errors(self) -> Array:
-        """(6,)"""
+        """Standard errors (6,) of the point."""
         return np.sqrt(np.diagonal(self.covariance))
 
     def chain(self) -> Chain:

@@ -31,7 +31,7 @@ class ChannelFit:
 
     @property
     def standard_errors(self) -> Array:
-        """(6,)"""
+        """Standard errors (6,) of the values."""
         return np.sqrt(np.diagonal(self.covariance))
 
     @property
@@ -95,12 +95,12 @@ def _distance(values: Array, vx: Array, vy: Array) -> Array:
 
 
 def _undo_quadratic(value: Array, quad: float) -> Array:
-    """c of c + q c^2 = value."""
+    """The root c of c + q c^2 = value that is near value where q is small."""
     return np.asarray(2.0 * value / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * quad * value, 0.0))))
 
 
 def added(fit: BaselineFit, vx: Array, vy: Array) -> Added:
-    """Hold the fit of the angle against the curve of the channels (n,)."""
+    """Compare the fit of the angle with the curve of the channels (n,): what the curve lacks, the reference adds."""
     used = ~fit.outliers
     curve = fit_curve(vx[used], vy[used])
     own, error = curve.point(), _point_errors(curve)

@@ -72,7 +72,7 @@ def mechanical(point: Array, *, field_mT: float = FIELD_MT) -> Mechanical:
 def _shares(name: str) -> tuple[Array, Array]:
     """Displacements [mm] or tilts [deg] (nodes,) and the signed counter-rotating share that each makes.
 
-    Along less across, over their sum.
+    With the field's gains along and across the direction of the displacement, it is their difference over their sum.
     """
     value = np.linspace(0.0, MAGNET_MISALIGNMENT.params[name].upper, _NODES)
     zero = np.zeros(_NODES)
@@ -91,5 +91,5 @@ def _solve(share: float, name: str) -> tuple[float | None, float]:
 
 
 def _half_turn(towards_deg: float, sign: float) -> float:
-    """The axis in [0, 180) deg along which the share is what it is; a negative share turns it by 90 deg."""
+    """Direction [deg] in [0, 180) of the displacement or tilt; one that makes a negative share lies across."""
     return float((towards_deg + (0.0 if sign > 0 else 90.0)) % 180.0)

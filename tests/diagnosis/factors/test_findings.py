@@ -10,8 +10,9 @@ from diagnosis.error_model.model import GAIN, NOMINAL, QUAD, VX, VY, Readings
 from diagnosis.factors.air_gaps import GapSweep, Law, laws
 from diagnosis.factors.channels import fit_curve, output_sense
 from diagnosis.factors.findings import curve_deg, quantify_many
-from diagnosis.factors.identifiability import HIDDEN, identifiability, invisible_count, paper_jacobian
+from diagnosis.factors.identifiability import identifiability
 from diagnosis.factors.mechanical import mechanical
+from diagnosis.factors.null_space import HIDDEN, invisible_count, paper_jacobian
 from tests.diagnosis.cases import NOISE_RAD, measured, turn
 from twin.angles import TAU, Array
 from twin.chain import Chain

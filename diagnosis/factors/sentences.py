@@ -1,0 +1,85 @@
+"""What the readings can and cannot tell of the parameters, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnosis.error_model import model
+from diagnosis.error_model.model import NAMES, ZERO
+from diagnosis.error_model.result import BaselineFit
+from diagnosis.factors.null_space import HIDDEN, invisible_count
+from diagnosis.factors.profile_likelihood import Profile
+from twin.angles import Array
+
+TIED = 0.9
+"""Correlation from which two parameters are called nearly tied."""
+_WHAT = {
+    "Vx_over_Ax": "x offset",
+    "Vy_over_Ay": "y offset",
+    "gain_ratio": "gain ratio",
+    "beta_rad": "phase",
+    "quad": "quadratic term",
+    "zero_rad": "zero",
+}
+
+
+def said_of_any_sweep(fit: BaselineFit, has_channels: bool) -> tuple[str, ...]:
+    """What no angle can show, whatever the readings, and what raw channels show or would show."""
+    visible = "an angle shows only Vx/Ax, Vy/Ay, Ay/Ax, beta, q and the zero"
+    hidden = f"{visible}; of the paper's ten unknowns {invisible_count(fit.point)} combinations stay hidden:"
+    first = f"{hidden} {'; '.join(HIDDEN)}"
+    if has_channels:
+        return (first, "vx and vy show Ax, Ay, Vx and Vy singly, in the unit of the channels")
+    return (first, "vx and vy would show Ax, Ay, Vx and Vy singly and part the sensor's errors from the reference's")
+
+
+def said_of_these_readings(
+    covered_deg: float, unseen: tuple[tuple[float, ...], ...], correlations: Array
+) -> tuple[str, ...]:
+    """Which parameters these readings cannot tell from one another."""
+    said = []
+    if covered_deg < 330.0:
+        said.append(f"the readings cover {covered_deg:.0f} deg of the turn: parameters trade against each other there")
+    for direction in unseen:
+        size = np.abs(direction)
+        parts = " and ".join(_WHAT[NAMES[k]] for k in np.argsort(-size) if size[k] > 0.25 * size.max())
+        said.append(f"these readings do not see a combination of {parts}: only intervals of the others mean anything")
+    if not unseen:
+        rows, columns = np.nonzero(np.triu(np.abs(correlations), 1) > TIED)
+        if rows.size > 2:
+            names = ", ".join(_WHAT[NAMES[k]] for k in np.unique([rows, columns]))
+            said.append(f"{names} are nearly tied to one another (correlations above {TIED})")
+        else:
+            said += [
+                f"{_WHAT[NAMES[i]]} and {_WHAT[NAMES[j]]} are nearly tied (correlation {correlations[i, j]:+.2f})"
+                for i, j in zip(rows, columns, strict=True)
+            ]
+    return tuple(said)
+
+
+def said_of_weak_parameters(fit: BaselineFit, profiles: tuple[Profile, ...]) -> tuple[str, ...]:
+    """Which parameters may as well be null, have no bound on one side, or stand at the limit of the model."""
+    said = []
+    for profile in profiles:
+        k = NAMES.index(profile.name)
+        null = model.NOMINAL[k]
+        if k != ZERO and profile.low <= null <= profile.high:
+            said.append(f"{_WHAT[profile.name]}: compatible with none at all")
+        if not np.isfinite(profile.low) or not np.isfinite(profile.high):
+            said.append(f"{_WHAT[profile.name]}: the likelihood never falls off on one side; no bound there")
+    said += [
+        f"{_WHAT[name]} stands at the limit of the model" for name, at in zip(NAMES, fit.at_bound, strict=True) if at
+    ]
+    return tuple(said)
+
+
+def said_of_the_mirror_solution(fit: BaselineFit) -> tuple[str, ...]:
+    """Whether both senses swapped fit as well."""
+    senses = fit.senses
+    if senses.other is None:
+        return ()
+    beta, offset = np.degrees(senses.other[model.BETA]), 100.0 * senses.other[model.VY]
+    pair = f"s = {-senses.sensor:+d}, h = {-senses.output:+d} (beta {beta:+.3f} deg, Vy/Ay {offset:+.3f} %)"
+    if senses.matters:
+        return (f"the mirror solution {pair} is {senses.sigma:.0f} standard errors worse, through q alone",)
+    return (f"the mirror solution {pair} fits as well: an angle with so small a q cannot part them",)

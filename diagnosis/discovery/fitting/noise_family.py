@@ -6,6 +6,7 @@ Whitening is a weight on each cosine coefficient, so that every spectrum of the 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -38,7 +39,7 @@ class NoiseFamily:
         """What to call each member."""
         return tuple(noise.label for noise in self.members)
 
-    @property
+    @cached_property
     def weights(self) -> Array:
         """Inverse spectra (members, n)."""
         return np.asarray(1.0 / self.spectra)
@@ -49,7 +50,12 @@ class NoiseFamily:
         The log determinant of its covariance, and the prior odds: colour is what readings must show.
         """
         odds = np.array([0.0 if noise.white else 2.0 * self.colour_log_odds for noise in self.members])
-        return np.asarray([log_determinant(spectrum, rows) for spectrum in self.spectra] + odds)
+        return np.asarray(self._log_determinants * (rows / self.spectra.shape[1]) + odds)
+
+    @cached_property
+    def _log_determinants(self) -> Array:
+        """Log determinants (members,) of all rows' covariance."""
+        return np.array([log_determinant(spectrum, spectrum.size) for spectrum in self.spectra])
 
     def white_alone(self) -> NoiseFamily:
         """The family of white noise only."""

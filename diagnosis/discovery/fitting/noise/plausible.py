@@ -6,6 +6,7 @@ several turns it can be told from noise without naming it: it is projected out, 
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ from twin.motion import Motion
 if TYPE_CHECKING:
     from diagnosis.discovery.fitting.joint_fit import Fit
     from diagnosis.discovery.fitting.noise_family import NoiseFamily
+    from diagnosis.discovery.fitting.observations import Observations
 
 
 def plausible_members(fit: Fit) -> tuple[int, ...]:
@@ -25,12 +27,18 @@ def plausible_members(fit: Fit) -> tuple[int, ...]:
     motion = fit.observations.motion
     if motion.turns < fit.settings.noise_turns:
         return everyone
-    aside = locked_shapes(motion)
+    aside = _set_aside(fit.observations)
     if fit.rows < 4 * (len(aside) + len(fit.free)):
         return everyone
-    columns = np.concatenate([fit.cosine_jacobian[:, 0], to_cosine(fit.observations, aside)])
+    columns = np.concatenate([fit.cosine_jacobian[:, 0], aside])
     score, _ = _scores(fit.cosine_residual[0], columns, fit.weighting.family, fit.rows)
     return tuple(int(k) for k in np.flatnonzero(score > score.max() - fit.settings.noise_reach))
+
+
+@lru_cache(maxsize=2)
+def _set_aside(observations: Observations) -> Array:
+    """The locked shapes as cosine coefficients (q, n): the same for all fits to these observations."""
+    return to_cosine(observations, locked_shapes(observations.motion))
 
 
 def either(*members: tuple[int, ...]) -> tuple[int, ...]:

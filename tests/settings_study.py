@@ -1,7 +1,7 @@
 """Study of the discovery's settings: each halved and doubled, and what becomes of the answers.
 
-    python -m tests.hidden.settings_study --draws 2 --seed 7 -o settings.json
-    python -m tests.hidden.settings_study --only fair_share,swap_log_odds
+    python -m tests.settings_study --draws 2 --seed 7 -o settings.json
+    python -m tests.settings_study --only fair_share,swap_log_odds
 
 The draws are those of the sets in :mod:`tests.hidden.sets`, a few of every kind, hard and easy. A setting that changes
 no answer on enough of them is a constant that nothing notices.
@@ -24,9 +24,8 @@ from rich.progress import track
 from rich.table import Table
 
 from diagnosis import DiscoverySettings, explain
-
-from .scoring import verdict
-from .sets import Job, jobs
+from tests.hidden.scoring import verdict
+from tests.hidden.sets import Job, jobs
 
 KINDS = {
     "clean_hard": ("clean",),
@@ -104,7 +103,7 @@ def study(todo: Sequence[Job], *, only: frozenset[str], processes: int, console:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m tests.hidden.settings_study", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m tests.settings_study", description=__doc__.splitlines()[0])
     parser.add_argument("--only", default="", help="comma-separated settings")
     parser.add_argument("--draws", type=int, default=1, help="draws of each of the labels")
     parser.add_argument("--seed", type=int, default=1)

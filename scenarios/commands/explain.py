@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from diagnosis import explain
 from diagnosis.report.console import show
@@ -13,11 +12,6 @@ from diagnosis.report.plotting import check_format, write_figure
 from twin.errors import UserError
 from twin.files import write_twin
 from twin.sweep_file import check_writable, write_beside
-
-
-def explain_file(path: str) -> dict[str, Any]:
-    """The JSON answer to one sweep file."""
-    return explain(path).to_dict()
 
 
 def run(

@@ -32,7 +32,7 @@ from .sets import GROUPS, Job, jobs
 from .tables import print_group
 
 Answerer = Callable[[str], Mapping[str, Any]]
-DEFAULT_ANSWERER = "tests.hidden.answerer:explain_file"
+DEFAULT_ANSWERER = "tests.answerer:explain_file"
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 GRAINY = frozenset(
     {

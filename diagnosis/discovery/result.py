@@ -49,12 +49,11 @@ class Discovery:
     def of(cls, state: State) -> Discovery:
         """The answer that a state holds after the last stage."""
         fit, observations = state.fit, state.fit.observations
-        held = [of_readings(rms_deg(state.held[place], observations.usable), observations) for place in (0, -1)]
+        held = [of_readings(rms_deg(residual, observations.usable), observations) for residual in state.held_out]
         provides = observations.motion.provides
-        assert state.baseline is not None
         return cls(
             sweep=state.sweep,
-            baseline=state.baseline,
+            baseline=state.baseline or fit,
             fit=fit,
             causes=state.causes,
             masked=state.touched,

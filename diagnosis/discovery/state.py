@@ -109,6 +109,12 @@ class State:
         return TAU / 2.0**self.bits if self.bits is not None else 0.0
 
     @property
+    def held_out(self) -> tuple[Array, Array]:
+        """Held-out residuals (n,) [rad] of the baseline and of all causes together; NaN where none was held out."""
+        held = self.held or (np.full(len(self.fit.observations), np.nan),)
+        return held[0], held[-1]
+
+    @property
     def searched(self) -> tuple[Effect, ...]:
         """The effects that show in the mean: those that the stepwise search is for."""
         return tuple(effect for effect in self.effects if effect.footprint == "mean")

@@ -100,7 +100,7 @@ class Fit:
         """Residual (N,) and Jacobian (P, N) whitened by a family member (the one in force if not given)."""
         root = root_weights(self.weighting, self.observations.observables, member)
         r = (self.cosine_residual * root).ravel()
-        j = (self.cosine_jacobian * root).reshape(len(self.free), -1)
+        j = (self.cosine_jacobian * root).reshape(len(self.free), r.size)
         return np.concatenate([r, self.prior_residual]), np.concatenate([j, self.prior_jacobian], axis=1)
 
     def covariance(self) -> Array:

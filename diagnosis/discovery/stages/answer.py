@@ -21,13 +21,13 @@ def answer(state: State) -> State:
 
 def _with_figures(entry: Finding, state: State) -> Finding:
     """The entry with its RMS before and after; of causes that no fit of the mean carries from what they leave."""
-    fit, held = state.fit, state.held
+    fit, (_, held) = state.fit, state.held_out
     use = fit.observations.usable
     before, after = entry.before_deg, entry.after_deg
     if not np.isfinite(before):
-        before = after = rms_deg(held[-1], use)
+        before = after = rms_deg(held, use)
         if entry.rows:
-            before = rms_deg(held[-1], np.ones_like(use))
+            before = rms_deg(held, np.ones_like(use))
         elif find(entry.keys[0], fit.chain.effects).footprint == "values":
             before, after = rms_deg(without_stairs(fit, entry.keys[0]), use), rms_deg(fit.residual[0], use)
     return replace(

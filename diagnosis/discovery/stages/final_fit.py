@@ -9,8 +9,7 @@ from diagnosis.discovery.state import State
 
 def final_fit(state: State) -> State:
     """Solve the extended fit to its optimum, and the baseline without any cause by the same rows and weights."""
-    fit, baseline = state.fit, state.baseline
-    assert baseline is not None
+    fit, baseline = state.fit, state.baseline or state.fit
     by_values = {effect.name for effect in state.effects if effect.footprint == "values"}
     stairs = [finding.keys[0] for finding in state.findings if finding.keys[0] in by_values]
     plain = solve(evaluate(baseline.chain.without(*stairs), baseline.free, fit.observations, fit.weighting))

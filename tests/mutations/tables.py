@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from tests.mutations.by_hand import BY_HAND
 from tests.mutations.mutation import Mutation
+from tests.mutations.noise import NOISE
 from tests.mutations.signs import signs
 
 
 def mutations() -> tuple[Mutation, ...]:
     """Every mutation, those by hand first."""
-    return (*BY_HAND, *signs())
+    return (*BY_HAND, *NOISE, *signs())

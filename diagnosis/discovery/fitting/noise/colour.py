@@ -17,19 +17,24 @@ from twin.angles import Array
 from twin.noise.description import Noise
 
 _HALVINGS = 5
+"""Of the search's steps, from a quarter of a range to 1/128: what a thousand readings tell is three times as coarse."""
 _REACH_WHITE = 0.35
+"""To the next but one white share in the family."""
 _MOST_WHITE = 0.95
+"""With more white noise beside it a colour cannot be told from none."""
 _REACH_FLICKER = 0.45
+"""Almost to the next exponent in the family."""
 _MOST_CORRELATED = 0.995
+"""Of noise that is slower than 200 readings a record of some hundreds shows a drift only."""
 _Range = tuple[float, float]
 _Cost = Callable[[Noise], float]
 
 
 def coloured(fit: Fit) -> Noise:
-    """The colour of highest restricted likelihood near the plausible members, the best of each kind, and its RMS.
+    """The colour of highest restricted likelihood near the family's member in force, and its RMS.
 
-    These were chosen with structure set aside; farther away structure that is left could pass for colour. The RMS is
-    that of a reading whose row has the scale 1 in the observations.
+    That member was chosen with structure set aside; farther away structure that is left could pass for colour. The RMS
+    is that of a reading whose row has the scale 1 in the observations.
     """
     noise = fit.weighting.family.members[fit.weighting.member]
     left = (fit.residual[0] / fit.observations.scale)[fit.observations.usable]
@@ -37,20 +42,8 @@ def coloured(fit: Fit) -> Noise:
     if fit.rows <= 2 * len(fit.free) or rms < np.radians(fit.settings.smallest_rms_deg):
         return replace(noise, rms_rad=rms)
     likelihood = _Restricted.of(fit)
-    near = [_Neighbourhood.of(start).best(likelihood.cost) for start in _one_of_each_kind(fit, likelihood.cost)]
-    best = min(near, key=likelihood.cost)
+    best = _Neighbourhood.of(noise).best(likelihood.cost)
     return replace(best, rms_rad=likelihood.rms(best))
-
-
-def _one_of_each_kind(fit: Fit, cost: _Cost) -> list[Noise]:
-    """The member in force and, where it is coloured, the best plausible one of the other coloured kind."""
-    family = fit.weighting.family
-    noise = family.members[fit.weighting.member]
-    if noise.white:
-        return [noise]
-    plausible = [family.members[place] for place in fit.weighting.plausible]
-    other = [one for one in plausible if not one.white and _flickers(one) != _flickers(noise)]
-    return [noise, *([min(other, key=cost)] if other else [])]
 
 
 def _flickers(noise: Noise) -> bool:

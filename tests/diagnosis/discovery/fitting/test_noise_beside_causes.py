@@ -62,19 +62,38 @@ def test_a_noisy_stretch_is_simulated_once(correlation: float) -> None:
         assert seen == pytest.approx(correlation, abs=slack + 0.008)
 
 
-def test_jitter_of_the_reference_is_simulated_once() -> None:
-    """Correlated noise, and white jitter whose RMS goes with sin 2a: in thirds of the readings, from quiet to loud."""
-    rng = np.random.default_rng(12)
+def jittered(seed: int) -> tuple[Fit, Array]:
+    """Correlated noise, and white jitter of three times its RMS that goes with sin 2a; |sin 2a| (n,) beside the fit."""
+    rng = np.random.default_rng(seed)
     sine = np.abs(np.sin(2.0 * MOTION.shaft_rad))
     error = Hidden("ar1", RMS_RAD, 0.7).sample(rng, N) + 3.0 * RMS_RAD * sine * rng.standard_normal(N)
     fit = fit_of(error, MOTION, spread)
     assert "reference_jitter" in fit.chain.values
+    return fit, sine
+
+
+def test_jitter_of_the_reference_is_simulated_once() -> None:
+    """In thirds of the readings, from quiet to loud, the RMS that went in."""
+    fit, sine = jittered(12)
     alike = simulated_errors(fit, noise_of(fit), 10) / RMS_RAD
     for rows in np.array_split(np.argsort(sine, kind="stable"), 3):
         expected = np.sqrt(1.0 + 9.0 * np.mean(sine[rows] ** 2))
         # Three thirds share two parameters; the correlation takes from the quiet third.
         deviation = np.sqrt(1.1 * 2.9 / (2.0 * rows.size))
         assert np.sqrt(np.mean(alike[:, rows] ** 2)) == pytest.approx(expected, rel=SIGMAS * deviation)
+
+
+def test_jitter_is_not_taken_for_a_white_share_of_the_noise() -> None:
+    """All of the noise itself is correlated: the mean share over eight sweeps, each of which tells it to a fifth.
+
+    Two thirds of the variance, in units of each row's own, is jitter. How much of it is white is known as of that much
+    white noise beside correlated noise; of the noise alone, a third of it, three times as badly. A share has no more
+    than all.
+    """
+    shares = [twin_parameters(fit, noise_of(fit))["correlated_share"] for fit, _ in map(jittered, range(12, 20))]
+    deviation = 3.0 * spectral_deviations(Noise(correlation=0.7, white_share=2.0 / 3.0))["white_share"]
+    assert np.mean(shares) > 1.0 - SIGMAS * deviation / np.sqrt(8.0)
+    assert SIGMAS * deviation / np.sqrt(8.0) < 0.5
 
 
 ROUNDED = ((0.0, 0.3), (0.0, 0.6), (0.8, 0.4))

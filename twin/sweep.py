@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -14,9 +14,6 @@ from twin.errors import SweepError
 from twin.motion import Motion
 from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, PLAUSIBLE, REQUIRED
 from twin.sweep_file import read_columns, write_columns
-
-if TYPE_CHECKING:
-    from typing import Self
 
 FEWEST_ROWS = 8
 _ONE_ANGLE_DEG = 0.1

@@ -30,7 +30,8 @@ class BeforeAfter:
     @property
     def peak_deg(self) -> tuple[float, float]:
         """Largest error before and after."""
-        return tuple(float(np.degrees(np.max(np.abs(part)))) for part in (self.before_rad, self.after_rad))  # type: ignore[return-value]
+        before, after = (float(np.degrees(np.max(np.abs(part)))) for part in (self.before_rad, self.after_rad))
+        return before, after
 
     def per_turn(self, turn: Array) -> BeforeAfter:
         """The same with each turn's own zero taken out: for references that find their zero anew at every turn."""

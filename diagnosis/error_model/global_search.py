@@ -5,6 +5,8 @@ The swarm's range is widened where its best particle stands at the edge.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -52,7 +54,7 @@ def search(
         root = model.factor(found.gram[active])
         lower, upper = found.box.lower[active], found.box.upper[active]
         result = swarm.run(
-            lambda points, root=root: model.cost(model.coefficients(points), root),  # type: ignore[misc]
+            partial(_cost, root=root),
             lower,
             upper,
             rng=rng,
@@ -74,6 +76,11 @@ def search(
             # The errors are large: from here on the weights 1/r^2 count.
             found.gram[active] = readings.sweeps(active).gram(found.best[active])
     return found
+
+
+def _cost(points: Array, *, root: Array) -> Array:
+    """Cost (batch, particles) of points (batch, particles, 6) on factors (batch, 10, 10) of the quadratic forms."""
+    return model.cost(model.coefficients(points), root)
 
 
 def first_look(

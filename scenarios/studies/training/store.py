@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import warnings
 from collections.abc import Mapping
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -88,7 +89,9 @@ def _tools() -> tuple[Any, Any]:
     try:
         import dask.array
         import xarray
-        import zarr  # noqa: F401
+
+        # xarray writes through it.
+        import_module("zarr")
     except ImportError:
         raise UserError("halltwin generate needs xarray, zarr and dask; pip install 'halltwin[sweeps]'") from None
     return xarray, dask.array

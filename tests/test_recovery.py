@@ -15,7 +15,7 @@ from tests.hidden.generator import draw
 from tests.recovery import answer_with, compared
 
 WITH_CHANNELS = {
-    "adc_stuck_bit": "of an angle alone the bit's weight is one of many that fit nearly, and who counts which way is open",
+    "adc_stuck_bit": "of an angle alone many weights fit nearly, and who counts which way is open",
     "magnet_harmonic": "of an angle alone the third order is also that of the quadratic term, in either sense",
 }
 """Causes that are drawn with the channels recorded, and what an angle alone would leave open."""

@@ -1,0 +1,218 @@
+"""Exchange: what no longer pays is removed, what another explains better is exchanged, what stands is kept."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
+from diagnosis.discovery.search import exchange
+from diagnosis.discovery.search.exchange import Search, improve, in_its_place
+from diagnosis.discovery.search.likelihood_ratio import settle
+from diagnosis.discovery.search.removal import Removal
+from diagnosis.discovery.settings import DiscoverySettings
+from diagnosis.discovery.stages.stepwise import stepwise
+from diagnosis.discovery.state import State
+from tests.diagnosis.discovery.searches import candidate, with_cause
+from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual, with_settings
+from twin.angles import Array
+from twin.catalogue import CATALOGUE, in_order
+from twin.effect import Effect, Param, Parameters
+from twin.motion import Motion
+
+LIMITS = DiscoverySettings()
+SATURATION, HARMONIC, LATENCY, PAIR = "saturation", "magnet_harmonic", "latency", "unnamed_pair"
+BACK = Made(points=180, bits=30, back=True)
+
+
+@functools.cache
+def plain(made: Made) -> State:
+    return before(stepwise, made)
+
+
+def order(number: int, fit: Fit, phase: float = 0.0) -> Array:
+    """An order of the sensor's angle, which saturation leaves as the fourth at phase 0."""
+    return np.asarray(np.sin(number * fit.linear.sensor_angle + phase))
+
+
+def reading(state: State, *parts: tuple[float, Array]) -> State:
+    """The state whose readings hold these shapes [deg] beside the noise."""
+    return with_residual(state, noise(len(state.sweep)) + sum(np.radians(size) * shape for size, shape in parts))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """Orders 4 and 5 in the readings [deg], the causes that the fit holds, and those that it holds then.
+
+    ``phase``: how far [rad] order 4 is off saturation's.
+    """
+
+    fourth_deg: float
+    fifth_deg: float
+    phase: float = 0.0
+    held: tuple[tuple[str, Mapping[str, float]], ...]
+    then: tuple[str, ...]
+
+
+_AS_SATURATION = (SATURATION, {"k_percent": 0.2})
+_AS_FIFTH = (HARMONIC, {"order": 5.0, "amplitude_deg": 0.05})
+_AS_FOURTH = (HARMONIC, {"order": 4.0, "amplitude_deg": 0.03})
+CASES = {
+    "kept: both stand": Case(
+        fourth_deg=0.05, fifth_deg=0.05, held=(_AS_SATURATION, _AS_FIFTH), then=(SATURATION, HARMONIC)
+    ),
+    # log(0.01 / 4 / 15) = -8.7: order 5 is removed at -8.3 and kept at -9.7.
+    "removed: just too probable": Case(
+        fourth_deg=0.05, fifth_deg=0.006, held=(_AS_SATURATION, _AS_FIFTH), then=(SATURATION,)
+    ),
+    "kept: just improbable enough": Case(
+        fourth_deg=0.05, fifth_deg=0.0065, held=(_AS_SATURATION, _AS_FIFTH), then=(SATURATION, HARMONIC)
+    ),
+    "exchanged: a harmonic in saturation's place": Case(
+        fourth_deg=0.03, fifth_deg=0.05, held=(_AS_FIFTH, _AS_FOURTH), then=(HARMONIC, SATURATION)
+    ),
+    # A harmonic has six orders and a phase to choose, which costs it five nats less what it fits better by.
+    "exchanged: fits a little better": Case(
+        fourth_deg=0.03, fifth_deg=0.05, phase=0.115, held=(_AS_FIFTH, _AS_FOURTH), then=(HARMONIC, SATURATION)
+    ),
+    "kept: fits better by too much": Case(
+        fourth_deg=0.03, fifth_deg=0.05, phase=0.13, held=(_AS_FIFTH, _AS_FOURTH), then=(HARMONIC, f"{HARMONIC}#2")
+    ),
+    # Its proof comes later, on readings that no fit has seen.
+    "kept: the only one": Case(fourth_deg=0.0, fifth_deg=0.0, held=(_AS_FIFTH,), then=(HARMONIC,)),
+}
+
+
+def holding(state: State, held: tuple[tuple[str, Mapping[str, float]], ...]) -> State:
+    for name, values in held:
+        state = with_cause(state, name, **values)
+    return state.with_(settle(state.fit)[0])
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_what_becomes_of_the_causes_held(case: Case) -> None:
+    state = plain(BACK)
+    shapes = ((case.fourth_deg, order(4, state.fit, case.phase)), (case.fifth_deg, order(5, state.fit, 1.0)))
+    state = holding(reading(state, *shapes), case.held)
+    fit, held = improve(state.fit, state.keys, Search.among(state.searched, state.fit))
+    assert tuple(held) == case.then
+    assert {one.key for one in fit.free} >= set(held)
+    assert (fit is state.fit) == (case.then == state.keys)
+
+
+def test_only_those_are_tried_that_contended_for_its_place() -> None:
+    state = plain(BACK)
+    state = reading(state, (0.03, order(4, state.fit)), (0.05, order(5, state.fit, 1.0)))
+    state = holding(state, (_AS_FIFTH, _AS_FOURTH))
+    key = state.keys[-1]
+    search = Search.among(state.searched, state.fit).with_contenders({key: [], state.keys[0]: []})
+    assert improve(state.fit, state.keys, search)[1] == list(state.keys)
+
+
+@pytest.mark.parametrize(("beyond", "tried"), [(-0.5, True), (0.5, False)])
+def test_first_order_may_undervalue_a_rival_by_so_much(
+    beyond: float, tried: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state = plain(BACK)
+    state = holding(
+        reading(state, (0.03, order(4, state.fit)), (0.05, order(5, state.fit, 1.0))), (_AS_FOURTH, _AS_FIFTH)
+    )
+    removal = Removal.of(state.fit, state.keys[0])
+    assert removal.own is not None
+    limit = max(removal.log_p, removal.own.log_p) + LIMITS.contender_nats
+    offered = [candidate(SATURATION, state.fit, log_p=limit + beyond), candidate(HARMONIC, state.fit, log_p=-500.0)]
+    monkeypatch.setattr(exchange, "candidates", lambda *_: offered)
+    rivals = exchange._rivals(state.fit, removal, (), ())
+    # Never the cause itself.
+    assert [rival.effect.name for rival in rivals] == ([SATURATION] if tried else [])
+
+
+def test_no_more_rivals_are_tried_than_may_be_but_zeros_of_the_turns_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They cost one scatter, not a coefficient each: first order undervalues them."""
+    state = holding(reading(plain(BACK)), (_AS_FOURTH,))
+    names = ["cardan_coupling", SATURATION, "index_slip", "zero_drift", "backlash", "reference_rezero"]
+    offered = [candidate(name, state.fit, log_p=-100.0 + place) for place, name in enumerate(names)]
+    monkeypatch.setattr(exchange, "candidates", lambda *_: offered)
+    removal = Removal.of(state.fit, state.keys[0])
+    removal = replace(removal, log_p=-50.0, own=None)
+    rivals = [rival.effect.name for rival in exchange._rivals(state.fit, removal, (), ())]
+    assert rivals == [*names[: LIMITS.most_rivals], "reference_rezero"]
+
+
+@pytest.mark.parametrize(("coarse", "threshold"), [(False, LIMITS.effect_log_p(7)), (True, -LIMITS.stairs_log_odds)])
+def test_beside_coarse_stairs_only_what_is_beyond_doubt_counts(coarse: bool, threshold: float) -> None:
+    fit = plain(Made(points=180, bits=30, left_out=("time_s", "turn", "direction"))).fit
+    fit = replace(fit, weighting=replace(fit.weighting, coarse=coarse))
+    search = Search.among([effect for effect in fit.chain.effects if effect.footprint == "mean"], fit)
+    visible = [effect for effect in search.effects if not effect.baseline]
+    assert len(visible) == 7
+    assert Search.among(visible, fit).threshold == pytest.approx(threshold)
+
+
+# ---- several named causes in the place of a shape without a name ---------------------------------------------------
+
+TWO_SPEEDS = Made(points=90, rpm=(100.0, 400.0), bits=30)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pair:
+    """A shape without a name: shares of its power that saturation, latency and neither of them explain."""
+
+    latency: float
+    neither: float = 0.0
+    most: int = LIMITS.most_in_place
+    held: tuple[str, ...] = (SATURATION, LATENCY)
+
+
+PAIRS = {
+    "half and half": Pair(latency=0.5),
+    # What the second adds to the log likelihood, of both: log(1 + 9 share) / log(10), for nine times the noise's power.
+    "a fair share each": Pair(latency=0.065),
+    "one does hardly anything": Pair(latency=0.03, held=(PAIR,)),
+    "they explain only a part": Pair(latency=0.4, neither=0.2, held=(PAIR,)),
+    "one alone may be tried": Pair(latency=0.5, most=1, held=(PAIR,)),
+}
+
+
+def shapes_of(fit: Fit) -> tuple[Array, Array, Array]:
+    """Saturation, latency and an order that is neither, each of power one."""
+    speed = fit.observations.motion.speed_rad_s
+    shapes = order(4, fit), speed - np.mean(speed), order(7, fit)
+    return tuple(np.asarray(shape / np.std(shape)) for shape in shapes)  # type: ignore[return-value]
+
+
+def shape_without_a_name(shape: Array) -> Effect:
+    def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+        return signal + np.radians(values["height_deg"]) * shape
+
+    height = Param(unit="deg", null=0.0, lower=-90.0, upper=90.0, doc="height")
+    return Effect(
+        name=PAIR,
+        stage="empirical",
+        acts_on="angle",
+        params={"height_deg": height},
+        forward=forward,
+        source="a test",
+        signature="what two causes leave together",
+    )
+
+
+@pytest.mark.parametrize("case", PAIRS.values(), ids=PAIRS)
+def test_named_causes_take_the_place_of_a_shape_that_they_explain(case: Pair) -> None:
+    """Of a fixed shape of 0.06 deg in noise of 0.02 deg; two that do as well are worth 400 to 1 more."""
+    state = plain(TWO_SPEEDS)
+    shares = (1.0 - case.latency - case.neither, case.latency, case.neither)
+    shape = sum(np.sqrt(share) * part for share, part in zip(shares, shapes_of(state.fit), strict=True))
+    effect = shape_without_a_name(np.asarray(shape))
+    fit = reading(state, (0.06, np.asarray(shape))).fit
+    chain = replace(fit.chain, effects=in_order((*CATALOGUE, effect)))
+    state = with_settings(
+        state.with_(evaluate(chain, fit.free, fit.observations, fit.weighting)), most_in_place=case.most
+    )
+    state = holding(state, ((PAIR, {"height_deg": 0.06}),))
+    search = Search.among((*plain(TWO_SPEEDS).searched, effect), state.fit)
+    assert in_its_place(state.fit, PAIR, list(state.keys), search)[1] == list(case.held)

@@ -1,0 +1,212 @@
+"""Forward step: the cause that the joint fit gains most by, or several that show only together."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from diagnosis.discovery.search import forward_step
+from diagnosis.discovery.search.exchange import Search
+from diagnosis.discovery.search.forward_step import Step, best_addition, best_together, candidates, multiples, retuned
+from diagnosis.discovery.search.likelihood_ratio import likelihood, settle
+from diagnosis.discovery.search.screening import Base, Candidate, screen_one
+from diagnosis.discovery.settings import DiscoverySettings
+from diagnosis.discovery.stages.stepwise import stepwise
+from diagnosis.discovery.state import State
+from tests.diagnosis.discovery.searches import candidate, with_cause
+from tests.diagnosis.discovery.sweeps import Made, before, noise, truth_of, with_residual, with_settings
+from twin.catalogue import find
+
+LIMITS = DiscoverySettings()
+SATURATION, HARMONIC = "saturation", "magnet_harmonic"
+FOUR_TURNS = Made(points=72, turns=4, bits=30)
+
+
+def harmonics(made: Made, size_deg: float, orders: tuple[int, ...], **settings: int) -> State:
+    """Readings that hold these orders of the shaft, all of one size, beside the noise."""
+    state = with_settings(before(stepwise, made), **settings)
+    shaft = state.fit.observations.motion.shaft_rad
+    shapes = sum(np.sin(order * shaft + order) for order in orders)
+    return with_residual(state, noise(len(state.sweep)) + np.radians(size_deg) * np.asarray(shapes))
+
+
+def both_steps(state: State) -> tuple[Step | None, Step | None]:
+    """What is added alone, and what together."""
+    fit, base = settle(state.fit)
+    search = Search.among(state.searched, fit)
+    asked = (fit, base, search.effects, (), search.threshold)
+    return best_addition(*asked), best_together(*asked)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joint:
+    """Orders of so many degrees, how many of them may be added together, and how many are."""
+
+    points: int
+    size_deg: float
+    orders: tuple[int, ...]
+    most: int
+    added: int
+
+
+JOINT = {
+    "two": Joint(points=180, size_deg=0.015, orders=(3, 5), most=3, added=2),
+    "two where one may be": Joint(points=180, size_deg=0.015, orders=(3, 5), most=1, added=0),
+    "three": Joint(points=90, size_deg=0.03, orders=(3, 4, 6), most=3, added=3),
+    "three where two may be": Joint(points=90, size_deg=0.03, orders=(3, 4, 6), most=2, added=0),
+    "too weak together": Joint(points=90, size_deg=0.015, orders=(3, 4, 6), most=3, added=0),
+}
+
+
+@pytest.mark.parametrize("case", JOINT.values(), ids=JOINT)
+def test_causes_that_pass_for_coloured_noise_to_one_another_are_found_together(case: Joint) -> None:
+    """Each alone leaves the others, which coloured noise explains as well; the noise is white."""
+    made = Made(points=case.points, bits=30)
+    alone, together = both_steps(harmonics(made, case.size_deg, case.orders, most_together=case.most))
+    assert alone is None
+    assert (together is None) == (case.added == 0)
+    if together is not None:
+        assert len(together.added) == case.added
+        assert {key.split("#")[0] for key in together.added} == {HARMONIC}
+        assert {together.fit.chain.values[key]["order"] for key in together.added} == set(case.orders)
+        # Judged with the noise free to be what it is, and by all family members again.
+        assert together.fit.weighting.family is before(stepwise, made).fit.weighting.family
+        assert together.terms == 2 * case.added
+
+
+def test_in_white_noise_one_after_the_other_is_enough() -> None:
+    """The noise of two turns is told by what does not repeat: white, and nothing is looked for together."""
+    state = before(stepwise, Made(points=90, turns=2, bits=30))
+    state = with_residual(state, noise(len(state.sweep)))
+    fit, base = settle(state.fit)
+    assert base.member == 0
+    assert best_together(fit, base, state.searched, (), 0.0) is None
+
+
+# ---- contenders -----------------------------------------------------------------------------------------------------
+
+
+@functools.cache
+def fifth() -> State:
+    """Readings with a clear fifth order."""
+    return harmonics(FOUR_TURNS, 0.05, (5,))
+
+
+def offered(true_log_p: float, *, others: int = 1, gain: float = 100.0) -> list[Candidate]:
+    """Candidates as a screening might have scored them: saturations in front, the true order behind."""
+    fit = fifth().fit
+    front = [candidate(SATURATION, fit, log_p=-40.0 + 0.01 * place, gain=100.0) for place in range(others)]
+    true = screen_one(settle(fit)[1], find(HARMONIC))
+    assert true is not None
+    return [*front, replace(true, log_p=true_log_p, gain=gain)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contest:
+    """By how much first order undervalues the true one, how many stand before it, and whether it is found."""
+
+    front_log_p: float = -40.0
+    behind: float
+    others: int = 1
+    found: bool
+
+
+CONTESTS = {
+    "within reach": Contest(behind=LIMITS.contender_nats - 0.5, found=True),
+    "out of reach": Contest(behind=LIMITS.contender_nats + 0.5, found=False),
+    "as many as may be": Contest(behind=1.0, others=LIMITS.most_contenders - 1, found=True),
+    "one too many": Contest(behind=1.0, others=LIMITS.most_contenders, found=False),
+}
+
+
+@pytest.mark.parametrize("case", CONTESTS.values(), ids=CONTESTS)
+def test_the_exact_fit_decides_among_those_near_the_best(case: Contest, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(forward_step, "candidates", lambda *_: offered(-40.0 + case.behind, others=case.others))
+    fit, base = settle(fifth().fit)
+    step = best_addition(fit, base, fifth().searched, (), LIMITS.effect_log_p(10))
+    assert (step is not None) == case.found
+    if step is not None:
+        assert list(step.added) == [HARMONIC]
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.9, True), (1.1, False)])
+def test_of_strong_causes_the_reach_is_a_share_of_the_score(
+    share: float, found: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    front = -400.0
+    true = front - share * LIMITS.contender_share * front
+    fit, base = settle(fifth().fit)
+    ranked = [candidate(SATURATION, fit, log_p=front), offered(true)[-1]]
+    monkeypatch.setattr(forward_step, "candidates", lambda *_: ranked)
+    assert (best_addition(fit, base, fifth().searched, (), LIMITS.effect_log_p(10)) is not None) == found
+
+
+@pytest.mark.parametrize(("margin", "found"), [(-0.5, True), (0.5, False)])
+def test_first_order_must_be_improbable_too(margin: float, found: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    threshold = LIMITS.effect_log_p(10)
+    monkeypatch.setattr(forward_step, "candidates", lambda *_: offered(threshold + margin, others=0))
+    fit, base = settle(fifth().fit)
+    assert (best_addition(fit, base, fifth().searched, (), threshold) is not None) == found
+
+
+@pytest.mark.parametrize(("share", "fair"), [(0.9, False), (1.1, True)])
+def test_who_explains_a_fair_share_is_remembered(share: float, fair: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """To be tried in its place later: those whose gain to first order is a fair share of the chosen one's."""
+    fit, base = settle(fifth().fit)
+    true = offered(-40.0, others=0, gain=100.0)
+    other = candidate(SATURATION, fit, log_p=-20.0, gain=100.0 * share * LIMITS.fair_share)
+    monkeypatch.setattr(forward_step, "candidates", lambda *_: [*true, other])
+    step = best_addition(fit, base, fifth().searched, (), LIMITS.effect_log_p(10))
+    assert step is not None
+    assert {effect.name for effect in step.added[HARMONIC]} == {HARMONIC, *([SATURATION] if fair else [])}
+
+
+def test_a_cause_that_is_there_is_offered_again_only_where_a_second_makes_sense() -> None:
+    _, base = settle(fifth().fit)
+    effects = [find(name) for name in (SATURATION, HARMONIC, "unnamed_bump")]
+    names = {c.effect.name for c in candidates(base, effects, [SATURATION, HARMONIC, "unnamed_bump"])}
+    assert SATURATION in {c.effect.name for c in candidates(base, effects, [])}
+    assert SATURATION not in names
+    assert HARMONIC in names
+
+
+def test_a_line_that_is_there_is_looked_for_at_its_multiples() -> None:
+    """Also where these alias: twice order 50 shows at 20 of 120 points a turn. Near the points a turn there is none."""
+    made = Made(points=120, bits=30)
+    state = before(stepwise, made)
+    shaft = state.fit.observations.motion.shaft_rad
+    residual = noise(len(state.sweep)) + np.radians(0.05) * (np.sin(50.0 * shaft) + 0.5 * np.sin(100.0 * shaft + 1.0))
+    state = with_residual(state, residual)
+    state = with_cause(state, "drive_ripple", order=50.0, amplitude_deg=0.05)
+    (found,) = multiples(Base.of(state.fit), state.searched, state.keys)
+    assert found.values["order"] == 100.0
+    assert found.gain > 20.0
+
+
+# ---- stuck bits -----------------------------------------------------------------------------------------------------
+
+STUCK = Made(causes=(("adc_stuck_bit", 0.08), (SATURATION, 0.3)), points=180, turns=2)
+
+
+@pytest.mark.parametrize("off", [0.97, 1.1])
+def test_a_stuck_bit_is_found_afresh_once_the_rest_is_known(off: float) -> None:
+    """A weight a few per cent off holds on to the wrong edges: the fit alone does not bring it back."""
+    true = truth_of(STUCK, "adc_stuck_bit")
+    start = {"step_percent": off * true["step_percent"], "level": true["level"], "blur_percent": 0.04}
+    state = with_cause(before(stepwise, STUCK), "adc_stuck_bit", **start)
+    state = with_cause(state, SATURATION, k_percent=2.0)
+    after = retuned(state.fit, state.keys)
+    assert likelihood(after) > likelihood(state.fit) + LIMITS.swap_log_odds
+    held, found = (float(fit.chain.values["adc_stuck_bit"]["step_percent"]) for fit in (state.fit, after))
+    assert abs(held / true["step_percent"] - 1.0) > 0.01
+    # Edges lie 0.2 % of the amplitude apart, readings 2 deg: a weight off by more moves most of them.
+    assert abs(found / true["step_percent"] - 1.0) < 2e-3
+    assert retuned(after, state.keys) is after
+
+
+def test_other_causes_are_left_as_they_are() -> None:
+    state = with_cause(fifth(), HARMONIC, order=5.0, amplitude_deg=0.05)
+    assert retuned(state.fit, state.keys) is state.fit

@@ -1,0 +1,126 @@
+"""Rivals: which other causes would explain the same readings as well, and what the cause itself gains."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from diagnosis.discovery.search import rivals
+from diagnosis.discovery.search.likelihood_ratio import add, likelihood
+from diagnosis.discovery.search.removal import Removal
+from diagnosis.discovery.search.rivals import judge
+from diagnosis.discovery.search.screening import screen_one
+from diagnosis.discovery.settings import DiscoverySettings
+from diagnosis.discovery.stages.held_out_selection import held_out_selection
+from diagnosis.discovery.state import State
+from tests.diagnosis.discovery.searches import candidate, with_cause
+from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual, with_settings
+from twin.catalogue import find
+
+LIMITS = DiscoverySettings()
+SATURATION, HARMONIC, HYSTERESIS, BACKLASH = "saturation", "magnet_harmonic", "hysteresis", "backlash"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A sweep with one cause, and those that cannot be told from it."""
+
+    made: Made
+    rivals: frozenset[str]
+
+
+CASES = {
+    "saturation in a turn": Case(made=Made(causes=((SATURATION, 0.05),), points=120), rivals=frozenset({HARMONIC})),
+    "saturation with channels": Case(
+        made=Made(causes=((SATURATION, 0.05),), points=120, channels=True), rivals=frozenset()
+    ),
+    # A harmonic's phase is its own, saturation's is locked to the sensor's axes.
+    "harmonic of order 5": Case(made=Made(causes=((HARMONIC, 0.05),), points=120, seed=2), rivals=frozenset()),
+    # At one speed a lag in time is a lag in angle; one turn there and one back might also be a slip between them.
+    "latency at one speed": Case(
+        made=Made(causes=(("latency", 0.1),), points=72, rpm=(300.0,), back=True, left_out=("turn",)),
+        rivals=frozenset({HYSTERESIS, "index_slip"}),
+    ),
+    "latency at two speeds": Case(
+        made=Made(causes=(("latency", 0.1),), points=72, rpm=(100.0, 300.0), back=True, left_out=("turn",)),
+        rivals=frozenset(),
+    ),
+}
+
+
+@functools.cache
+def handed(made: Made) -> State:
+    state = before(held_out_selection, made)
+    assert [key.split("#")[0] for key in state.keys] == [name for name, _ in made.causes]
+    return state
+
+
+def judged(state: State) -> rivals.Judged:
+    visible = [e for e in state.searched if e.visible_in(state.fit.observations.motion.provides)]
+    return judge(state.fit, state.keys[0], visible, state.keys)
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_which_causes_cannot_be_told_apart(case: Case) -> None:
+    state = handed(case.made)
+    found = judged(state)
+    assert set(found.rivals) == case.rivals
+    removal = Removal.of(state.fit, state.keys[0])
+    assert (found.gain, found.log_p) == (removal.gain, removal.log_p)
+    for name, fit in found.rivals.items():
+        # In its place, not beside it; and it fits within three sigma.
+        assert state.keys[0] not in fit.chain.values
+        assert name in fit.chain.values
+        assert 2.0 * (likelihood(state.fit) - likelihood(fit)) < LIMITS.sigma_apart**2
+
+
+@functools.cache
+def nearly() -> State:
+    """A magnet's order 4 whose phase is a little off that of saturation, in two turns."""
+    state = before(held_out_selection, Made(points=120, turns=2, bits=30))
+    shape = np.sin(4.0 * state.fit.linear.sensor_angle + 0.16)
+    state = with_residual(state, noise(len(state.sweep)) + np.radians(0.03) * shape)
+    return with_cause(state, HARMONIC, order=4.0, amplitude_deg=0.03)
+
+
+@pytest.mark.parametrize(("margin", "same"), [(0.02, True), (-0.02, False)])
+@pytest.mark.parametrize("coarse", [False, True])
+def test_as_good_is_within_so_many_sigma(margin: float, same: bool, coarse: bool) -> None:
+    """By how many sigma the rival fits worse, and the limit just beyond it or just short of it."""
+    state = nearly()
+    fit = replace(state.fit, weighting=replace(state.fit.weighting, coarse=coarse))
+    state = state.with_(fit)
+    removal = Removal.of(fit, HARMONIC)
+    rival = screen_one(removal.base, find(SATURATION))
+    assert rival is not None
+    worse = 2.0 * (likelihood(fit) - likelihood(add(removal.removed, rival)[0]))
+    assert 0.5 < worse < LIMITS.same_fit(coarse=False)
+    factor = LIMITS.stairs_sigma_factor if coarse else 1.0
+    state = with_settings(state, sigma_apart=float(np.sqrt(worse) / factor * (1.0 + margin)))
+    assert (SATURATION in judged(state).rivals) == same
+
+
+@pytest.mark.parametrize(("share", "fitted"), [(0.95, False), (1.05, True)])
+def test_only_who_gains_a_share_to_first_order_is_fitted(
+    share: float, fitted: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state = handed(CASES["saturation in a turn"].made)
+    removal = Removal.of(state.fit, SATURATION)
+    assert removal.own is not None
+    own = min(removal.gain, removal.own.gain)
+    gain = share * (LIMITS.rival_share * own - LIMITS.same_fit(coarse=False))
+    assert gain > 0.0
+    offered = candidate(HARMONIC, state.fit, gain=gain, order=4.0, amplitude_deg=0.05)
+    monkeypatch.setattr(rivals, "screen_one", lambda base, effect: offered)
+    found = rivals._as_good(state.fit, removal, find(HARMONIC))
+    assert (found is not None) == fitted
+
+
+def test_neither_what_has_no_name_nor_what_is_there_already_is_a_rival() -> None:
+    state = with_cause(handed(CASES["saturation in a turn"].made), HARMONIC, order=5.0, amplitude_deg=0.01)
+    assert set(judged(state).rivals) == set()
+    bump = with_cause(state, "unnamed_bump", centre_deg=100.0, width_deg=10.0, height_deg=0.01)
+    assert judge(bump.fit, "unnamed_bump", bump.searched, bump.keys).rivals == {}

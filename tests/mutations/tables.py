@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tests.mutations.by_hand import BY_HAND
+from tests.mutations.discovery import DISCOVERY
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
 from tests.mutations.signs import signs
@@ -10,4 +11,4 @@ from tests.mutations.signs import signs
 
 def mutations() -> tuple[Mutation, ...]:
     """Every mutation, those by hand first."""
-    return (*BY_HAND, *NOISE, *signs())
+    return (*BY_HAND, *NOISE, *DISCOVERY, *signs())

@@ -145,3 +145,19 @@ def test_noise_that_is_coloured_is_no_cause(seed: int) -> None:
     after = stepwise(before(stepwise, Made(points=72, turns=4, correlation=0.8, seed=seed)))
     assert after.keys == ()
     assert after.fit.weighting.member > 0
+
+
+SLOW = {"points": 96, "turns": 2, "left_out": ("turn",)}
+PAIRS = {
+    # To each of the two the other is coloured noise, of which it stands out by itself no more than chance would.
+    "coloured noise": Made(causes=(("index_slip", 0.06), ("bearing_wobble", 0.06)), seed=2, **SLOW),
+    # Four slow modes describe both nearly as well as these two do, with fewer causes.
+    "a drift without a name": Made(
+        causes=(("zero_drift", 0.4), ("bearing_wobble", 0.4)), seed=1, **{**SLOW, "points": 72}
+    ),
+}
+
+
+@pytest.mark.parametrize("made", PAIRS.values(), ids=PAIRS)
+def test_two_causes_that_pass_for_something_else_are_found(made: Made) -> None:
+    assert set(stepwise(before(stepwise, made)).keys) == {name for name, _ in made.causes}

@@ -1,0 +1,96 @@
+"""Mutations of the discovery: each mechanism of the search and of the proof off, and each stage left out."""
+
+from __future__ import annotations
+
+import re
+
+from tests.mutations.mutation import ROOT, Mutation
+
+_TESTS = "tests/diagnosis/discovery"
+_STEPWISE = f"{_TESTS}/stages/test_stepwise.py::test_two_causes_that_pass_for_something_else_are_found"
+_SELECTION = f"{_TESTS}/proof/test_selection.py::test_which_cause_stays"
+
+_MECHANISMS: tuple[Mutation, ...] = (
+    Mutation(
+        "cross_validation.fits_see_held_out_rows",
+        "diagnosis/discovery/proof/cross_validation.py",
+        "fit.observations.masked(use & ~held)",
+        "fit.observations",
+        (
+            f"{_TESTS}/proof/test_cross_validation.py::test_a_wild_value_in_a_held_out_fold_moves_no_other_reading_of_it",
+        ),
+        short=True,
+    ),
+    Mutation(
+        "selection.held_out_check_removed",
+        "diagnosis/discovery/proof/selection.py",
+        "return weighed[-1] < slack * weighed[-2]",
+        "return True",
+        (_SELECTION,),
+        short=True,
+    ),
+    Mutation(
+        "selection.chance_allowed",
+        "diagnosis/discovery/proof/selection.py",
+        "    if proof.by_chance(cause) > settings.footprint_log_p:\n",
+        "    if False:\n",
+        (_SELECTION,),
+    ),
+    Mutation(
+        "selection.slack_for_all",
+        "diagnosis/discovery/proof/selection.py",
+        "settings.heldout_slack if cause.log_p < settings.beyond_doubt_log_p else 1.0",
+        "settings.heldout_slack",
+        (_SELECTION,),
+    ),
+    Mutation(
+        "sense_check.off",
+        "diagnosis/discovery/stages/sense_check.py",
+        "    if likelihood(other) <= likelihood(fit) + state.settings.swap_log_odds:\n",
+        "    if True:\n",
+        (f"{_TESTS}/stages/test_sense_check.py::test_what_fits_better_by_the_odds_is_taken",),
+        short=True,
+    ),
+    Mutation(
+        "search.several_in_place_of_one_off",
+        "diagnosis/discovery/search/stepwise.py",
+        "        fit, held = in_its_place(fit, key, held, plan)\n",
+        "        pass\n",
+        (f"{_STEPWISE}[a drift without a name]",),
+        short=True,
+    ),
+    Mutation(
+        "search.joint_additions_off",
+        "diagnosis/discovery/search/stepwise.py",
+        " or best_together(fit, base, offered, held, level)",
+        "",
+        (f"{_STEPWISE}[coloured noise]",),
+        short=True,
+    ),
+)
+
+
+_WHOLE = frozenset({"observe", "initial_fit", "row_masks", "variance"})
+"""Stages whose absence shows in more than the answer: each has a test of its own among those of the pipeline."""
+
+
+def stages_left_out() -> tuple[Mutation, ...]:
+    """One mutation for each stage that the pipeline lists."""
+    file = "diagnosis/discovery/pipeline.py"
+    source = (ROOT / file).read_text(encoding="utf-8")
+    listed = source[source.index("\nPIPELINE") :]
+    tests = f"{_TESTS}/test_pipeline.py"
+    one = f"{tests}::test_without_a_stage_the_answer_is_another"
+    return tuple(
+        Mutation(
+            f"pipeline.{found[1]}_left_out",
+            file,
+            found[0],
+            "",
+            (tests if found[1] in _WHOLE else f"{one}[{found[1]}]",),
+        )
+        for found in re.finditer(r"^ +(\w+),  # .*\n", listed, re.MULTILINE)
+    )
+
+
+DISCOVERY: tuple[Mutation, ...] = (*_MECHANISMS, *stages_left_out())

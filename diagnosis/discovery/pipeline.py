@@ -67,4 +67,13 @@ def discover(state: State, stages: Sequence[Stage] = PIPELINE) -> Discovery:
     Discovery
         The causes with their proof, the extended fit and the baseline.
     """
-    return Discovery.of(reduce(lambda handed_on, stage: stage(handed_on), stages, state))
+    return Discovery.of(reduce(_handed_on, stages, state))
+
+
+def _handed_on(state: State, stage: Stage) -> State:
+    """What a stage makes of the state. Raises TypeError where that is no state."""
+    after = stage(state)
+    if not isinstance(after, State):
+        name = getattr(stage, "__name__", repr(stage))
+        raise TypeError(f"stage {name} returned {type(after).__name__}; expected the State that it hands on")
+    return after

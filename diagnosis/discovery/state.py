@@ -55,6 +55,11 @@ class State:
     causes: tuple[Finding, ...] = ()
     likeness: PredictiveCheck | None = None
 
+    def __repr__(self) -> str:
+        """Show where the discovery stands, in one line."""
+        found = ", ".join([*self.keys, *(finding.keys[0] for finding in self.findings)]) or "no cause"
+        return f"State({self.sweep.name!r}, {'observed' if self.fitted is not None else 'as handed in'}: {found})"
+
     @classmethod
     def of(
         cls,

@@ -1,0 +1,114 @@
+"""Spread: even noise is called uneven as often as chance allows, whatever its tails."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+from diagnosis.discovery.fitting.joint_fit import evaluate
+from diagnosis.discovery.marks.row_masks import scaled
+from diagnosis.discovery.marks.spread import bursts, row_scale, spread_shapes, white_rows
+from diagnosis.discovery.settings import DiscoverySettings
+from diagnosis.discovery.stages.variance import variance
+from diagnosis.discovery.state import State
+from tests.diagnosis.discovery.spreads import Loud, handed
+from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
+from twin.catalogue import find
+
+JITTER = find("reference_jitter")
+DRAWS = 200
+LEVEL = 0.05
+LIMITS = DiscoverySettings()
+
+
+@functools.cache
+def clean() -> State:
+    return before(variance, Made(points=120, turns=2, bits=30))
+
+
+def drawn(tails: str, number: int) -> State:
+    """Even noise: Gaussian, or Student's t with four degrees of freedom, whose kurtosis has no bound."""
+    rng, n = np.random.default_rng([7, number]), len(clean().sweep)
+    unit = rng.standard_normal(n) if tails == "Gaussian" else rng.standard_t(4, n) / np.sqrt(2.0)
+    return with_residual(clean(), np.radians(0.02) * unit)
+
+
+@functools.cache
+def log_p_of(tails: str) -> tuple[tuple[float, float], ...]:
+    """Log probabilities of a shape and of a stretch for each draw; 0 where none gains."""
+    found = []
+    for number in range(DRAWS):
+        fit = drawn(tails, number).fit
+        shape, stretch = spread_shapes(fit, [JITTER]), bursts(fit)
+        found.append((shape[0].log_p if shape else 0.0, stretch.log_p if stretch is not None else 0.0))
+    return tuple(found)
+
+
+@pytest.mark.parametrize(("tails", "level"), [("Gaussian", 0.05), ("heavy", 0.05), ("heavy", 0.01)])
+def test_even_noise_has_a_shape_no_more_often_than_by_chance(tails: str, level: float) -> None:
+    """More draws than these would come in one series of a hundred."""
+    log_p = np.array(log_p_of(tails))[:, 0]
+    assert np.count_nonzero(log_p < np.log(level)) <= binom.isf(0.01, DRAWS, level)
+
+
+@pytest.mark.parametrize("tails", ["Gaussian", "heavy"])
+def test_even_noise_has_a_loud_stretch_hardly_ever(tails: str) -> None:
+    """Improbable enough to be named among ten effects, without a name: by the policy one sweep in a hundred in all."""
+    log_p = np.array(log_p_of(tails))[:, 1]
+    limit = LIMITS.effect_log_p(10) - LIMITS.unnamed_log_odds
+    assert np.count_nonzero(log_p < limit) <= binom.isf(0.01, DRAWS, LIMITS.false_alarm_probability)
+
+
+def test_a_shape_is_found_as_often_as_its_level_says() -> None:
+    """In Gaussian noise: half of the draws gain nothing, and one in twenty is below the level, no fewer."""
+    log_p = np.array(log_p_of("Gaussian"))[:, 0]
+    assert np.count_nonzero(log_p < np.log(LEVEL)) >= binom.ppf(1e-3, DRAWS, LEVEL)
+    assert binom.ppf(1e-3, DRAWS, 0.5) <= np.count_nonzero(log_p == 0.0) <= binom.isf(1e-3, DRAWS, 0.5)
+
+
+@pytest.mark.parametrize(("factor", "found"), [(0.8, False), (1.25, True)])
+def test_a_stretch_is_louder_from_a_ratio_of_the_variances_on(factor: float, found: bool) -> None:
+    """However improbable by chance: a third of 360 readings shows even the smaller one."""
+    burst = bursts(handed(variance, Loud(stretch=float(np.sqrt(LIMITS.burst_ratio * factor)), length=120)).fit)
+    assert (burst is not None) == found
+    assert burst is None or burst.log_p < LIMITS.effect_log_p(10)
+
+
+def test_what_the_rows_scale_has_taken_out_is_put_back() -> None:
+    """The spread is judged on the readings, not on what a scale has made of them."""
+    state = handed(variance, Loud(stretch=4.0))
+    loud = np.ones(len(state.sweep))
+    loud[100:140] = 16.0
+    plain, weighed = bursts(state.fit), bursts(scaled(state.fit, loud))
+    assert plain is not None
+    assert weighed is not None
+    assert weighed.values["rms_deg"] == pytest.approx(plain.values["rms_deg"], rel=0.1)
+    assert weighed.log_p == pytest.approx(plain.log_p, rel=0.1)
+
+
+def test_masked_rows_are_no_part_of_it() -> None:
+    state = handed(variance, Loud())
+    residual = noise(len(state.sweep))
+    residual[100:115] *= 30.0
+    loud = with_residual(state, residual).fit
+    found = bursts(loud)
+    assert found is not None
+    assert found.log_p < LIMITS.beyond_doubt_log_p
+    usable = np.ones(len(residual), dtype=bool)
+    usable[100:115] = False
+    masked = evaluate(loud.chain, loud.free, loud.observations.masked(usable), loud.weighting)
+    left = bursts(masked)
+    assert left is None or left.log_p > LIMITS.effect_log_p(1)
+    assert np.all(white_rows(masked)[100:115] == 0.0)
+
+
+def test_rows_weigh_against_the_usual_one() -> None:
+    observations = clean().fit.observations
+    loud = np.full(len(observations), 4.0)
+    loud[:50] = 36.0
+    scale = row_scale(observations, loud)
+    assert set(np.round(scale, 12)) == {1.0, 3.0}
+    assert np.all(row_scale(observations, np.ones(3)) == 1.0)

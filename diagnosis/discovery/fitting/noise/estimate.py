@@ -51,7 +51,11 @@ def estimated(fit: Fit, *, limit_rad: float) -> Noise:
     }
     log_p = fit.settings.effect_log_p(1 + len(shown))
     white = whitened_rows(fit, noise)[use]
-    found = distribution(white, shown, limit=limit_rad / peak(noise, len(use)), log_p=log_p)
+    limit = limit_rad / peak(noise, len(use))
+    if 2 * np.count_nonzero(np.abs(white) < limit) < white.size:
+        # A smooth residual is its own median: most of it then lies beyond, and is structure rather than noise.
+        return noise
+    found = distribution(white, shown, limit=limit, log_p=log_p)
     if not found.parts:
         return noise
     # The residual has lost to the free parameters what the restricted likelihood has put back.

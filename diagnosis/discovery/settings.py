@@ -53,8 +53,9 @@ class DiscoverySettings:
     """Derived. Two causes are told apart by three sigma: by twice the log likelihood of 9 in the sweep itself, and by
     the same separation expected of a further measurement."""
     sigma_enough: float = 5.0
-    """Derived. A further measurement is advised without reserve at five sigma: with the scatter of one sigma that the
-    outcome has, it then falls below three sigma in 2.3 % of the cases. The output's stairs are seen at as much."""
+    """Derived. A further measurement is advised without reserve at five sigma: twice the log likelihood then
+    scatters about 25 by 10, and falls below the 9 of three sigma in 5.5 % of the cases.
+    The output's stairs are seen at as much."""
     stairs_sigma_factor: float = 2.0
     """Limit. Beside coarse stairs so many times more sigma: what the fit leaves of the stairs themselves favours now
     one smooth shape, now another."""
@@ -84,10 +85,10 @@ class DiscoverySettings:
     """Limit. Share of a cause's gain to first order below which an effect is not fitted as its rival: an exact fit
     gains up to three times what first order says."""
     radius_left: float = 1.5
-    """Limit. Variance of the radius against that of its noise above which something in it is unexplained: with the
-    thirty degrees of freedom of the shortest sweep a ratio of 1.5 is exceeded by chance in 4 % (chi-square)."""
+    """Limit. Variance of the radius against that of its noise above which something in it is unexplained: with
+    thirty degrees of freedom a ratio of 1.5 is exceeded by chance in 4 % (chi-square), with ten in 13 %."""
     smallest_rms_deg: float = 6e-5
-    """Limit. Residual RMS below which nothing is searched for: a step of a 22-bit word, and the digits of a file."""
+    """Limit. Residual RMS below which nothing is searched for: less than a step of a 22-bit word (8.6e-5 deg)."""
 
     # ---- single rows ------------------------------------------------------------------------------------------------
 
@@ -95,7 +96,7 @@ class DiscoverySettings:
     """Limit. A row stands alone beyond so many robust sigma of its neighbours: never by Gaussian noise in a million
     rows (3e-6), and by one or two in a thousand of noise with four degrees of freedom."""
     spike_sigma_few: float = 14.0
-    """Limit. The same of fewer rows than ``spike_few``: the robust sigma of so few is known to a third only."""
+    """Limit. The same of fewer rows than ``spike_few``: of a dozen the robust sigma is known to a third only."""
     spike_few: int = 60
     """Limit. So few rows do not tell their robust sigma well enough."""
     longest_spike: int = 4

@@ -63,8 +63,8 @@ DERIVED: dict[str, tuple[Callable[[DiscoverySettings], float], float, float]] = 
     ),
     # The share of sweeps of thirty degrees of freedom in which chance exceeds it.
     "radius_left": (lambda s: chi2.sf(30 * s.radius_left, 30), 0.03, 0.05),
-    # An outcome scatters by one sigma about what is expected.
-    "sigma_enough": (lambda s: norm.cdf(s.sigma_apart - s.sigma_enough), 0.02, 0.025),
+    # Twice the log likelihood scatters about the square of what is expected, by twice that.
+    "sigma_enough": (lambda s: norm.cdf((s.sigma_apart**2 - s.sigma_enough**2) / (2.0 * s.sigma_enough)), 0.05, 0.06),
     "sigma_apart": (lambda s: 2.0 * norm.sf(s.sigma_apart), 0.002, 0.003),
     # What stairs at the limit add to the RMS of the noise.
     "stairs_in_noise": (lambda s: np.hypot(1.0, s.stairs_in_noise) - 1.0, 0.004, 0.005),

@@ -72,7 +72,7 @@ def test_a_shape_is_found_as_often_as_its_level_says() -> None:
 @pytest.mark.parametrize(("factor", "found"), [(0.8, False), (1.25, True)])
 def test_a_stretch_is_louder_from_a_ratio_of_the_variances_on(factor: float, found: bool) -> None:
     """However improbable by chance: a third of 360 readings shows even the smaller one."""
-    burst = bursts(handed(variance, Loud(stretch=float(np.sqrt(LIMITS.burst_ratio * factor)), length=120)).fit)
+    burst = bursts(handed(variance, Loud(stretch=float(np.sqrt(2.25 * factor)), length=120)).fit)
     assert (burst is not None) == found
     assert burst is None or burst.log_p < LIMITS.effect_log_p(10)
 

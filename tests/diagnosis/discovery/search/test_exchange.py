@@ -14,7 +14,6 @@ from diagnosis.discovery.search import exchange
 from diagnosis.discovery.search.exchange import Search, improve, in_its_place
 from diagnosis.discovery.search.likelihood_ratio import settle
 from diagnosis.discovery.search.removal import Removal
-from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.searches import candidate, with_cause
@@ -24,7 +23,6 @@ from twin.catalogue import CATALOGUE, in_order
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
-LIMITS = DiscoverySettings()
 SATURATION, HARMONIC, LATENCY, PAIR = "saturation", "magnet_harmonic", "latency", "unnamed_pair"
 BACK = Made(points=180, bits=30, back=True)
 
@@ -123,7 +121,7 @@ def test_first_order_may_undervalue_a_rival_by_so_much(
     )
     removal = Removal.of(state.fit, state.keys[0])
     assert removal.own is not None
-    limit = max(removal.log_p, removal.own.log_p) + LIMITS.contender_nats
+    limit = max(removal.log_p, removal.own.log_p) + 8.0
     offered = [candidate(SATURATION, state.fit, log_p=limit + beyond), candidate(HARMONIC, state.fit, log_p=-500.0)]
     monkeypatch.setattr(exchange, "candidates", lambda *_: offered)
     rivals = exchange._rivals(state.fit, removal, (), ())
@@ -140,10 +138,10 @@ def test_no_more_rivals_are_tried_than_may_be_but_zeros_of_the_turns_are(monkeyp
     removal = Removal.of(state.fit, state.keys[0])
     removal = replace(removal, log_p=-50.0, own=None)
     rivals = [rival.effect.name for rival in exchange._rivals(state.fit, removal, (), ())]
-    assert rivals == [*names[: LIMITS.most_rivals], "reference_rezero"]
+    assert rivals == [*names[:3], "reference_rezero"]
 
 
-@pytest.mark.parametrize(("coarse", "threshold"), [(False, LIMITS.effect_log_p(7)), (True, -LIMITS.stairs_log_odds)])
+@pytest.mark.parametrize(("coarse", "threshold"), [(False, np.log(0.01 / 4.0 / 7.0)), (True, -20.0)])
 def test_beside_coarse_stairs_only_what_is_beyond_doubt_counts(coarse: bool, threshold: float) -> None:
     fit = plain(Made(points=180, bits=30, left_out=("time_s", "turn", "direction"))).fit
     fit = replace(fit, weighting=replace(fit.weighting, coarse=coarse))
@@ -164,7 +162,7 @@ class Pair:
 
     latency: float
     neither: float = 0.0
-    most: int = LIMITS.most_in_place
+    most: int | None = None
     held: tuple[str, ...] = (SATURATION, LATENCY)
 
 
@@ -210,9 +208,9 @@ def test_named_causes_take_the_place_of_a_shape_that_they_explain(case: Pair) ->
     effect = shape_without_a_name(np.asarray(shape))
     fit = reading(state, (0.06, np.asarray(shape))).fit
     chain = replace(fit.chain, effects=in_order((*CATALOGUE, effect)))
-    state = with_settings(
-        state.with_(evaluate(chain, fit.free, fit.observations, fit.weighting)), most_in_place=case.most
-    )
+    state = state.with_(evaluate(chain, fit.free, fit.observations, fit.weighting))
+    if case.most is not None:
+        state = with_settings(state, most_in_place=case.most)
     state = holding(state, ((PAIR, {"height_deg": 0.06}),))
     search = Search.among((*plain(TWO_SPEEDS).searched, effect), state.fit)
     assert in_its_place(state.fit, PAIR, list(state.keys), search)[1] == list(case.held)

@@ -48,16 +48,16 @@ class Joint:
     points: int
     size_deg: float
     orders: tuple[int, ...]
-    most: int
+    most: int | None = None
     added: int
 
 
 JOINT = {
-    "two": Joint(points=180, size_deg=0.015, orders=(3, 5), most=3, added=2),
+    "two": Joint(points=180, size_deg=0.015, orders=(3, 5), added=2),
     "two where one may be": Joint(points=180, size_deg=0.015, orders=(3, 5), most=1, added=0),
-    "three": Joint(points=90, size_deg=0.03, orders=(3, 4, 6), most=3, added=3),
+    "three": Joint(points=90, size_deg=0.03, orders=(3, 4, 6), added=3),
     "three where two may be": Joint(points=90, size_deg=0.03, orders=(3, 4, 6), most=2, added=0),
-    "too weak together": Joint(points=90, size_deg=0.015, orders=(3, 4, 6), most=3, added=0),
+    "too weak together": Joint(points=90, size_deg=0.015, orders=(3, 4, 6), added=0),
 }
 
 
@@ -65,7 +65,8 @@ JOINT = {
 def test_causes_that_pass_for_coloured_noise_to_one_another_are_found_together(case: Joint) -> None:
     """Each alone leaves the others, which coloured noise explains as well; the noise is white."""
     made = Made(points=case.points, bits=30)
-    alone, together = both_steps(harmonics(made, case.size_deg, case.orders, most_together=case.most))
+    settings = {} if case.most is None else {"most_together": case.most}
+    alone, together = both_steps(harmonics(made, case.size_deg, case.orders, **settings))
     assert alone is None
     assert (together is None) == (case.added == 0)
     if together is not None:
@@ -115,10 +116,10 @@ class Contest:
 
 
 CONTESTS = {
-    "within reach": Contest(behind=LIMITS.contender_nats - 0.5, found=True),
-    "out of reach": Contest(behind=LIMITS.contender_nats + 0.5, found=False),
-    "as many as may be": Contest(behind=1.0, others=LIMITS.most_contenders - 1, found=True),
-    "one too many": Contest(behind=1.0, others=LIMITS.most_contenders, found=False),
+    "within reach": Contest(behind=7.5, found=True),
+    "out of reach": Contest(behind=8.5, found=False),
+    "as many as may be": Contest(behind=1.0, others=4, found=True),
+    "one too many": Contest(behind=1.0, others=5, found=False),
 }
 
 
@@ -137,7 +138,7 @@ def test_of_strong_causes_the_reach_is_a_share_of_the_score(
     share: float, found: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     front = -400.0
-    true = front - share * LIMITS.contender_share * front
+    true = front - share * 0.1 * front
     fit, base = settle(fifth().fit)
     ranked = [candidate(SATURATION, fit, log_p=front), offered(true)[-1]]
     monkeypatch.setattr(forward_step, "candidates", lambda *_: ranked)
@@ -157,7 +158,7 @@ def test_who_explains_a_fair_share_is_remembered(share: float, fair: bool, monke
     """To be tried in its place later: those whose gain to first order is a fair share of the chosen one's."""
     fit, base = settle(fifth().fit)
     true = offered(-40.0, others=0, gain=100.0)
-    other = candidate(SATURATION, fit, log_p=-20.0, gain=100.0 * share * LIMITS.fair_share)
+    other = candidate(SATURATION, fit, log_p=-20.0, gain=100.0 * share * 0.15)
     monkeypatch.setattr(forward_step, "candidates", lambda *_: [*true, other])
     step = best_addition(fit, base, fifth().searched, (), LIMITS.effect_log_p(10))
     assert step is not None

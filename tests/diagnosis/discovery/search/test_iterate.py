@@ -12,13 +12,11 @@ from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.search import iterate
 from diagnosis.discovery.search.iterate import searched, trusting
 from diagnosis.discovery.search.stepwise import Found
-from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.stages.test_row_masks import with_radius
 from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
 
-LIMITS = DiscoverySettings()
 RADIUS_NOISE = 3.5e-4
 CLEAN = Made(points=120, turns=2, bits=30, channels=True)
 
@@ -39,7 +37,7 @@ def with_order(state: State, number: int, size: float) -> State:
 @pytest.mark.parametrize(("factor", "explained"), [(0.85, True), (1.15, False)])
 def test_more_than_its_noise_is_left_of_the_radius(factor: float, explained: bool) -> None:
     """An order whose power stands to that of the noise on either side of the limit."""
-    power = LIMITS.radius_left * factor - 1.0
+    power = 1.5 * factor - 1.0
     state = with_order(recorded(CLEAN), 6, np.sqrt(2.0 * power))
     assert iterate._radius_explained(state.fit) == explained
 
@@ -116,4 +114,4 @@ def test_a_search_that_never_ends_ends_after_its_rounds(monkeypatch: pytest.Monk
 
     monkeypatch.setattr(iterate, "search", search)
     searched(state.fit, (), (), step=0.0, also=state.touched)
-    assert len(rounds) == LIMITS.most_rounds
+    assert len(rounds) == 3

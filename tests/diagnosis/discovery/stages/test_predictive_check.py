@@ -9,12 +9,11 @@ import pytest
 
 from diagnosis.discovery.marks.row_masks import scaled
 from diagnosis.discovery.search.likelihood_ratio import drop
-from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.predictive_check import predictive_check
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.sweeps import Made, before
 
-SWEEPS = DiscoverySettings().predictive_sweeps
+SWEEPS = 199
 NOISE_DEG = 0.02
 
 

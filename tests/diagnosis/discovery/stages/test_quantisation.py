@@ -40,7 +40,7 @@ def on_a_grid(share: float) -> State:
 
 @pytest.mark.parametrize(
     ("share", "modelled"),
-    [(0.75 * LIMITS.stairs_in_noise, False), (1.3 * LIMITS.stairs_in_noise, True), (0.5, True), (0.9, True)],
+    [(0.075, False), (0.13, True), (0.5, True), (0.9, True)],
 )
 def test_the_grid_is_modelled_where_it_is_not_small_against_the_noise(share: float, modelled: bool) -> None:
     state = on_a_grid(share)

@@ -14,13 +14,11 @@ import pytest
 
 from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.marks.outliers import local_residual, robust_rms
-from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
 from twin.angles import Array
 
-LIMITS = DiscoverySettings()
 NEAR = 0.15
 """Share of a limit by which the cases stand on either side of it: what the fit itself takes up of a row is less."""
 FINE = Made(points=180, bits=30)
@@ -32,7 +30,7 @@ class Case:
 
     made: Made = FINE
     rows: tuple[int, ...] = (40,)
-    away: float = LIMITS.spike_sigma * (1.0 + NEAR)
+    away: float = 7.0 * (1.0 + NEAR)
     steps: float = 0.0
     masked: tuple[int, ...] = ()
     touched: tuple[int, ...] = ()
@@ -43,22 +41,18 @@ def few(points: int) -> Made:
     return replace(FINE, points=points)
 
 
-_NEIGHBOURS = tuple(range(40, 41 + LIMITS.longest_spike))
+_NEIGHBOURS = tuple(range(40, 45))
 _THREE = Made(points=72, turns=3, bits=30)
 _BACK = Made(points=72, turns=2, back=True, bits=30)
 CASES = {
     "noise alone": Case(away=0.0),
-    "nearer than the limit": Case(away=LIMITS.spike_sigma * (1.0 - NEAR)),
+    "nearer than the limit": Case(away=7.0 * (1.0 - NEAR)),
     "farther than the limit": Case(masked=(40,)),
-    "below": Case(away=-LIMITS.spike_sigma * (1.0 + NEAR), masked=(40,)),
-    "in a record just long enough": Case(made=few(LIMITS.spike_few), away=10.0, masked=(40,)),
-    "in a record just too short": Case(made=few(LIMITS.spike_few - 1), away=10.0),
-    "nearer than the limit of a short record": Case(
-        made=few(LIMITS.spike_few - 1), away=LIMITS.spike_sigma_few * (1.0 - NEAR)
-    ),
-    "farther than the limit of a short record": Case(
-        made=few(LIMITS.spike_few - 1), away=LIMITS.spike_sigma_few * (1.0 + NEAR), masked=(40,)
-    ),
+    "below": Case(away=-7.0 * (1.0 + NEAR), masked=(40,)),
+    "in a record just long enough": Case(made=few(60), away=10.0, masked=(40,)),
+    "in a record just too short": Case(made=few(59), away=10.0),
+    "nearer than the limit of a short record": Case(made=few(59), away=14.0 * (1.0 - NEAR)),
+    "farther than the limit of a short record": Case(made=few(59), away=14.0 * (1.0 + NEAR), masked=(40,)),
     # Five degrees apart: of readings within a few degrees three that are off the same way pass for a narrow shape.
     "as many neighbours as may be": Case(made=few(72), rows=_NEIGHBOURS[:-1], away=20.0, masked=_NEIGHBOURS[:-1]),
     "one neighbour more": Case(made=few(72), rows=_NEIGHBOURS, away=20.0),
@@ -106,8 +100,8 @@ class Radius:
 
 _STRETCH = tuple(range(40, 50))
 RADII = {
-    "a stretch smaller than any cause makes it": Radius(fallen=LIMITS.fallen_out * 1.1, rows=_STRETCH, masked=True),
-    "a stretch that a cause might explain": Radius(fallen=LIMITS.fallen_out * 0.9, rows=_STRETCH, masked=False),
+    "a stretch smaller than any cause makes it": Radius(fallen=0.2 * 1.1, rows=_STRETCH, masked=True),
+    "a stretch that a cause might explain": Radius(fallen=0.2 * 0.9, rows=_STRETCH, masked=False),
     "a single reading": Radius(fallen=0.05, rows=(40,), masked=True),
 }
 

@@ -152,13 +152,10 @@ def until_still(*stages: Stage) -> Stage:
     def loop(state: State) -> State:
         left: dict[int, State] = {}
         for _ in range(state.settings.most_rounds):
-            before = state
             for place, stage in enumerate(stages):
                 if left.get(place) is not state:
                     state = stage(state)
                     left[place] = state
-            if state is before:
-                break
         return state
 
     return loop

@@ -26,9 +26,6 @@ from twin.chain import Chain
 from twin.motion import Motion
 from twin.sweep import Sweep
 
-_NUDGE = 1e-9
-"""A baseline parameter exactly at null is skipped by the chain and could not be fitted: it starts this far off."""
-
 
 def senses_of_channels(sweep: Sweep) -> tuple[int, int] | None:
     """Who counts which way, (s, h), where the recorded channels say it: the reading follows h atan2(vy, vx)."""
@@ -85,10 +82,8 @@ def awake(chain: Chain) -> Chain:
     """The chain with the whole baseline present, so that every one of its parameters can be fitted."""
     values: dict[str, dict[str, Any]] = {}
     for free in BASELINE:
-        effect = find(free.key)
-        null = effect.params[free.name].null
-        present = chain.values.get(free.key, {}).get(free.name, null)
-        values.setdefault(free.key, {})[free.name] = present + (_NUDGE if present == null else 0.0)
+        null = find(free.key).params[free.name].null
+        values.setdefault(free.key, {})[free.name] = chain.values.get(free.key, {}).get(free.name, null)
     return chain.with_values(values)
 
 

@@ -13,14 +13,16 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import pytest
 
+from diagnosis.discovery.settings import DiscoverySettings
 from tests.mutations import __main__ as command
 from tests.mutations.mutation import ROOT, Mutation, StaleMutationError, checked
 from tests.mutations.runner import ERROR, KILLED, SURVIVED, Copies, fail_unmutated, try_all, try_one
+from tests.mutations.settings import NOTICED_BY, settings
 from tests.mutations.signs import signs
 from tests.mutations.tables import mutations
 from twin.catalogue import CATALOGUE
@@ -47,6 +49,11 @@ def test_short_mutations_keep_their_budget() -> None:
 
 def test_every_mutation_can_be_applied() -> None:
     assert len(checked(mutations())) == len(mutations()) > len(SHORT)
+
+
+def test_every_setting_is_another_in_some_mutation() -> None:
+    changed = {mutation.name.removeprefix("settings.").rpartition("_")[0] for mutation in settings()}
+    assert changed == set(NOTICED_BY) == {one.name for one in fields(DiscoverySettings)}
 
 
 def test_every_strength_has_its_sign_turned() -> None:

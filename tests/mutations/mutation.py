@@ -64,6 +64,19 @@ class Mutation:
         return before
 
 
+def of_one_file(file: str, tests: str, *rows: tuple[str, str, str, str]) -> tuple[Mutation, ...]:
+    """Mutations of one file, each noticed by one test.
+
+    Parameters
+    ----------
+    file, tests : str
+        The file that is changed, and the folder of the tests, relative to the root of the repository.
+    *rows : tuple of str
+        Name, text that is replaced, what replaces it, and node id below the folder.
+    """
+    return tuple(Mutation(name, file, old, new, (f"{tests}/{test}",)) for name, old, new, test in rows)
+
+
 def checked(mutations: Iterable[Mutation], root: Path = ROOT) -> tuple[Mutation, ...]:
     """The mutations, each of which can be applied.
 

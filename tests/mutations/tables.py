@@ -6,9 +6,12 @@ from tests.mutations.by_hand import BY_HAND
 from tests.mutations.discovery import DISCOVERY
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
+from tests.mutations.parts import PARTS
+from tests.mutations.settings import settings
 from tests.mutations.signs import signs
+from tests.mutations.stages import STAGES
 
 
 def mutations() -> tuple[Mutation, ...]:
     """Every mutation, those by hand first."""
-    return (*BY_HAND, *NOISE, *DISCOVERY, *signs())
+    return (*BY_HAND, *NOISE, *DISCOVERY, *STAGES, *PARTS, *settings(), *signs())

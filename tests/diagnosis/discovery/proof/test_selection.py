@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.proof import family_wise as family
 from diagnosis.discovery.proof import selection
+from diagnosis.discovery.proof.bootstrap import noise_of
 from diagnosis.discovery.proof.cross_validation import folds, scattered
 from diagnosis.discovery.proof.family_wise import FamilyWise, Tail
 from diagnosis.discovery.proof.selection import Proof, prove
@@ -103,14 +105,23 @@ def test_only_what_leaves_a_doubt_is_calibrated(log_p: float, simulated: bool) -
     fit = handed().fit
     causes = [Judged(SATURATION, 200.0, -100.0), Judged(SATURATION, 80.0, log_p)]
     effects = [effect for effect in handed().searched if effect.name in (SATURATION, HARMONIC)]
-    family = selection._calibrated(fit, effects, causes, np.random.default_rng(1))
-    assert (family is not None) == simulated
-    if family is not None:
-        assert set(family.tails) == {SATURATION, HARMONIC}
-        # As many sweeps as may be, since they are short.
-        assert {tail.scores.size for tail in family.tails.values()} == {96}
+    calibrated = selection._calibrated(fit, effects, causes, np.random.default_rng(1))
+    assert (calibrated is not None) == simulated
+    if calibrated is not None:
+        assert set(calibrated.tails) == {SATURATION, HARMONIC}
         # Calibrated on sweeps without the cause: its own score is far beyond what these reach.
-        assert float(family.tails[SATURATION].scores[0]) > -30.0
+        assert float(calibrated.tails[SATURATION].scores[0]) > -30.0
+
+
+@pytest.mark.parametrize(("numbers", "sweeps"), [(400, 32), (96 * 60, 60), (10**6, 96)])
+def test_as_many_sweeps_are_simulated_as_there_is_room_for(
+    numbers: int, sweeps: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 96 readings each; never so few that the tail could not be fitted to half of them, nor more than it needs."""
+    monkeypatch.setattr(family, "_NUMBERS", numbers)
+    fit, effects = handed().fit, [effect for effect in handed().searched if effect.name == SATURATION]
+    found = family.family_wise(fit, fit, noise_of(fit), effects, rng=np.random.default_rng(1))
+    assert found.tails[SATURATION].scores.size == sweeps
 
 
 @pytest.mark.parametrize(

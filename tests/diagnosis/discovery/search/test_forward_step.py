@@ -174,17 +174,26 @@ def test_a_cause_that_is_there_is_offered_again_only_where_a_second_makes_sense(
     assert HARMONIC in names
 
 
-def test_a_line_that_is_there_is_looked_for_at_its_multiples() -> None:
-    """Also where these alias: twice order 50 shows at 20 of 120 points a turn. Near the points a turn there is none."""
-    made = Made(points=120, bits=30)
-    state = before(stepwise, made)
+def rippled() -> State:
+    """Readings with order 50 and its double, which aliases to 20 of 120 points a turn; the fit holds the first."""
+    state = before(stepwise, Made(points=120, bits=30))
     shaft = state.fit.observations.motion.shaft_rad
     residual = noise(len(state.sweep)) + np.radians(0.05) * (np.sin(50.0 * shaft) + 0.5 * np.sin(100.0 * shaft + 1.0))
-    state = with_residual(state, residual)
-    state = with_cause(state, "drive_ripple", order=50.0, amplitude_deg=0.05)
+    return with_cause(with_residual(state, residual), "drive_ripple", order=50.0, amplitude_deg=0.05)
+
+
+def test_a_line_that_is_there_is_looked_for_at_its_multiples() -> None:
+    """Also where these alias; near the number of points a turn there is none."""
+    state = rippled()
     (found,) = multiples(Base.of(state.fit), state.searched, state.keys)
     assert found.values["order"] == 100.0
     assert found.gain > 20.0
+
+
+def test_multiples_of_a_line_are_among_the_candidates() -> None:
+    state = rippled()
+    found = candidates(Base.of(state.fit), [find("drive_ripple")], state.keys)
+    assert 100.0 in {one.values["order"] for one in found}
 
 
 # ---- stuck bits -----------------------------------------------------------------------------------------------------

@@ -25,7 +25,15 @@ def rows_hit(made: Made, name: str) -> tuple[int, ...]:
     return tuple(int(row) for row in hidden["rows"])
 
 
-@pytest.mark.parametrize("made", [MADE, Made(causes=((STALE, 0.05),), points=90, turns=2, back=True, bits=12)])
+@pytest.mark.parametrize(
+    "made",
+    [
+        MADE,
+        Made(causes=((STALE, 0.05),), points=90, turns=2, back=True, bits=12),
+        # A step of the shaft of six sigma: repeats that stand out too little to be masked by themselves.
+        Made(causes=((STALE, 0.1),), points=360, noise_deg=0.16),
+    ],
+)
 def test_every_repeated_frame_is_named_and_masked(made: Made) -> None:
     state = before(repeated_frames, made)
     after = repeated_frames(state)

@@ -108,7 +108,7 @@ def test_below_a_files_last_digit_nothing_is_searched(factor: float, found: tupl
     """A clear shape whose RMS lies on either side of the limit."""
     state = handed(Case(shape=harmonic, size_deg=0.1))
     residual = state.fit.residual[0]
-    rms = np.radians(state.settings.smallest_rms_deg * factor)
+    rms = np.radians(6e-5 * factor)
     assert stepwise(with_residual(state, residual * rms / np.sqrt(np.mean(residual**2)))).keys == found
 
 
@@ -161,3 +161,11 @@ PAIRS = {
 @pytest.mark.parametrize("made", PAIRS.values(), ids=PAIRS)
 def test_two_causes_that_pass_for_something_else_are_found(made: Made) -> None:
     assert set(stepwise(before(stepwise, made)).keys) == {name for name, _ in made.causes}
+
+
+def test_what_the_radius_shows_is_taken_for_causes_first() -> None:
+    """A search in which it may be noise of its own is made only where causes leave some of it unexplained."""
+    made = Made(causes=(("saturation", 0.1),), points=120, turns=2, bits=30, channels=True)
+    after = stepwise(before(stepwise, made))
+    assert after.keys == ("saturation",)
+    assert after.fit.weighting.radius_trusted

@@ -1,0 +1,242 @@
+"""Mutations of marks, search, fits and proof: each mechanism off, with the test that notices."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation, of_one_file
+
+_D, _T = "diagnosis/discovery", "tests/diagnosis/discovery"
+
+PARTS: tuple[Mutation, ...] = (
+    *of_one_file(
+        f"{_D}/marks/outliers.py",
+        _T,
+        (
+            "outliers.what_comes_again_is_masked",
+            "mask & ~_repeated(away, mask, motion)",
+            "mask",
+            "stages/test_row_masks.py::test_which_rows_are_masked",
+        ),
+        (
+            "outliers.steps_of_the_grid_are_masked",
+            "far_out(away, settings) + step",
+            "far_out(away, settings)",
+            "stages/test_row_masks.py::test_which_rows_are_masked",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/marks/row_masks.py",
+        _T,
+        (
+            "row_masks.channels_never_fall_out",
+            "(np.abs(radius - np.median(radius)) < settings.fallen_out)",
+            "True",
+            "stages/test_row_masks.py::test_channels_that_fall_out_are_masked",
+        ),
+        (
+            "row_masks.claimed_rows_come_back",
+            " & ~rows_of(fit.observations, also)",
+            "",
+            "stages/test_row_masks.py::test_which_rows_are_masked",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/marks/sequence.py",
+        _T,
+        (
+            "sequence.rows_belong_to_several_effects",
+            "np.where(spoken_for, 0.0, raw_residual(fit, sweep))",
+            "raw_residual(fit, sweep)",
+            "stages/test_flipped_bits.py::test_the_words_that_were_hit_are_named",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/marks/quantisation.py",
+        _T,
+        (
+            "quantisation.readings_outside_cost_nothing",
+            " + missed * _MISSED_NATS",
+            "",
+            "marks/test_quantisation.py::test_chance_is_the_share_of_the_words_to_the_power_of_the_readings",
+        ),
+        (
+            "quantisation.levels_cost_nothing",
+            "settings.effect_log_p(len(tried))",
+            "settings.footprint_log_p",
+            "stages/test_quantisation.py::test_chance_is_shared_by_the_levels_that_are_tried",
+        ),
+        (
+            "quantisation.every_reading_counts",
+            "distinct = np.unique(words).size",
+            "distinct = words.size",
+            "marks/test_quantisation.py::test_readings_of_one_word_count_once",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/marks/spread.py",
+        _T,
+        (
+            "spread.tails_taken_for_unevenness",
+            "return max(float(np.var(square / np.mean(square))) / 2.0, 1.0)",
+            "return 1.0",
+            "marks/test_spread.py",
+        ),
+        (
+            "spread.looks_of_a_stretch_cost_nothing",
+            " + float(np.log(max(stretch.looks, 1)))",
+            "",
+            "marks/test_spread.py::test_even_noise_has_a_loud_stretch_hardly_ever",
+        ),
+        (
+            "spread.judged_behind_the_scale",
+            "to_rows(fit.cosine_residual[0] * root) * fit.observations.scale",
+            "to_rows(fit.cosine_residual[0] * root)",
+            "marks/test_spread.py::test_what_the_rows_scale_has_taken_out_is_put_back",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/search/exchange.py",
+        _T,
+        (
+            "exchange.nothing_is_removed",
+            "    if removal.log_p + handicap(removal.effect, fit) > plan.level_beside(fit, others):\n",
+            "    if False:\n",
+            "search/test_exchange.py::test_what_becomes_of_the_causes_held",
+        ),
+        (
+            "exchange.nothing_is_exchanged",
+            "        if own_p - rival_p > fit.settings.swap_log_odds:\n",
+            "        if False:\n",
+            "search/test_exchange.py::test_what_becomes_of_the_causes_held",
+        ),
+        (
+            "exchange.zeros_of_the_turns_are_not_tried",
+            ', *(c for c in ranked[most:] if c.effect.roles("per turn"))',
+            "",
+            "search/test_exchange.py::test_no_more_rivals_are_tried_than_may_be_but_zeros_of_the_turns_are",
+        ),
+        (
+            "exchange.any_share_is_fair",
+            "fair = min(np.diff(gains)) > fit.settings.fair_share * gains[-1]",
+            "fair = True",
+            "search/test_exchange.py::test_named_causes_take_the_place_of_a_shape_that_they_explain",
+        ),
+        (
+            "exchange.coarse_stairs_ask_no_more",
+            "threshold = min(threshold, -fit.settings.stairs_log_odds)",
+            "pass",
+            "search/test_exchange.py::test_beside_coarse_stairs_only_what_is_beyond_doubt_counts",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/search/forward_step.py",
+        _T,
+        (
+            "forward_step.first_order_decides",
+            "[: settings.most_contenders]",
+            "[:1]",
+            "search/test_forward_step.py::test_the_exact_fit_decides_among_those_near_the_best",
+        ),
+        (
+            "forward_step.stuck_bits_are_not_found_afresh",
+            '        if effect.line is None or effect.line.clock != "channels":\n',
+            "        if True:\n",
+            "search/test_forward_step.py::test_a_stuck_bit_is_found_afresh_once_the_rest_is_known",
+        ),
+        (
+            "forward_step.multiples_are_not_looked_for",
+            "    found += multiples(base, effects, keys)\n",
+            "",
+            "search/test_forward_step.py::test_multiples_of_a_line_are_among_the_candidates",
+        ),
+        (
+            "forward_step.everyone_is_a_contender",
+            "if c.gain > fit.settings.fair_share * chosen.gain}",
+            "}",
+            "search/test_forward_step.py::test_who_explains_a_fair_share_is_remembered",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/search/rivals.py",
+        _T,
+        (
+            "rivals.not_held_against_the_cause",
+            "return trial if rival_gain > gain - same else None",
+            "return trial",
+            "search/test_rivals.py::test_as_good_is_within_three_sigma_and_beside_coarse_stairs_within_six",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/search/iterate.py",
+        _T,
+        (
+            "iterate.an_unexplained_radius_is_trusted",
+            "return found if _radius_explained(found.fit) else None",
+            "return found",
+            "search/test_iterate.py::test_all_that_the_radius_does_has_to_be_the_work_of_causes",
+        ),
+        (
+            "iterate.ends_with_the_first_round",
+            "        if found.keys == before and np.array_equal(",
+            "        if True or np.array_equal(",
+            "search/test_iterate.py::test_rows_that_stand_alone_only_once_the_causes_are_known_are_masked",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/search/likelihood_ratio.py",
+        _T,
+        (
+            "likelihood_ratio.looks_cost_nothing",
+            "log_probability(np.array(gain), terms, dof)) + float(np.log(looks))",
+            "log_probability(np.array(gain), terms, dof))",
+            "search/test_likelihood_ratio.py::test_the_probability_is_that_of_an_f_test_at_the_best_of_so_many_looks",
+        ),
+        (
+            "likelihood_ratio.each_turn_costs_a_coefficient",
+            'return 1 if effect.roles("per turn") else terms',
+            "return terms",
+            "search/test_likelihood_ratio.py::test_zeros_of_the_turns_cost_the_one_scatter_that_they_are_drawn_with",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/fitting/initial_fit.py",
+        _T,
+        (
+            "initial_fit.turns_have_one_zero",
+            "    if each_turn and turns > 1:\n",
+            "    if False:\n",
+            "stages/test_initial_fit.py::test_of_a_given_twin_the_zeros_alone_are_free",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/fitting/noise/plausible.py",
+        _T,
+        (
+            "plausible.structure_passes_for_colour",
+            "columns = np.concatenate([fit.cosine_jacobian[:, 0], aside])",
+            "columns = fit.cosine_jacobian[:, 0]",
+            "fitting/test_plausible.py::test_structure_that_repeats_with_the_angle_is_no_colour",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/proof/selection.py",
+        _T,
+        (
+            "selection.narrow_shapes_are_held_out_as_a_whole",
+            "    if fit.weighting.member == 0 and _lost(weighed, fit.settings.heldout_lost):\n",
+            "    if False:\n",
+            "proof/test_selection.py::test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost",
+        ),
+        (
+            "selection.stairs_are_not_looked_behind",
+            "    if fit.weighting.member == 0 or grid is None or grid.name not in fit.chain.values:\n",
+            "    if True:\n",
+            "proof/test_selection.py::test_in_coloured_noise_a_cause_must_stand_without_the_outputs_stairs_too",
+        ),
+        (
+            "selection.the_kindest_view_judges",
+            "    return max((judge(view",
+            "    return min((judge(view",
+            "proof/test_selection.py::test_the_least_favourable_view_judges",
+        ),
+    ),
+)

@@ -1,0 +1,164 @@
+"""Mutations of the stages, of what they hand on and of the policy: each mechanism off, with the test that notices."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation, of_one_file
+
+_D, _T = "diagnosis/discovery", "tests/diagnosis/discovery"
+
+STAGES: tuple[Mutation, ...] = (
+    *of_one_file(
+        f"{_D}/settings.py",
+        _T,
+        (
+            "settings.places_do_not_share_the_policy",
+            "self.false_alarm_probability / FOOTPRINTS",
+            "self.false_alarm_probability",
+            "stages/test_repeated_frames.py::test_the_limit_is_a_quarter_of_the_policy",
+        ),
+        (
+            "settings.effects_do_not_share_the_policy",
+            "self.footprint_log_p - float(np.log(max(effects, 1)))",
+            "self.footprint_log_p",
+            "stages/test_quantisation.py::test_chance_is_shared_by_the_levels_that_are_tried",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/state.py",
+        _T,
+        (
+            "until_still.asked_again_of_what_it_left",
+            "if left.get(place) is not state:",
+            "if True:",
+            "test_state.py::test_the_loop_ends_when_all_is_still_or_the_rounds_are_over",
+        ),
+        (
+            "until_still.ends_after_a_round",
+            "range(state.settings.most_rounds)",
+            "range(1)",
+            "test_pipeline.py::test_the_loop_may_be_cut_short",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/stages/held_out_selection.py",
+        _T,
+        (
+            "held_out_selection.draws_from_the_generator_handed_in",
+            "rng = deepcopy(state.rng)",
+            "rng = state.rng",
+            "stages/test_every_stage.py::test_a_stage_is_pure[held_out_selection-in doubt]",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/stages/repeated_frames.py",
+        _T,
+        (
+            "repeated_frames.not_masked",
+            "fit = without_rows(state.fit, touched)",
+            "fit = state.fit",
+            "stages/test_repeated_frames.py::test_every_repeated_frame_is_named_and_masked",
+        ),
+        (
+            "repeated_frames.named_again",
+            " or state.has(effect)",
+            "",
+            "stages/test_repeated_frames.py::test_every_repeated_frame_is_named_and_masked",
+        ),
+        (
+            "repeated_frames.earlier_claims_forgotten",
+            "touched = state.touched | mask",
+            "touched = mask",
+            "stages/test_repeated_frames.py::test_rows_of_an_earlier_claim_stay_touched",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/stages/variance.py",
+        _T,
+        (
+            "variance.asked_after_a_search",
+            "    if state.looked_at:\n        return state\n",
+            "",
+            "stages/test_variance.py::test_once_a_search_has_been_made_what_it_leaves_is_judged_instead",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/stages/spread.py",
+        _T,
+        (
+            "spread.judged_again",
+            '    if state.found("spread"):\n        return state\n',
+            "",
+            "stages/test_spread.py::test_it_is_judged_once",
+        ),
+        (
+            "spread.scale_without_a_cause_stays",
+            "        if np.all(fit.observations.scale == 1.0):\n            return state\n",
+            "        return state\n",
+            "stages/test_spread.py::test_a_scale_that_no_cause_carries_goes",
+        ),
+        (
+            "spread.no_family_to_pay_for",
+            "effect_log_p(state.looked_at)",
+            "effect_log_p(1)",
+            "stages/test_spread.py::test_what_is_named",
+        ),
+        (
+            "spread.no_doubt_beside_a_shape_without_a_name",
+            " - doubt_beside(fit, state.keys)",
+            "",
+            "stages/test_spread.py::test_what_is_named",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/stages/stepwise.py",
+        _T,
+        (
+            "stepwise.radius_never_trusted",
+            "        found = trusting(state.fit, state.searched, state.step, kept_out)\n",
+            "",
+            "stages/test_stepwise.py::test_what_the_radius_shows_is_taken_for_causes_first",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/stages/grid_cause.py",
+        _T,
+        (
+            "grid_cause.beside_another_set",
+            ' or state.found("values")',
+            "",
+            "stages/test_grid_cause.py::test_no_rounding_beside_another_finite_set",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/stages/final_fit.py",
+        _T,
+        (
+            "final_fit.baseline_keeps_the_causes_stairs",
+            "baseline.chain.without(*stairs)",
+            "baseline.chain",
+            "stages/test_final_fit.py::test_the_baseline_is_the_error_model_without_any_cause",
+        ),
+        (
+            "final_fit.edges_without_slopes",
+            "with_slopes(fit)",
+            "fit",
+            "stages/test_final_fit.py::test_the_weight_of_a_stuck_bit_is_that_of_the_optimum",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/stages/answer.py",
+        _T,
+        (
+            "answer.masked_rows_count_no_more",
+            "rms_deg(held, np.ones_like(use))",
+            "rms_deg(held, use)",
+            "stages/test_answer.py::test_rows_that_are_touched_count_before_and_not_after",
+        ),
+        (
+            "answer.figures_of_averages",
+            "entry, before_deg=of_readings(before, fit.observations),",
+            "entry, before_deg=before,",
+            "stages/test_answer.py::test_figures_are_those_of_single_readings",
+        ),
+    ),
+)

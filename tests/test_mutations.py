@@ -162,6 +162,8 @@ def test_broken_off_it_leaves_no_files_behind(sent: signal.Signals, tmp_path: Pa
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
+        # Whoever runs the tests in the background has this signal ignored, which a child would inherit.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     deadline = time.monotonic() + 60.0
     while process.poll() is None and not list(tmp_path.glob("mutations-*/*/tests")) and time.monotonic() < deadline:

@@ -67,6 +67,14 @@ _MECHANISMS: tuple[Mutation, ...] = (
         (f"{_STEPWISE}[coloured noise]",),
         short=True,
     ),
+    Mutation(
+        "search.re_tuning_off",
+        "diagnosis/discovery/search/forward_step.py",
+        "settle(retuned(step.fit, keys))",
+        "settle(step.fit)",
+        (f"{_STEPWISE}[edges that were shifted]",),
+        short=True,
+    ),
 )
 
 

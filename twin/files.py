@@ -22,8 +22,8 @@ from twin.errors import UserError
 from twin.magnet.assembly import assembly_from, assembly_table
 from twin.parts import Parts, parts_from, parts_table
 from twin.reference.encoder import Encoder
-from twin.sweep_file import write_beside
 from twin.tables import from_table, to_table
+from twin.whole_file import write_beside
 
 SCHEMA = "halltwin.twin/1"
 _KEYS = ("schema", "sensor_sense", "output_sense", "magnet", "hardware", "reference", "effects")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import gzip
 import io
-import os
 import re
 import zlib
 from collections.abc import Mapping
@@ -14,8 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from twin.angles import Array
-from twin.errors import SweepError, UserError
+from twin.errors import SweepError
 from twin.sweep_columns import COLUMNS, REQUIRED
+from twin.whole_file import write_beside
 
 _BYTE_ORDER_MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 _MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "-", "inf", "+inf", "-inf", "infinity", "-infinity"})
@@ -173,17 +173,20 @@ def _read_parquet(path: Path) -> dict[str, Array]:
 
 
 def write_columns(path: Path, columns: Mapping[str, Array], *, comments: tuple[str, ...] = ()) -> None:
-    """Write columns (each (n,)) as CSV to a file beside ``path`` that then takes its name."""
+    """Write columns (each (n,)) as CSV, compressed where the name ends in .gz, whole or not at all."""
+    content = csv_text(columns, comments=comments).encode()
+    write_beside(path, gzip.compress(content, mtime=0) if path.suffix == ".gz" else content)
+
+
+def csv_text(columns: Mapping[str, Array], *, comments: tuple[str, ...] = ()) -> str:
+    """Columns (each (n,)) as the text of a CSV file, comments above the header."""
     out = io.StringIO()
     for comment in comments:
         out.write(f"# {comment}\n")
     out.write(",".join(columns) + "\n")
     cells = [[_cell(name, value, digits) for value in values] for name, values, digits in _with_digits(columns)]
     out.write("\n".join(",".join(row) for row in zip(*cells, strict=True)) + "\n")
-    write_beside(
-        path,
-        gzip.compress(out.getvalue().encode(), mtime=0) if path.suffix == ".gz" else out.getvalue().encode(),
-    )
+    return out.getvalue()
 
 
 def _with_digits(columns: Mapping[str, Array]) -> list[tuple[str, Array, int]]:
@@ -199,34 +202,3 @@ def _cell(name: str, value: float, digits: int) -> str:
     if name in ("turn", "direction") and np.isfinite(value):
         return f"{int(value)}"
     return f"{value:.{digits}g}"
-
-
-def check_writable(path: Path) -> None:
-    """Raise UserError where no file can be written under this name: said before the work, not after it."""
-    if path.is_dir():
-        raise UserError(f"{path}: is a folder; give the name of the file to write")
-    if not path.parent.is_dir():
-        raise UserError(f"{path}: there is no folder {path.parent}; make it first, or give another path")
-    if not os.access(path if _in_place(path) else path.parent, os.W_OK):
-        raise UserError(f"{path}: no permission to write there; give another path")
-
-
-def _in_place(path: Path) -> bool:
-    """Whether a path is a device, a pipe or a link: it is to be written to, and not to be replaced by a new file."""
-    return path.is_symlink() or (path.exists() and not path.is_file())
-
-
-def write_beside(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all: to a name beside it, then renamed. Raises UserError."""
-    check_writable(path)
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        if _in_place(path):
-            path.write_bytes(content)
-            return
-        beside.write_bytes(content)
-        os.replace(beside, path)
-    except OSError as error:
-        raise UserError(f"{path}: cannot be written ({error.strerror}); give another path") from None
-    finally:
-        beside.unlink(missing_ok=True)

@@ -19,7 +19,7 @@ from diagnosis.report.svg import Plot
 from diagnosis.report.tables import number
 from diagnosis.report.wording import explained_percent, minus, plain, rejected_words, verdict_words
 from twin.catalogue import find
-from twin.sweep_file import write_beside
+from twin.whole_file import write_beside
 
 
 def write_report(path: Path, found: Discovery, answer: Mapping[str, Any]) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from twin.errors import UserError
-from twin.sweep_file import write_beside
+from twin.whole_file import write_beside
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

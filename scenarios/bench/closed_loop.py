@@ -21,7 +21,7 @@ from twin.angles import Array, wrap_deg
 from twin.catalogue import CATALOGUE
 from twin.effect import Effect
 from twin.errors import UserError
-from twin.sweep_file import write_beside
+from twin.whole_file import write_beside
 
 SCHEMA = "halltwin.closed_loop/1"
 AIM_DEG = 0.2

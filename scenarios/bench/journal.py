@@ -13,7 +13,7 @@ from typing import IO, Any
 from scenarios.bench.plan import Plan
 from scenarios.bench.readings import Event, Reading
 from twin.errors import UserError
-from twin.sweep_file import check_writable, write_beside
+from twin.whole_file import check_writable, write_beside
 
 SCHEMA = "halltwin.bench/1"
 

@@ -9,7 +9,7 @@ from scenarios.bench.measure import Measured
 from scenarios.bench.pretreatment import MANIFEST_DEG, pretreat, write_sweep
 from scenarios.bench.readings import Assembler
 from twin.errors import UserError
-from twin.sweep_file import check_writable
+from twin.whole_file import check_writable
 
 
 def replay(

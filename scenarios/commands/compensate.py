@@ -19,7 +19,7 @@ from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.files import read_twin
 from twin.sweep import Sweep
-from twin.sweep_file import write_beside
+from twin.whole_file import write_beside
 
 _FEWEST_POINTS = 4
 _MOST_POINTS = 65536

@@ -9,7 +9,7 @@ from pathlib import Path
 from diagnosis import diagnose_many
 from diagnosis.report.plotting import check_format, write_figure
 from scenarios.commands.inputs import sweep_paths
-from twin.sweep_file import write_beside
+from twin.whole_file import write_beside
 
 
 def run(

@@ -11,7 +11,7 @@ from diagnosis.report.console import show
 from diagnosis.report.plotting import check_format, write_figure
 from twin.errors import UserError
 from twin.files import write_twin
-from twin.sweep_file import check_writable, write_beside
+from twin.whole_file import check_writable, write_beside
 
 
 def run(

@@ -14,7 +14,7 @@ from diagnosis.factors.series import FEWEST_SWEEPS, RUN_LENGTH, MonitoredSeries,
 from scenarios.commands.inputs import sweep_paths
 from twin.errors import UserError
 from twin.sweep import Sweep
-from twin.sweep_file import write_beside
+from twin.whole_file import write_beside
 
 SCHEMA = "halltwin.monitor/1"
 

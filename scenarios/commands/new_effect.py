@@ -19,7 +19,7 @@ from twin.declaration import NAME
 from twin.effect import Effect
 from twin.errors import UserError
 from twin.extensions import RESERVED, effects_of, effects_with, unfit
-from twin.sweep_file import check_writable, write_beside
+from twin.whole_file import check_writable, write_beside
 
 _PLAIN = "structure of your own: a line of order 5 in the shaft angle, to begin with"
 

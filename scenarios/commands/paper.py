@@ -23,7 +23,8 @@ from twin.angles import Array
 from twin.chain import Chain
 from twin.hall.gain_mismatch import GAIN_MISMATCH
 from twin.hall.phase import PHASE
-from twin.sweep_file import write_beside, write_columns
+from twin.sweep_file import write_columns
+from twin.whole_file import write_beside
 
 Columns = dict[str, Array]
 TURN = whole_turn(360)

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import UserError
-from twin.sweep_file import write_beside
+from twin.whole_file import write_beside
 
 _IDENTITY = "study.json"
 

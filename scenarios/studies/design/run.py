@@ -24,7 +24,7 @@ from twin.extensions import effects_with
 from twin.files import to_dict, write_twin
 from twin.limits import require_within
 from twin.presets import read_twin_or_preset
-from twin.sweep_file import write_beside
+from twin.whole_file import write_beside
 
 Figures = dict[str, np.ndarray[Any, Any]]
 MOST_DESIGNS = 10_000_000

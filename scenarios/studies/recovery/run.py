@@ -19,7 +19,7 @@ from twin.angles import Array
 from twin.catalogue import find
 from twin.errors import UserError
 from twin.limits import require_within
-from twin.sweep_file import write_beside
+from twin.whole_file import write_beside
 
 Summary = list[dict[str, Any]]
 

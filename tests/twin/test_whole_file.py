@@ -1,4 +1,4 @@
-"""Files written whole or not at all: what stays when it fails, permissions, links, devices, and who can foresee names."""
+"""Files written whole or not at all: what stays when it fails, permissions, links, devices, unforeseeable names."""
 
 from __future__ import annotations
 

@@ -18,6 +18,7 @@ from diagnosis.diagnosed import Diagnoses, Diagnosis
 from diagnosis.explain import OwnEffects, explain
 from diagnosis.explanation import Cause, Estimate, Explanation
 from diagnosis.input_checks import Columns, SweepLike
+from diagnosis.progress import Progress
 
 if TYPE_CHECKING:
     from diagnosis.discovery.settings import DiscoverySettings
@@ -44,6 +45,7 @@ __all__ = [
     "Explanation",
     "Findings",
     "OwnEffects",
+    "Progress",
     "SweepLike",
     "diagnose",
     "diagnose_many",

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from diagnosis.explanation import Explanation
 from diagnosis.input_checks import SweepLike, as_sweep, checked_seed
+from diagnosis.progress import Listener
 
 if TYPE_CHECKING:
     import numpy as np
 
     from diagnosis.discovery.result import Discovery
     from diagnosis.discovery.settings import DiscoverySettings
+    from diagnosis.discovery.watch import Watch
     from twin.chain import Chain
     from twin.effect import Effect
     from twin.sweep import Sweep
@@ -29,6 +31,8 @@ def explain(
     effects: OwnEffects = (),
     settings: DiscoverySettings | None = None,
     seed: int = 0,
+    progress: Listener | None = None,
+    on_interrupt: Literal["raise", "answer"] = "raise",
 ) -> Explanation:
     """Say what the simulation gets wrong about a measured sweep, by name, with proof; or that nothing is wrong.
 
@@ -52,6 +56,13 @@ def explain(
         Every threshold of the search, the probability of a false alarm first of all; the project's own if not given.
     seed : int, optional
         Seed of everything random, 0 or more: the same sweep and seed give the same answer, bit for bit.
+    progress : callable, optional
+        Called with a :class:`diagnosis.Progress` whenever a stage begins or the causes held change. Where it raises
+        StopIteration, the search ends where it stands and the answer is what it holds, as after an interrupt.
+    on_interrupt : {"raise", "answer"}, optional
+        What an interrupt (Ctrl-C) does: raise KeyboardInterrupt, or end the search where it stands and answer with
+        what it holds, finished and proven like any other; a second one raises. Such an answer says so in
+        ``to_dict()["cut_short"]``, and its verdict is never ``"adequate"`` or ``"explained"``.
 
     Returns
     -------
@@ -91,17 +102,23 @@ def explain(
     >>> [cause.name for cause in found.causes]
     ['hysteresis']
     """
+    from contextlib import nullcontext
+
     import numpy as np
 
     from diagnosis.blas_threads import one_blas_thread
+    from diagnosis.discovery.watch import Watch, stopped_by_interrupt
 
     rng = np.random.default_rng(checked_seed(seed))
     _check_settings(settings)
+    _check_on_interrupt(on_interrupt)
     searched = _searched(effects, twin)
     given = _given(twin, searched)
     read = as_sweep(sweep)
-    with one_blas_thread():
-        return Explanation(_discovery(read, given=given, effects=searched, settings=settings, rng=rng))
+    watch = Watch(progress)
+    listening = stopped_by_interrupt(watch) if on_interrupt == "answer" else nullcontext()
+    with one_blas_thread(), listening:
+        return Explanation(_discovery(read, given=given, effects=searched, settings=settings, rng=rng, watch=watch))
 
 
 def _discovery(
@@ -111,6 +128,7 @@ def _discovery(
     effects: tuple[Effect, ...],
     settings: DiscoverySettings | None,
     rng: np.random.Generator,
+    watch: Watch,
 ) -> Discovery:
     """The search, from the fitted error model or from a given twin."""
     from dataclasses import replace
@@ -124,7 +142,8 @@ def _discovery(
 
     sweep = searched_part(sweep)
     if given is not None:
-        return discover(State.of(sweep, given, given=given, settings=settings, rng=rng))
+        return discover(State.of(sweep, given, given=given, settings=settings, rng=rng).with_(watch=watch))
+    watch.told("error_model", ())
     fit = fit_baseline(
         np.radians(sweep.reference_deg),
         np.radians(sweep.measured_deg),
@@ -133,7 +152,7 @@ def _discovery(
         robust=True,
     )
     state = State.of(sweep, replace(fit.chain(), effects=effects), settings=settings, rng=rng)
-    return discover(state.with_(suspects=fit.outliers))
+    return discover(state.with_(suspects=fit.outliers, watch=watch))
 
 
 def _check_settings(settings: DiscoverySettings | None) -> None:
@@ -143,6 +162,14 @@ def _check_settings(settings: DiscoverySettings | None) -> None:
 
     if not (settings is None or isinstance(settings, DiscoverySettings)):
         raise UserError(f"settings is of the type {type(settings).__name__}; expected DiscoverySettings, or None")
+
+
+def _check_on_interrupt(on_interrupt: str) -> None:
+    """Raise UserError for a word that is none of the two."""
+    from twin.errors import UserError
+
+    if on_interrupt not in ("raise", "answer"):
+        raise UserError(f"on_interrupt is {on_interrupt!r}; expected 'raise' or 'answer'")
 
 
 def _searched(own: OwnEffects, twin: str | os.PathLike[str] | Chain | None) -> tuple[Effect, ...]:

@@ -72,7 +72,7 @@ def discover(state: State, stages: Sequence[Stage] = PIPELINE) -> Discovery:
 
 def _handed_on(state: State, stage: Stage) -> State:
     """What a stage makes of the state. Raises TypeError where that is no state."""
-    after = stage(state)
+    after = stage(state.told(stage))
     if not isinstance(after, State):
         name = getattr(stage, "__name__", repr(stage))
         raise TypeError(f"stage {name} returned {type(after).__name__}; expected the State that it hands on")

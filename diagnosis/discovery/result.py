@@ -23,7 +23,8 @@ class Discovery:
     """The answer to a sweep.
 
     ``baseline`` is the paper's error model alone, ``fit`` the extended one; ``masked`` the raw rows (n_raw,) that
-    belong to single-reading causes; ``invisible`` the effects that this sweep cannot show, with what it lacks.
+    belong to single-reading causes; ``invisible`` the effects that this sweep cannot show, with what it lacks;
+    ``cut_short`` the stage in which the search was stopped, where it was.
     """
 
     sweep: Sweep
@@ -39,6 +40,7 @@ class Discovery:
     given: Chain | None = None
     invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
     likeness: PredictiveCheck | None = None
+    cut_short: str | None = None
 
     def __repr__(self) -> str:
         names = ", ".join(cause.name for cause in self.causes) or "no cause"
@@ -69,13 +71,15 @@ class Discovery:
                 if not unnamed(effect.name) and not effect.visible_in(provides)
             },
             likeness=state.likeness,
+            cut_short=state.watch.stopped_in,
         )
 
     @property
     def verdict(self) -> str:
-        """adequate, explained, partly explained or unnamed."""
+        """adequate, explained, partly explained or unnamed; of a search that was stopped one of the last two."""
         named = any(cause.name != "unnamed" for cause in self.causes)
         without_name = any(cause.name == "unnamed" for cause in self.causes)
-        if named:
-            return "partly explained" if without_name else "explained"
+        unfinished = self.cut_short is not None
+        if named or (unfinished and not without_name):
+            return "partly explained" if without_name or unfinished else "explained"
         return "unnamed" if without_name else "adequate"

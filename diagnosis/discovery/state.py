@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.settings import DiscoverySettings
+from diagnosis.discovery.watch import Watch
 from twin.angles import TAU, Array
 from twin.chain import Chain
 from twin.effect import BoolArray, Effect
@@ -28,7 +29,8 @@ class State:
     ``given``, the same where it is a known twin, of which only the zeros are fitted; ``settings``; ``rng``, which draws
     the simulated sweeps: a stage that draws hands on a generator that is further, and leaves its own as it is;
     ``suspects``, raw rows (n_raw,) that a robust fit of the start left out: the first least-squares fit is made without
-    them, because a flipped top bit, half a turn off, would pull it to where nothing stands out any more.
+    them, because a flipped top bit, half a turn off, would pull it to where nothing stands out any more; ``watch``,
+    which hears where the discovery stands and may end its search.
 
     Filled by the stages: ``fitted``, the chain with its free parameters, the observations and how they are weighed
     (see :attr:`fit`); ``baseline``, the same before any cause was added; ``bits``, the length of the output's word;
@@ -54,10 +56,11 @@ class State:
     held: tuple[Array, ...] = ()
     causes: tuple[Finding, ...] = ()
     likeness: PredictiveCheck | None = None
+    watch: Watch = field(default_factory=Watch)
 
     def __repr__(self) -> str:
         """Show where the discovery stands, in one line."""
-        found = ", ".join([*self.keys, *(finding.keys[0] for finding in self.findings)]) or "no cause"
+        found = ", ".join(self.held_causes) or "no cause"
         return f"State({self.sweep.name!r}, {'observed' if self.fitted is not None else 'as handed in'}: {found})"
 
     @classmethod
@@ -133,6 +136,16 @@ class State:
         """Whether this effect has been found beside the joint fit."""
         return any(finding.keys[0] == effect.name for finding in self.findings)
 
+    @property
+    def held_causes(self) -> tuple[str, ...]:
+        """Keys of the causes found so far, in the joint fit and beside it."""
+        return tuple(dict.fromkeys([*self.keys, *(finding.keys[0] for finding in self.findings)]))
+
+    def told(self, stage: Stage) -> State:
+        """This state, once its watch has heard that a stage runs."""
+        self.watch.told(getattr(stage, "__name__", repr(stage)), self.held_causes, lambda: self)
+        return self
+
     def with_(self, fit: Fit | None = None, **changes: Any) -> State:
         """This state with another fit, and with these fields changed."""
         return replace(self, **(changes if fit is None else {"fitted": fit, **changes}))
@@ -146,16 +159,20 @@ def until_still(*stages: Stage) -> Stage:
     """The stages one after the other, again and again, until none of them has anything more to say.
 
     A stage is not asked again about a state that it has left as it is, and the loop ends after
-    :attr:`DiscoverySettings.most_rounds` at the latest.
+    :attr:`DiscoverySettings.most_rounds` at the latest. Where the watch is told to stop, it ends at once with the state
+    as it stands.
     """
 
-    def loop(state: State) -> State:
+    def rounds(state: State) -> State:
         left: dict[int, State] = {}
         for _ in range(state.settings.most_rounds):
             for place, stage in enumerate(stages):
                 if left.get(place) is not state:
-                    state = stage(state)
+                    state = stage(state.told(stage))
                     left[place] = state
         return state
 
-    return loop
+    def search(state: State) -> State:
+        return state.watch.until_stopped(rounds, state)
+
+    return search

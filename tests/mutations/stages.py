@@ -40,6 +40,22 @@ STAGES: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
+        f"{_D}/watch.py",
+        _T,
+        (
+            "watch.a_stopped_search_loses_what_it_holds",
+            "found = self._as_it_stands()",
+            "found = state",
+            "test_watch.py::test_what_a_stopped_search_holds_is_finished_and_proven",
+        ),
+        (
+            "watch.an_ignored_interrupt_stops",
+            "before in (signal.SIG_IGN, None)",
+            "before is None",
+            "test_watch.py::test_the_handler_is_put_back_and_an_ignored_interrupt_stays_ignored",
+        ),
+    ),
+    *of_one_file(
         f"{_D}/stages/held_out_selection.py",
         _T,
         (
@@ -114,9 +130,15 @@ STAGES: tuple[Mutation, ...] = (
         _T,
         (
             "stepwise.radius_never_trusted",
-            "        found = trusting(state.fit, state.searched, state.step, kept_out)\n",
+            "        found = trusting(state.fit, state.searched, state.step, kept_out, tell)\n",
             "",
             "stages/test_stepwise.py::test_what_the_radius_shows_is_taken_for_causes_first",
+        ),
+        (
+            "stepwise.stopped_it_trusts_the_radius",
+            "radius_trusted=False",
+            "radius_trusted=True",
+            "test_watch.py::test_what_rests_on_a_trusted_radius_does_not_stand_when_stopped",
         ),
     ),
     *of_one_file(

@@ -12,19 +12,21 @@ from diagnosis.discovery.fitting.noise.plausible import radius_noise
 from diagnosis.discovery.marks.row_masks import mask_spikes
 from diagnosis.discovery.marks.stairs import reblurred
 from diagnosis.discovery.search.likelihood_ratio import settle
-from diagnosis.discovery.search.stepwise import Found, search
+from diagnosis.discovery.search.stepwise import Found, Tell, nobody, search
 from twin.effect import BoolArray, Effect
 
 
-def searched(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, step: float, also: BoolArray) -> Found:
+def searched(
+    fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, step: float, also: BoolArray, tell: Tell = nobody
+) -> Found:
     """Search, look again for single rows and at the blur of the stairs in what is left, until all is still.
 
-    ``step`` [rad] is that of the output's grid; raw rows in ``also`` (n_raw,) stay masked.
+    ``step`` [rad] is that of the output's grid; raw rows in ``also`` (n_raw,) stay masked; ``tell`` hears what is held.
     """
     found = Found(fit, tuple(keys), 0)
     for _ in range(fit.settings.most_rounds):
         before = found.keys
-        found = search(fit, effects, before)
+        found = search(fit, effects, before, tell=tell)
         refined = reblurred(mask_spikes(found.fit, step, also))
         if found.keys == before and np.array_equal(refined.observations.usable, found.fit.observations.usable):
             return found
@@ -32,7 +34,7 @@ def searched(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, step: 
     return replace(found, fit=settle(fit)[0])
 
 
-def trusting(fit: Fit, effects: Sequence[Effect], step: float, also: BoolArray) -> Found | None:
+def trusting(fit: Fit, effects: Sequence[Effect], step: float, also: BoolArray, tell: Tell = nobody) -> Found | None:
     """The search in which everything that the radius does over the turn has to be the work of causes.
 
     A shaft's error shows in the angle alone, and it is the radius that tells it from offset, gain and phase; but a
@@ -42,9 +44,8 @@ def trusting(fit: Fit, effects: Sequence[Effect], step: float, also: BoolArray) 
     if fit.observations.observables == 1 or _radius_explained(settle(fit)[0]):
         return None
     weighting = replace(fit.weighting, radius_trusted=True)
-    found = searched(
-        solve(evaluate(fit.chain, fit.free, fit.observations, weighting)), effects, [], step=step, also=also
-    )
+    start = solve(evaluate(fit.chain, fit.free, fit.observations, weighting))
+    found = searched(start, effects, [], step=step, also=also, tell=tell)
     return found if _radius_explained(found.fit) else None
 
 

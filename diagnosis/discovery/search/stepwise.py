@@ -3,7 +3,7 @@ left that stands out of the noise."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,7 +27,15 @@ class Found:
     looked_at: int
 
 
-def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = ()) -> Found:
+Tell = Callable[[Found], None]
+"""Hears what a search holds whenever that changes."""
+
+
+def nobody(found: Found) -> None:
+    """Hear it and do nothing."""
+
+
+def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = (), *, tell: Tell = nobody) -> Found:
     """Find the causes that the fit's chain lacks.
 
     Parameters
@@ -38,6 +46,8 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = ()) -> Fou
         What may be found; those that the recording cannot show are left out.
     keys : sequence of str
         Causes that the fit holds already, open to revision.
+    tell : callable
+        Hears what the search holds after each step.
 
     Returns
     -------
@@ -61,10 +71,12 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = ()) -> Fou
             break
         plan = plan.with_contenders(step.added)
         fit, base = settle(step.fit)
+        tell(Found(fit, (*held, *step.added), len(plan.effects)))
         fit, base, held = _improved(fit, base, [*held, *step.added], plan)
         # Pruned or exchanged at once: offered again, it would only go round.
         idle = {base_name(key) for key in step.added if key not in held}
         barred |= idle
+        tell(Found(fit, tuple(held), len(plan.effects)))
         if not idle and frozenset(held) in seen:
             # Two causes that take each other's place in turns.
             break

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from diagnosis.discovery.fitting.joint_fit import evaluate, solve
 from diagnosis.discovery.search.iterate import searched, trusting
+from diagnosis.discovery.search.likelihood_ratio import settle
+from diagnosis.discovery.search.stepwise import Found
 from diagnosis.discovery.state import State
 
 
@@ -12,6 +17,21 @@ def stepwise(state: State) -> State:
     found = None
     if not state.keys:
         state = state.with_(baseline=state.fit)
-        found = trusting(state.fit, state.searched, state.step, kept_out)
-    found = found or searched(state.fit, state.searched, state.keys, step=state.step, also=kept_out)
+
+    def tell(so_far: Found) -> None:
+        others = (finding.keys[0] for finding in state.findings)
+        state.watch.told("stepwise", (*so_far.keys, *others), lambda: _as_it_stands(state, so_far))
+
+    if not state.keys:
+        found = trusting(state.fit, state.searched, state.step, kept_out, tell)
+    found = found or searched(state.fit, state.searched, state.keys, step=state.step, also=kept_out, tell=tell)
     return state.with_(found.fit, keys=found.keys, looked_at=found.looked_at)
+
+
+def _as_it_stands(state: State, found: Found) -> State:
+    """The state with what an unfinished search holds; of the radius nothing is taken on trust."""
+    fit = found.fit
+    if fit.weighting.radius_trusted:
+        weighting = replace(fit.weighting, radius_trusted=False)
+        fit, _ = settle(solve(evaluate(fit.chain, fit.free, fit.observations, weighting)))
+    return state.with_(fit, keys=found.keys, looked_at=found.looked_at)

@@ -39,7 +39,8 @@ def write_together(contents: Mapping[Path, bytes]) -> None:
         for path, content in contents.items():
             check_writable(path)
             if path not in streams:
-                begun.append(_begin(path, content))
+                with _told(path):
+                    begun.append(_begin(path, content))
         for path, content in streams.items():
             with _told(path):
                 _write_stream(path, content)
@@ -50,6 +51,15 @@ def write_together(contents: Mapping[Path, bytes]) -> None:
                 if left is not None:
                     with contextlib.suppress(OSError):
                         left.unlink(missing_ok=True)
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all, for a program that has its own answer to a full disk. Raises OSError."""
+    begun = _begin(path, content)
+    try:
+        os.replace(begun.beside, begun.target)
+    finally:
+        begun.beside.unlink(missing_ok=True)
 
 
 def check_writable(path: Path) -> None:
@@ -99,28 +109,28 @@ class _Begun:
 
 
 def _begin(path: Path, content: bytes) -> _Begun:
-    """Write the content to a file beside the one meant, and see to it that it is on the disk."""
+    """Write the content to a file beside the one meant, and see to it that it is on the disk. Raises OSError."""
     target = target_of(path)
-    beside = _new_name(target)
-    with _told(path):
-        there = target.stat() if target.exists() else None
-        # Without a file there, the permissions are those that the user's umask leaves.
-        mode = 0o666 if there is None else stat.S_IMODE(there.st_mode) & 0o777
-        number = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0), mode)
-        try:
-            with open(number, "wb") as out:
-                if there is not None:
-                    _keep(number, there)
-                out.write(content)
-                out.flush()
-                os.fsync(number)
-        except BaseException:
-            beside.unlink(missing_ok=True)
-            raise
+    beside = new_name(target)
+    there = target.stat() if target.exists() else None
+    # Without a file there, the permissions are those that the user's umask leaves.
+    mode = 0o666 if there is None else stat.S_IMODE(there.st_mode) & 0o777
+    number = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0), mode)
+    try:
+        with open(number, "wb") as out:
+            if there is not None:
+                _keep(number, there)
+            out.write(content)
+            out.flush()
+            os.fsync(number)
+    except BaseException:
+        beside.unlink(missing_ok=True)
+        raise
     return _Begun(path, target, beside, is_new=there is None)
 
 
-def _new_name(target: Path) -> Path:
+def new_name(target: Path) -> Path:
+    """A name beside a file for what is not finished: nobody can foresee it, and it matches TEMPORARY."""
     return target.with_name(TEMPORARY.replace("*", secrets.token_hex(8)))
 
 
@@ -153,7 +163,7 @@ def _finish(begun: Sequence[_Begun]) -> None:
 
 def _second_name(target: Path) -> Path:
     """Another name for the content of a file: a hard link, or a copy where the disk knows none."""
-    name = _new_name(target)
+    name = new_name(target)
     try:
         os.link(target, name)
     except OSError:

@@ -2,19 +2,19 @@
 
 A :class:`~scenarios.studies.job.Job` is a picklable description that computes chunk k and writes it whole or not at
 all. What a chunk holds depends on the job and k alone, so who computes it, and how often, does not show in the result.
-A chunk counts as done when its mark stands in the study's folder; the mark is written last.
+A chunk counts as done when its mark stands in the study's folder, and its files are as the mark says; the mark is
+written last.
 """
 
 from __future__ import annotations
 
-import contextlib
 import errno
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
-from typing import Any
 
 from scenarios.studies.job import Job
 from scenarios.studies.machines import Machines
+from scenarios.studies.progress import progress
 from scenarios.studies.study_folder import StudyFolder
 from twin.errors import UserError
 
@@ -32,7 +32,7 @@ def run_study(job: Job, folder: StudyFolder, *, chunks: int, items: int, unit: s
         return 0
     done = chunks - len(waiting)
     try:
-        with _progress(chunks, done, items, unit) as step, _finishing(job, folder, waiting, machines) as finished:
+        with progress(chunks, done, items, unit) as step, _finishing(job, folder, waiting, machines) as finished:
             for _ in finished:
                 done += 1
                 step()
@@ -55,41 +55,3 @@ def _finishing(
     from scenarios.studies.engine_dask import cluster
 
     return cluster(job, folder, waiting, machines)
-
-
-@contextlib.contextmanager
-def _progress(chunks: int, done: int, items: int, unit: str) -> Iterator[Any]:
-    """A function to call after each chunk: a bar with rate and time left, nothing where stderr is no terminal."""
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield lambda: None
-        return
-    columns = (
-        TextColumn(unit),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-    )
-    each = items / chunks
-    with Progress(*columns, console=console) as progress:
-        task = progress.add_task(unit, total=items, completed=round(done * each), rate="")
-
-        def step() -> None:
-            progress.advance(task, each)
-            speed = progress.tasks[0].speed
-            progress.update(task, rate="" if not speed else f"{speed:,.0f} {unit}/s")
-
-        yield step

@@ -5,10 +5,13 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
+import signal
+import sys
 import threading
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.connection import Connection
 
 from scenarios.studies.job import Job, do_chunk
 from scenarios.studies.machines import Machines, single_threaded
@@ -24,12 +27,22 @@ def pool(job: Job, folder: StudyFolder, waiting: Sequence[int], machines: Machin
     """The numbers of the chunks, in the order in which the workers finish them."""
     workers = machines.count
     context = multiprocessing.get_context("spawn")
+    # Nothing is ever sent through it. Its end is closed by us or, where we are killed, by the system: workers leave.
+    heard, held = context.Pipe(duplex=False)
     with single_threaded():
-        executor = ProcessPoolExecutor(min(workers, len(waiting)), mp_context=context, initializer=_leave_with_parent)
+        executor = ProcessPoolExecutor(
+            min(workers, len(waiting)), mp_context=context, initializer=_leave_with_parent, initargs=(heard,)
+        )
         try:
             yield _rolling(executor, job, folder, waiting, ahead=_AHEAD * workers)
+        except KeyboardInterrupt:
+            # A chunk may take minutes, and half of one is worth nothing.
+            held.close()
+            raise
         finally:
             executor.shutdown(wait=True, cancel_futures=True)
+            held.close()
+            heard.close()
 
 
 def _rolling(
@@ -41,7 +54,8 @@ def _rolling(
     try:
         while True:
             for chunk in queue:
-                running.add(executor.submit(do_chunk, job, folder, chunk))
+                with _unheard_interrupt():
+                    running.add(executor.submit(do_chunk, job, folder, chunk))
                 if len(running) >= ahead:
                     break
             if not running:
@@ -56,14 +70,26 @@ def _rolling(
         ) from None
 
 
-def _leave_with_parent() -> None:
-    """A worker whose parent was killed ends too: it would wait for work forever."""
-    parent = multiprocessing.parent_process()
-    if parent is None:
+@contextlib.contextmanager
+def _unheard_interrupt() -> Iterator[None]:
+    """Processes started within never hear of Ctrl-C, which is the parent's to answer; it hears of it afterwards."""
+    if sys.platform == "win32":
+        yield
         return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _leave_with_parent(heard: Connection) -> None:
+    """A worker whose parent is gone, or wants no more of it, ends: it would wait for work forever."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch() -> None:
-        parent.join()
+        with contextlib.suppress(EOFError, OSError):
+            heard.recv_bytes()
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Protocol
 
 from scenarios.studies.study_folder import StudyFolder
@@ -10,12 +12,11 @@ from scenarios.studies.study_folder import StudyFolder
 class Job(Protocol):
     """Work in chunks; picklable, and pure: chunk k depends on the job and k alone."""
 
-    def write(self, folder: StudyFolder, chunk: int) -> None:
-        """Compute the chunk and write it whole or not at all."""
+    def write(self, folder: StudyFolder, chunk: int) -> Sequence[Path]:
+        """Compute the chunk and write its files, each whole or not at all; returns them."""
 
 
 def do_chunk(job: Job, folder: StudyFolder, chunk: int) -> int:
     """One chunk, then its mark: what a worker runs. Returns the chunk's number."""
-    job.write(folder, chunk)
-    folder.mark(chunk)
+    folder.mark(f"{chunk:06d}", job.write(folder, chunk))
     return chunk

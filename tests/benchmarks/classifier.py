@@ -22,9 +22,10 @@ from diagnosis.error_model.fit import fit_baseline, fit_equal
 from scenarios.commands.protocol import Protocol
 from scenarios.studies.machines import Machines
 from scenarios.studies.training.draw import Ranges
-from scenarios.studies.training.job import STORE, Training
+from scenarios.studies.training.job import Training
 from scenarios.studies.training.recipe import recipe_of
 from scenarios.studies.training.run import generate
+from scenarios.studies.training.store import STORE
 from tests.benchmarks.classifier_features import Record, features
 from tests.hidden.generator import draw
 from tests.hidden.scoring import right

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.studies.engine import run_study
+from scenarios.studies.job import Job
 from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder
 
@@ -25,20 +26,20 @@ class Draws:
     seed: int
     pause_s: float = 0.0
 
-    def write(self, folder: StudyFolder, chunk: int) -> None:
+    def write(self, folder: StudyFolder, chunk: int) -> list[Path]:
         rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(chunk,)))
         time.sleep(self.pause_s)
-        folder.save(chunk, {"value": rng.standard_normal(1000)})
+        return folder.save(chunk, {"value": rng.standard_normal(1000)})
 
 
 @dataclass(frozen=True)
 class FillsDisk:
     """The disk is full from chunk 3 on."""
 
-    def write(self, folder: StudyFolder, chunk: int) -> None:
+    def write(self, folder: StudyFolder, chunk: int) -> list[Path]:
         if chunk >= 3:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        folder.save(chunk, {"value": np.arange(3)})
+        return folder.save(chunk, {"value": np.arange(3)})
 
 
 @dataclass(frozen=True)
@@ -47,25 +48,23 @@ class KillsItsWorker:
 
     seed: int
 
-    def write(self, folder: StudyFolder, chunk: int) -> None:
+    def write(self, folder: StudyFolder, chunk: int) -> list[Path]:
         died = folder.path.parent / "died"
         if chunk == 2 and not died.exists():
             died.touch()
             os._exit(9)
-        Draws(self.seed).write(folder, chunk)
+        return Draws(self.seed).write(folder, chunk)
 
 
 def study(path: Path, *, seed: int = 0, pause_s: float = 0.0, machines: Machines | None = None) -> StudyFolder:
     """Begin or go on with a study of draws."""
-    folder = StudyFolder.open(path, study="draws", seed=seed, settings={"chunks": CHUNKS})
-    run_study(
-        Draws(seed, pause_s),
-        folder,
-        chunks=CHUNKS,
-        items=CHUNKS,
-        unit="chunks",
-        machines=machines or Machines(workers=1),
-    )
+    return run(Draws(seed, pause_s), path, seed=seed, machines=machines)
+
+
+def run(job: Job, path: Path, *, seed: int = 0, chunks: int = CHUNKS, machines: Machines | None = None) -> StudyFolder:
+    """Begin or go on with a study in a folder."""
+    with StudyFolder.opened(path, study="draws", seed=seed, settings={"chunks": chunks}) as folder:
+        run_study(job, folder, chunks=chunks, items=chunks, unit="chunks", machines=machines or Machines(workers=1))
     return folder
 
 

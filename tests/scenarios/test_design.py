@@ -11,7 +11,7 @@ import pytest
 
 from scenarios.studies.design.check import check_design, magpylib_mT
 from scenarios.studies.design.options import demand_of, space_of
-from scenarios.studies.design.run import explore, run, study_of
+from scenarios.studies.design.run import explore, folder_of, run, study_of
 from scenarios.studies.design.space import AXES
 from scenarios.studies.design.study import Demand, DesignStudy, ranking
 from scenarios.studies.machines import Machines
@@ -138,8 +138,9 @@ def test_a_design_is_its_own_twin_simulated(axes: dict[str, str]) -> None:
 
 def test_the_study_gives_the_same_bytes_with_one_and_two_workers(tmp_path: Path) -> None:
     chosen = study(sampling="sobol", count=33, diameter_mm="4,10", air_gap_mm="1,3", magnet_tilt_deg="0,2")
-    found = explore(chosen, tmp_path / "one", Machines(workers=1))
-    explore(chosen, tmp_path / "two", Machines(workers=2))
+    for count, name in ((2, "two"), (1, "one")):
+        with folder_of(chosen, tmp_path / name) as folder:
+            found = explore(chosen, folder, Machines(workers=count))
     assert content(tmp_path / "one") == content(tmp_path / "two")
     assert len(found["yield"]) == 33
     order = ranking(found, chosen.demand)

@@ -14,10 +14,9 @@ import numpy as np
 import pytest
 
 from scenarios.studies import study_folder
-from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder
-from tests.scenarios.study_jobs import CHUNKS, FillsDisk, KillsItsWorker, content, study
+from tests.scenarios.study_jobs import CHUNKS, Draws, FillsDisk, KillsItsWorker, content, run, study
 from twin.errors import UserError
 
 ROOT = Path(__file__).parents[2]
@@ -54,15 +53,6 @@ def test_only_missing_chunks_are_done_again(tmp_path: Path) -> None:
     assert (folder.path / "chunks" / "000003.npz").stat().st_mtime_ns == untouched
 
 
-def test_what_a_killed_run_left_half_written_is_taken_away(tmp_path: Path) -> None:
-    folder = study(tmp_path / "s")
-    for name in (".000001.npz.77.part", "0.abc.partial"):
-        (folder.path / "chunks" / name).write_bytes(b"half")
-    before = {name for name in content(tmp_path / "s") if "part" not in name}
-    study(tmp_path / "s")
-    assert set(content(tmp_path / "s")) == before
-
-
 def test_another_seed_version_or_setting_is_refused_and_nothing_lost(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -71,9 +61,12 @@ def test_another_seed_version_or_setting_is_refused_and_nothing_lost(
     with pytest.raises(UserError, match="begun with seed 0, this run has 5"):
         study(tmp_path / "s", seed=5)
     with pytest.raises(UserError, match="begun with chunks 12, this run has 13"):
-        StudyFolder.open(tmp_path / "s", study="draws", seed=0, settings={"chunks": 13})
-    with pytest.raises(UserError, match="begun with study"):
-        StudyFolder.open(tmp_path / "s", study="others", seed=0, settings={"chunks": CHUNKS})
+        run(Draws(0), tmp_path / "s", chunks=13)
+    with (
+        pytest.raises(UserError, match="begun with study"),
+        StudyFolder.opened(tmp_path / "s", study="others", seed=0, settings={"chunks": CHUNKS}),
+    ):
+        pass
     monkeypatch.setattr(study_folder, "version", lambda: "99.0")
     with pytest.raises(UserError, match=r'this run has "99.0"'):
         study(tmp_path / "s")
@@ -82,10 +75,10 @@ def test_another_seed_version_or_setting_is_refused_and_nothing_lost(
 
 @pytest.mark.parametrize("text", ["", "{", "[]", json.dumps({"seed": 0})])
 def test_a_broken_record_is_refused(tmp_path: Path, text: str) -> None:
-    folder = study_folder.StudyFolder(tmp_path)
-    (folder.path / "study.json").write_text(text)
-    with pytest.raises(UserError):
-        StudyFolder.open(tmp_path, study="draws", seed=0, settings={})
+    (tmp_path / "study.json").write_text(text)
+    with pytest.raises(UserError, match=r"study\.json: is damaged or no record of a study"):
+        study(tmp_path)
+    assert content(tmp_path) == {"study.json": text.encode()}
 
 
 def test_a_folder_that_is_no_study_is_left_alone(tmp_path: Path) -> None:
@@ -96,25 +89,22 @@ def test_a_folder_that_is_no_study_is_left_alone(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_stops_with_a_line_and_keeps_what_is_done(tmp_path: Path) -> None:
-    folder = StudyFolder.open(tmp_path / "s", study="draws", seed=0, settings={})
     with pytest.raises(UserError, match=r"the disk is full; \d of 12 chunks are complete and kept"):
-        run_study(FillsDisk(), folder, chunks=12, items=12, unit="chunks", machines=Machines(workers=1))
+        run(FillsDisk(), tmp_path / "s")
+    folder = StudyFolder(tmp_path / "s")
     assert [folder.is_done(chunk) for chunk in range(4)] == [True, True, True, False]
 
 
 def test_a_killed_worker_of_the_pool_is_a_line(tmp_path: Path) -> None:
-    folder = StudyFolder.open(tmp_path / "s", study="draws", seed=0, settings={})
     with pytest.raises(UserError, match="a worker process was killed"):
-        run_study(KillsItsWorker(0), folder, chunks=12, items=12, unit="chunks", machines=Machines(workers=1))
-    run_study(KillsItsWorker(0), folder, chunks=12, items=12, unit="chunks", machines=Machines(workers=1))
+        run(KillsItsWorker(0), tmp_path / "s")
+    folder = run(KillsItsWorker(0), tmp_path / "s")
     assert all(folder.is_done(chunk) for chunk in range(12))
 
 
 def test_a_dask_cluster_that_loses_a_worker_gives_the_same_bytes(tmp_path: Path) -> None:
     pytest.importorskip("distributed", reason="needs the extra 'sweeps'")
-    folder = StudyFolder.open(tmp_path / "s", study="draws", seed=0, settings={"chunks": CHUNKS})
-    machines = Machines(workers=2, scheduler="local")
-    run_study(KillsItsWorker(0), folder, chunks=CHUNKS, items=CHUNKS, unit="chunks", machines=machines)
+    run(KillsItsWorker(0), tmp_path / "s", machines=Machines(workers=2, scheduler="local"))
     assert (tmp_path / "died").exists()
     study(tmp_path / "calm")
     assert content(tmp_path / "s") == content(tmp_path / "calm")

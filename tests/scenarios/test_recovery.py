@@ -11,7 +11,7 @@ import pytest
 from diagnosis.error_model.model import Readings
 from scenarios.studies.machines import Machines
 from scenarios.studies.recovery.cells import BASELINE, SLOTS, Cell, Grid, bounds, simulate
-from scenarios.studies.recovery.run import check, recover, run
+from scenarios.studies.recovery.run import check, folder_of, recover, run
 from tests.diagnosis.cases import point_of
 from tests.scenarios.study_jobs import content
 from twin.errors import UserError
@@ -53,8 +53,9 @@ def test_a_cause_costs_the_baseline_some_of_its_bound() -> None:
 
 
 def test_the_baseline_reaches_its_bound_and_any_number_of_workers_says_so(tmp_path: Path) -> None:
-    found = recover(GRID, tmp_path / "one", Machines(workers=1))
-    recover(GRID, tmp_path / "two", Machines(workers=2))
+    for count, name in ((2, "two"), (1, "one")):
+        with folder_of(GRID, tmp_path / name) as folder:
+            found = recover(GRID, folder, Machines(workers=count))
     assert content(tmp_path / "one") == content(tmp_path / "two")
     for entry in found:
         for parameter in entry["parameters"].values():

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.studies.design.check import Check, check_design, design_twin
-from scenarios.studies.design.space import AXES, Space
+from scenarios.studies.design.space import AXES, Space, require_mountable
 from scenarios.studies.design.study import Demand, DesignStudy, feasible, ranking
 from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
@@ -23,6 +24,7 @@ from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.files import to_dict, write_twin
 from twin.limits import require_within
+from twin.magnet.magnet import LARGEST_T
 from twin.presets import read_twin_or_preset
 from twin.whole_file import write_beside
 
@@ -43,19 +45,27 @@ def study_of(twin: str, space: Space, demand: Demand, *, seed: int) -> DesignStu
     require_within("temperature", list(demand.temperature_c), -100.0, 300.0, "C")
     require_within("window", list(demand.window_mT), 0.0, 2000.0, "mT")
     # Bad numbers are refused here, in one line, and not in a worker.
+    require_within("remanence", list(space.axes["remanence_T"]), 0.0, LARGEST_T, "T")
     space.assemble(*space.table())
+    require_mountable(space, demand.tolerance)
     return DesignStudy(twin=to_dict(chain), space=space, demand=demand, chunk=_CHUNK, seed=seed)
 
 
-def explore(study: DesignStudy, output: Path, machines: Machines) -> Figures:
-    """All designs' figures, each (designs, ...), computed or read back from a study begun before."""
+@contextlib.contextmanager
+def folder_of(study: DesignStudy, output: Path) -> Iterator[StudyFolder]:
+    """The study's folder, begun or gone on with, for this command alone. Raises UserError."""
     settings = {
         "twin": study.twin,
         "space": _plain(asdict(study.space)),
         "demand": _plain(asdict(study.demand)),
         "chunk": study.chunk,
     }
-    folder = StudyFolder.open(output, study="design", seed=study.seed, settings=settings)
+    with StudyFolder.opened(output, study="design", seed=study.seed, settings=settings) as folder:
+        yield folder
+
+
+def explore(study: DesignStudy, folder: StudyFolder, machines: Machines) -> Figures:
+    """All designs' figures, each (designs, ...), computed or read back from a study begun before."""
     run_study(study, folder, chunks=study.chunks, items=study.space.designs, unit="designs", machines=machines)
     return folder.load(study.chunks)
 
@@ -84,19 +94,21 @@ def run(
         from diagnosis.report.plotting import style
 
         style(Path("map.png"))
+    require_within("best", best, 1, MOST_DESIGNS, whole=True)
     study = study_of(twin, space, demand, seed=seed)
-    found = explore(study, output, machines)
-    order = ranking(found, demand)
-    winner = int(order[0])
-    check = check_design(study, found["design"][winner], found["grade"][winner])
-    show(found, order[:best], study, check)
-    _write_csv(output / "designs.csv", found, space)
-    _write_json(output / "best.json", found, order[:best], study, check)
-    write_twin(output / "best.toml", design_twin(study, found["design"][winner], found["grade"][winner]))
-    if plot:
-        from scenarios.studies.design.plot import draw_map
+    with folder_of(study, output) as folder:
+        found = explore(study, folder, machines)
+        order = ranking(found, demand)
+        winner = int(order[0])
+        check = check_design(study, found["design"][winner], found["grade"][winner])
+        show(found, order[:best], study, check)
+        _write_csv(output / "designs.csv", found, space)
+        _write_json(output / "best.json", found, order[:best], study, check)
+        write_twin(output / "best.toml", design_twin(study, found["design"][winner], found["grade"][winner]))
+        if plot:
+            from scenarios.studies.design.plot import draw_map
 
-        draw_map(output / "map.png", found, study)
+            draw_map(output / "map.png", found, study)
 
 
 def record(found: Mapping[str, Array], row: int, space: Space) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal, get_args
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from scenarios.studies.design.field import Designs
 from twin.angles import TAU, Array
 from twin.errors import UserError
+from twin.limits import OutOfRangeError
 from twin.magnet.magnet import Magnet, Shape
 from twin.magnet.materials import grade
 from twin.magnet.placement import Placement
@@ -39,6 +41,9 @@ TOLERANCES = {
     "stray": "mT",
 }
 """Radius of the disk that a displacement, tilt or field is drawn from evenly; half the width for the air gap."""
+
+MOUNTING_UNIFORMS = 11
+"""Uniform numbers that a mounting is drawn from: two for each displacement, tilt and field, one for the air gap."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +117,7 @@ class Space:
 
 
 def mounted(placement: Placement, tolerance: Mapping[str, float], uniforms: Array) -> Placement:
-    """Placements (k,) with mounting errors drawn from uniform numbers (k, 11)."""
+    """Placements (k,) with mounting errors drawn from uniform numbers (k, MOUNTING_UNIFORMS)."""
     changes: dict[str, Array] = {}
     pairs = {
         "off_axis": ("sensor_x_mm", "sensor_y_mm"),
@@ -132,3 +137,19 @@ def mounted(placement: Placement, tolerance: Mapping[str, float], uniforms: Arra
         moved = np.asarray(placement.air_gap_mm) + tolerance["air_gap"] * (2.0 * uniforms[:, 10] - 1.0)
         changes["air_gap_mm"] = np.maximum(moved, 1e-3)
     return replace(placement, **changes)
+
+
+def require_mountable(space: Space, tolerance: Mapping[str, float]) -> None:
+    """Raise UserError where a mounting within the tolerances could lie outside what a placement may be."""
+    ends = np.array([[pick(space.axes[name]) for name in AXES] for pick in (min, max)])
+    # Every displacement in full along +x, +y, -x and -y; the air gap is bounded below by itself.
+    corners = np.ones((4, MOUNTING_UNIFORMS))
+    corners[:, 1:-1:2] = np.arange(4)[:, None] / 4.0
+    uniforms = np.tile(corners, (2, 1))
+    designs = space.assemble(ends, np.zeros(2))
+    for name, size in tolerance.items():
+        mount = partial(mounted, tolerance={name: size}, uniforms=uniforms)
+        try:
+            designs.spread(len(corners), mount)
+        except OutOfRangeError as error:
+            raise UserError(f"tolerance {name} is {size:g} {TOLERANCES[name]}, too large: {error}") from None

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from scenarios.commands.protocol import Protocol
 from scenarios.studies.design.field import Designs, cause_errors, errors_deg
-from scenarios.studies.design.space import Space, mounted
+from scenarios.studies.design.space import MOUNTING_UNIFORMS, Space, mounted
 from scenarios.studies.study_folder import StudyFolder
 from twin.angles import TAU, Array, IntArray
 from twin.chain import Chain
@@ -24,7 +25,6 @@ from twin.motion import Motion
 
 POINTS, MOUNTED_POINTS = 72, 36
 """Angles a turn and direction: of a design, and of each of its mountings."""
-_UNIFORMS = 11
 _ROUNDING = float(np.sqrt(12.0))
 
 
@@ -73,13 +73,13 @@ class DesignStudy:
         """Number of chunks."""
         return -(-self.space.designs // self.chunk)
 
-    def write(self, folder: StudyFolder, chunk: int) -> None:
+    def write(self, folder: StudyFolder, chunk: int) -> list[Path]:
         """See :class:`scenarios.studies.job.Job`."""
         table, which = self.space.table()
         rows = slice(chunk * self.chunk, min((chunk + 1) * self.chunk, len(table)))
         numbers = np.arange(len(table))[rows]
         designs = self.space.assemble(table[rows], which[rows])
-        folder.save(chunk, {"design": table[rows], "grade": which[rows], **self.figures(designs, numbers)})
+        return folder.save(chunk, {"design": table[rows], "grade": which[rows], **self.figures(designs, numbers)})
 
     def figures(self, designs: Designs, numbers: IntArray) -> dict[str, Array]:
         """Columns (designs,) by name; ``numbers`` (designs,) are what the mounting errors are drawn from."""
@@ -106,7 +106,7 @@ class DesignStudy:
         """Yield and 95th percentile of the error over mountings."""
         demand, count = self.demand, self.demand.mountings
         streams = [np.random.SeedSequence(self.seed, spawn_key=(int(k),)) for k in numbers]
-        uniforms = np.concatenate([np.random.default_rng(s).random((count, _UNIFORMS)) for s in streams])
+        uniforms = np.concatenate([np.random.default_rng(s).random((count, MOUNTING_UNIFORMS)) for s in streams])
         parts = designs.spread(count, lambda placement: mounted(placement, demand.tolerance, uniforms))
         error = np.max(np.abs(errors_deg(self.chain, parts, demand.motion(MOUNTED_POINTS))), axis=1)
         low, high = _field_span(parts, demand)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -75,11 +76,11 @@ class Grid:
             for amplitude in (self.amplitudes_deg if cause not in (BASELINE, CLEAN) else (0.0,))
         )
 
-    def write(self, folder: StudyFolder, chunk: int) -> None:
+    def write(self, folder: StudyFolder, chunk: int) -> list[Path]:
         """See :class:`scenarios.studies.job.Job`."""
         cell = self.cells()[chunk]
         rows = self.baseline_rows(cell, chunk) if cell.cause == BASELINE else self.cause_rows(cell, chunk)
-        folder.save(chunk, {"cell": np.full(len(rows["named"]), chunk), **rows})
+        return folder.save(chunk, {"cell": np.full(len(rows["named"]), chunk), **rows})
 
     def _stream(self, number: int, repeat: int) -> np.random.Generator:
         return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(number, repeat)))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -43,12 +44,18 @@ def check(grid: Grid) -> None:
             )
 
 
-def recover(grid: Grid, output: Path, machines: Machines) -> Summary:
-    """Run the study, or finish one that was begun; one entry a cell."""
+@contextlib.contextmanager
+def folder_of(grid: Grid, output: Path) -> Iterator[StudyFolder]:
+    """The study's folder, begun or gone on with, for this command alone. Raises UserError."""
     check(grid)
-    cells = grid.cells()
     settings = {name: list(v) if isinstance(v, tuple) else v for name, v in asdict(grid).items() if name != "seed"}
-    folder = StudyFolder.open(output, study="recovery", seed=grid.seed, settings=settings)
+    with StudyFolder.opened(output, study="recovery", seed=grid.seed, settings=settings) as folder:
+        yield folder
+
+
+def recover(grid: Grid, folder: StudyFolder, machines: Machines) -> Summary:
+    """Run the study, or finish one that was begun; one entry a cell."""
+    cells = grid.cells()
     run_study(grid, folder, chunks=len(cells), items=len(cells), unit="cells", machines=machines)
     rows = folder.load(len(cells))
     return [summary(cell, {name: v[rows["cell"] == k] for name, v in rows.items()}) for k, cell in enumerate(cells)]
@@ -90,11 +97,12 @@ def run(grid: Grid, output: Path, *, plot: bool, machines: Machines) -> None:
         from diagnosis.report.plotting import style
 
         style(Path("map.png"))
-    found = recover(grid, output, machines)
-    show(found)
-    answer = {"schema": "halltwin.recovery/1", "cells": found}
-    write_beside(output / "recovery.json", (json.dumps(answer, indent=1, allow_nan=False) + "\n").encode())
-    if plot:
-        from scenarios.studies.recovery.plot import draw_maps
+    with folder_of(grid, output) as folder:
+        found = recover(grid, folder, machines)
+        show(found)
+        answer = {"schema": "halltwin.recovery/1", "cells": found}
+        write_beside(output / "recovery.json", (json.dumps(answer, indent=1, allow_nan=False) + "\n").encode())
+        if plot:
+            from scenarios.studies.recovery.plot import draw_maps
 
-        draw_maps(output, found)
+            draw_maps(output, found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,6 @@ from scenarios.studies.study_folder import StudyFolder
 from scenarios.studies.training.recipe import Recipe, parameter_names, simulate_block
 from scenarios.studies.training.store import write_region
 
-STORE = "sweeps.zarr"
-"""Name of the store in the study's folder."""
 _TOGETHER = 128
 """Sweeps simulated at once: their signals stay in the processor's cache."""
 
@@ -60,9 +59,9 @@ class Training:
             arrays["channels"] = block.channels.astype(np.float32)
         return arrays
 
-    def write(self, folder: StudyFolder, chunk: int) -> None:
+    def write(self, folder: StudyFolder, chunk: int) -> list[Path]:
         """See :class:`scenarios.studies.job.Job`."""
-        write_region(folder.path / STORE, self.numbers(chunk), self.arrays(chunk))
+        return write_region(folder, chunk, self.numbers(chunk), self.arrays(chunk))
 
 
 def settings_of(job: Training) -> dict[str, Any]:

@@ -13,29 +13,32 @@ import tomli_w
 from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder, version
-from scenarios.studies.training.job import STORE, Training, settings_of
+from scenarios.studies.training.job import Training, settings_of
 from scenarios.studies.training.recipe import Recipe, parameter_names
-from scenarios.studies.training.store import create
+from scenarios.studies.training.store import STORE, create, tools
 from twin.limits import require_within
 from twin.motion import Motion
 
 SPLITS = ("train", "validation", "test")
 
 
-def generate(job: Training, output: Path, machines: Machines) -> StudyFolder:
+def generate(job: Training, output: Path, machines: Machines) -> None:
     """Write the store, or finish one that was begun. Raises UserError."""
+    tools()
     settings = settings_of(job)
-    folder = StudyFolder.open(output, study="training", seed=job.recipe.seed, settings=settings)
-    create(
-        folder.path / STORE,
-        job.arrays_of(range(1)),
-        sweeps=job.sweeps,
-        chunk=job.chunk,
-        coordinates=_coordinates(job.recipe.motion),
-        attributes=_attributes(job.recipe, settings),
-    )
-    run_study(job, folder, chunks=job.chunks, items=job.sweeps, unit="sweeps", machines=machines)
-    return folder
+    one = job.arrays_of(range(1))
+    with StudyFolder.opened(
+        output, study="training", seed=job.recipe.seed, settings=settings, stores=(STORE,)
+    ) as folder:
+        create(
+            folder,
+            one,
+            sweeps=job.sweeps,
+            chunk=job.chunk,
+            coordinates=_coordinates(job.recipe.motion),
+            attributes=_attributes(job.recipe, settings),
+        )
+        run_study(job, folder, chunks=job.chunks, items=job.sweeps, unit="sweeps", machines=machines)
 
 
 def _coordinates(motion: Motion) -> dict[str, np.ndarray[Any, Any]]:
@@ -70,9 +73,9 @@ def run(job: Training, output: Path, machines: Machines) -> None:
     require_within("sweeps", job.sweeps, 1, 1e9, whole=True)
     require_within("chunk", job.chunk, 1, 1e6, whole=True)
     start = time.perf_counter()
-    folder = generate(job, output, machines)
+    generate(job, output, machines)
     took = time.perf_counter() - start
-    size = sum(item.stat().st_size for item in (folder.path / STORE).rglob("*") if item.is_file())
+    size = sum(item.stat().st_size for item in (output / STORE).rglob("*") if item.is_file())
     recipe = job.recipe
     print(
         f"wrote {output / STORE}: {job.sweeps} sweeps of {len(recipe.motion)} readings, {len(recipe.causes)} causes, "

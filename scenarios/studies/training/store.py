@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import shutil
+import os
 import warnings
 from collections.abc import Mapping
 from importlib import import_module
@@ -11,9 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from scenarios.studies.study_folder import StudyFolder
 from twin.errors import UserError
 
 Arrays = Mapping[str, np.ndarray[Any, Any]]
+STORE = "sweeps.zarr"
+"""Name of the store in the study's folder."""
+_BARE = "store"
+"""The mark of the store without its sweeps."""
 _DIMS = {
     "error_deg": ("sweep", "reading"),
     "channels": ("sweep", "channel", "reading"),
@@ -37,7 +42,7 @@ _ABOUT = {
 
 
 def create(
-    path: Path,
+    folder: StudyFolder,
     one: Arrays,
     *,
     sweeps: int,
@@ -45,14 +50,18 @@ def create(
     coordinates: Arrays,
     attributes: Mapping[str, Any],
 ) -> None:
-    """Make the store without its sweeps, whole or not at all; nothing where it is there already. Raises UserError.
+    """Make the store without its sweeps; nothing where it is there already. Raises UserError.
 
     ``one`` holds the variables (1, ...) of a single sweep, whose shapes and types tell those of the store;
     ``coordinates`` (n,) describe the readings; ``chunk`` sweeps are one file of each variable.
     """
-    xr, dask_array = _tools()
-    if path.exists():
+    xr, dask_array = tools()
+    damaged = folder.damaged(_BARE)
+    if damaged == []:
         return
+    for file in damaged or ():
+        if file.exists():
+            raise UserError(f"{file}: is not as this study wrote it; delete it and run the same command again")
     variables = {
         name: (
             _DIMS[name],
@@ -64,28 +73,43 @@ def create(
     readings = {name: ("reading", values) for name, values in coordinates.items()}
     dataset = xr.Dataset(variables, coords=readings, attrs=attributes)
     encoding = {name: {"chunks": (chunk, *part.shape[1:]), "_FillValue": None} for name, part in one.items()}
-    beside = path.with_name(f".{path.name}.part")
-    shutil.rmtree(beside, ignore_errors=True)
     try:
-        with warnings.catch_warnings():
+        with folder.workspace() as beside, warnings.catch_warnings():
             # zarr warns that the collected metadata, which one request reads, is younger than the format.
             warnings.simplefilter("ignore")
-            dataset.to_zarr(beside, compute=False, encoding=encoding)
-        beside.rename(path)
+            dataset.to_zarr(beside / STORE, compute=False, encoding=encoding)
+            folder.mark(_BARE, _moved(beside, folder.path))
     except OSError as error:
-        raise UserError(f"{path}: cannot be written ({error.strerror}); make room and run the command again") from None
+        raise UserError(
+            f"{folder.path / STORE}: cannot be written ({error.strerror}); make room and run the same command again"
+        ) from None
 
 
-def write_region(path: Path, numbers: range, arrays: Arrays) -> None:
-    """Write the sweeps with these numbers, which are one chunk of every variable. Raises OSError."""
-    xr, _ = _tools()
+def _moved(source: Path, target: Path) -> list[Path]:
+    """Give every file below a folder its place below another; where they are now."""
+    files = [file for file in sorted(source.rglob("*")) if file.is_file()]
+    places = [target / file.relative_to(source) for file in files]
+    for file, place in zip(files, places, strict=True):
+        place.parent.mkdir(parents=True, exist_ok=True)
+        os.replace(file, place)
+    return places
+
+
+def write_region(folder: StudyFolder, chunk: int, numbers: range, arrays: Arrays) -> list[Path]:
+    """Write the sweeps with these numbers, which are one chunk of every variable; its files. Raises OSError."""
+    xr, _ = tools()
+    store = folder.path / STORE
     dataset = xr.Dataset({name: (_DIMS[name], values) for name, values in arrays.items()})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        dataset.to_zarr(path, region={"sweep": slice(numbers.start, numbers.stop)})
+        dataset.to_zarr(store, region={"sweep": slice(numbers.start, numbers.stop)})
+    # A chunk of nothing but zeros has no file.
+    places = [store / name / "c" / str(chunk) for name in arrays]
+    return [file for place in places for file in (place, *place.rglob("*")) if file.is_file()]
 
 
-def _tools() -> tuple[Any, Any]:
+def tools() -> tuple[Any, Any]:
+    """xarray and dask.array. Raises UserError where they, or zarr, are not installed."""
     try:
         import dask.array
         import xarray

@@ -15,6 +15,7 @@ from scenarios.studies.design.run import explore, folder_of, run, study_of
 from scenarios.studies.design.space import AXES
 from scenarios.studies.design.study import Demand, DesignStudy, ranking
 from scenarios.studies.machines import Machines
+from tests.command_line import halltwin
 from tests.scenarios.study_jobs import content
 from twin.angles import TAU
 from twin.errors import UserError
@@ -176,3 +177,27 @@ def test_what_cannot_be_is_refused() -> None:
         study_of("paper-encoder", study().space, study().demand, seed=0)
     with pytest.raises(UserError, match="air_gap_mm is 0 mm"):
         study(air_gap_mm="0")
+    with pytest.raises(UserError, match="remanence is -1 T; expected from 0 to 2 T"):
+        study(remanence_T="-1")
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "said"),
+    [
+        ("--best", "0", "best is 0; expected a whole number from 1"),
+        ("--tolerance", "off_axis=1e9mm", "tolerance off_axis is 1e+09 mm, too large: sensor_x_mm is"),
+        ("--tolerance", "tilt=90deg", "tolerance tilt is 90 deg, too large: sensor_tilt_"),
+        ("--tolerance", "air_gap=400mm", "tolerance air_gap is 400 mm, too large: air_gap_mm is"),
+        ("--mountings", "0", "mountings is 0"),
+        ("--count", "0", "designs is 0"),
+        ("--max-error", "nan", "max-error is nan deg"),
+    ],
+)
+def test_a_mistake_in_an_option_is_one_line_and_makes_no_folder(
+    tmp_path: Path, option: str, value: str, said: str
+) -> None:
+    ended = halltwin("design", "-o", tmp_path / "s", "--sampling", "lhs", option, value)
+    assert ended.code == 2
+    assert said in ended.err
+    assert ended.err.count("\n") == 1
+    assert not list(tmp_path.iterdir())

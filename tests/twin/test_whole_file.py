@@ -103,7 +103,7 @@ def test_a_link_stays_and_what_it_leads_to_is_replaced(folder: Path, monkeypatch
 def test_names_cannot_be_foreseen_and_a_planted_link_is_not_followed(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    names = {whole_file._new_name(folder / "there.txt").name for _ in range(100)}
+    names = {whole_file.new_name(folder / "there.txt").name for _ in range(100)}
     assert len(names) == 100
     # Even where someone knows the name.
     planted = folder / ".halltwin-known.part"

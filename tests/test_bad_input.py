@@ -227,7 +227,7 @@ def test_twin_that_is_no_file(good: Path) -> None:
 def test_output_that_cannot_be_written(option: str, good: Path) -> None:
     """Said before the work is done, and no other output is written either."""
     other = "--extended" if option == "--json" else "--json"
-    fine = good.parent / "fine.out"
+    fine = good.parent / f"fine.{'toml' if option == '--json' else 'json'}"
     before = sorted(good.parent.iterdir())
     places: dict[Path, str] = {
         good.parent / "nowhere" / "out": "no folder",

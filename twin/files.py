@@ -150,9 +150,14 @@ def read_twin(path: str | Path, *, effects: tuple[Effect, ...] = CATALOGUE) -> C
 
 def write_twin(path: str | Path, chain: Chain) -> None:
     """Write a twin file, whole or not at all."""
+    write_beside(Path(path), twin_text(chain).encode())
+
+
+def twin_text(chain: Chain) -> str:
+    """The text of a twin file."""
     import tomli_w
 
-    write_beside(Path(path), tomli_w.dumps(to_dict(chain)).encode())
+    return tomli_w.dumps(to_dict(chain))
 
 
 def _plain(value: Any) -> Any:

@@ -39,9 +39,10 @@ def check_format(path: Path) -> None:
     _matplotlib()
 
 
-def style(path: Path) -> Any:
+def style(path: Path | None = None) -> Any:
     """matplotlib's pyplot, set up to draw files alone. Raises UserError without matplotlib or for another format."""
-    check_format(path)
+    if path is not None:
+        check_format(path)
     matplotlib = _matplotlib()
     matplotlib.use("Agg")
     matplotlib.rcParams.update(STYLE)
@@ -61,12 +62,17 @@ def save(figure: Any, *paths: Path) -> None:
 def write_figure(figure: Any, *paths: Path) -> None:
     """Write the figure under each name, whole or not at all; the same figure gives the same bytes."""
     for path in paths:
-        kind = path.suffix.removeprefix(".")
-        stamp = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind]
-        out = io.BytesIO()
-        with _matplotlib().rc_context(STYLE):
-            figure.savefig(out, format=kind, dpi=150, metadata=stamp)
-        write_beside(path, out.getvalue())
+        write_beside(path, figure_bytes(figure, path.suffix))
+
+
+def figure_bytes(figure: Any, ending: str) -> bytes:
+    """The figure in the format that an ending (``.png``, ``.svg``, ``.pdf``) stands for."""
+    kind = ending.removeprefix(".")
+    stamp = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind]
+    out = io.BytesIO()
+    with _matplotlib().rc_context(STYLE):
+        figure.savefig(out, format=kind, dpi=150, metadata=stamp)
+    return out.getvalue()
 
 
 def _matplotlib() -> Any:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import EffectFiles
+from scenarios.cli.options import EffectFiles, Force
 
 
 def causes(
@@ -29,11 +29,12 @@ def new_effect(
         Path | None,
         typer.Option("--from", help="Answer of explain (--json) whose unnamed structure it is shaped after."),
     ] = None,
+    force: Force = False,
 ) -> None:
     """Write the skeleton of an effect of your own: a file that passes the contract, to write your physics into."""
     from scenarios.commands.new_effect import run
 
-    run(name, output=output, answer=answer)
+    run(name, output=output, answer=answer, force=force)
 
 
 def check_effect(

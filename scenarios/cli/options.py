@@ -21,6 +21,7 @@ Temperatures = Annotated[str, typer.Option(help="Temperatures in C, e.g. 25,60,8
 
 # What is written.
 Json = Annotated[Path | None, typer.Option(help="Write the answer as JSON.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace files that are there, whoever wrote them.")]
 ErrorPlot = Annotated[Path | None, typer.Option(help="Draw the error before and after: .png, .svg or .pdf.")]
 SweepFile = Annotated[Path, typer.Option("-o", "--output", help="Sweep to write: CSV or .csv.gz.")]
 PictureFolder = Annotated[Path, typer.Option("-o", "--output", help="Folder for the picture and its data.")]

@@ -10,6 +10,7 @@ import typer
 from scenarios.cli.options import (
     BothDirections,
     EffectFiles,
+    Force,
     PictureFolder,
     Points,
     Seed,
@@ -33,6 +34,7 @@ def simulate(
     reference_lines: Annotated[int | None, typer.Option(help="Lines of the reference encoder (4 counts each).")] = None,
     trace: Annotated[Path | None, typer.Option(help="Write every intermediate signal as CSV.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the trace: .png, .svg or .pdf.")] = None,
+    force: Force = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
 ) -> None:
@@ -50,7 +52,7 @@ def simulate(
     )
     run(
         twin,
-        Outputs(sweep=output, trace=trace, plot=plot),
+        Outputs(sweep=output, trace=trace, plot=plot, force=force),
         recorded=motion,
         protocol=protocol,
         seed=seed,
@@ -62,29 +64,32 @@ def simulate(
 def hardware(
     output: PictureFolder,
     twin: Annotated[str, typer.Argument(help="Twin TOML or preset, for its magnet.")] = "imc-14bit",
+    force: Force = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
 ) -> None:
     """Run one turn through magnet, concentrator, spun plates, converter, CORDIC and link, in the hardware's units."""
     from scenarios.commands.hardware import run_command
 
-    run_command(twin, output, effect_files=effects or (), seed=seed)
+    run_command(twin, output, effect_files=effects or (), force=force, seed=seed)
 
 
 def spinning(
     output: PictureFolder,
+    force: Force = False,
     seed: Seed = 0,
 ) -> None:
     """Show the spinning current phase by phase: the offset before and after, the noise with its 1/f corner moved."""
     from scenarios.commands.spinning import run
 
-    run(output, seed=seed)
+    run(output, force=force, seed=seed)
 
 
 def paper(
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for table and figures.")],
+    force: Force = False,
 ) -> None:
     """Regenerate Table 1 and Figures 3 to 9 of the paper from the twin."""
     from scenarios.commands.paper import run
 
-    run(output)
+    run(output, force=force)

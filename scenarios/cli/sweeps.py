@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import EffectFiles, ErrorPlot, Json, Seed
+from scenarios.cli.options import EffectFiles, ErrorPlot, Force, Json, Seed
 
 
 def explain(
@@ -17,19 +17,17 @@ def explain(
     report: Annotated[Path | None, typer.Option(help="Write a self-contained HTML report.")] = None,
     extended: Annotated[Path | None, typer.Option(help="Write the extended twin (TOML).")] = None,
     plot: ErrorPlot = None,
+    force: Force = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
 ) -> None:
     """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""
-    from scenarios.commands.explain import run
+    from scenarios.commands.explain import Outputs, run
 
     run(
         sweep,
         twin=twin,
-        json_path=json,
-        report=report,
-        extended=extended,
-        plot=plot,
+        outputs=Outputs(json=json, report=report, extended=extended, plot=plot, force=force),
         effect_files=effects or (),
         seed=seed,
     )
@@ -40,12 +38,13 @@ def diagnose(
     json: Json = None,
     plot: Annotated[Path | None, typer.Option(help="Draw points and fitted curve: .png, .svg or .pdf.")] = None,
     convergence: Annotated[Path | None, typer.Option(help="Draw the swarm's convergence.")] = None,
+    force: Force = False,
     seed: Seed = 0,
 ) -> None:
     """Quantify the paper's error factors of one or many sweeps: values, intervals, what cannot be known."""
     from scenarios.commands.diagnose import run
 
-    run(sweeps, json_path=json, plot=plot, convergence=convergence, seed=seed)
+    run(sweeps, json_path=json, plot=plot, convergence=convergence, force=force, seed=seed)
 
 
 def compensate(
@@ -59,13 +58,14 @@ def compensate(
     temperature: Annotated[float, typer.Option(help="Temperature in C that a twin is corrected for.")] = 25.0,
     tolerance: Annotated[float, typer.Option(help="Largest error in deg from orders left out.")] = 1e-3,
     prefix: Annotated[str, typer.Option(help="Prefix of the C names.")] = "halltwin",
+    force: Force = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
 ) -> None:
     """Turn a sweep or a twin into a continuous correction, and measure it on readings it never saw."""
     from scenarios.commands.compensate import Outputs, run
 
-    outputs = Outputs(header=header, table=table, points=points, toml=toml, plot=plot, prefix=prefix)
+    outputs = Outputs(header=header, table=table, points=points, toml=toml, plot=plot, prefix=prefix, force=force)
     run(
         source,
         outputs=outputs,
@@ -82,9 +82,10 @@ def monitor(
     run_length: Annotated[float, typer.Option(help="Sweeps between false alarms, on average.")] = 500.0,
     json: Annotated[Path | None, typer.Option(help="Write the series and the charts as JSON.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the charts: .png, .svg or .pdf.")] = None,
+    force: Force = False,
     seed: Seed = 0,
 ) -> None:
     """Chart the error factors over a series of sweeps and say which one drifts, and since when."""
     from scenarios.commands.monitor import run
 
-    run(sweeps, run_length=run_length, json_path=json, plot=plot, seed=seed)
+    run(sweeps, run_length=run_length, json_path=json, plot=plot, force=force, seed=seed)

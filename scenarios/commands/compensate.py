@@ -6,6 +6,7 @@ import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,12 +15,12 @@ from diagnosis.correction.compensation import Correction, correction_of, to_dict
 from diagnosis.correction.compensation_c import header
 from diagnosis.correction.cross_validation import BeforeAfter, against, cross_validated
 from scenarios.commands.inputs import sweep_paths
+from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from twin.angles import TAU, Array, radians
 from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.files import read_twin
 from twin.sweep import Sweep
-from twin.whole_file import write_beside
 
 _FEWEST_POINTS = 4
 _MOST_POINTS = 65536
@@ -27,7 +28,10 @@ _MOST_POINTS = 65536
 
 @dataclass(frozen=True)
 class Outputs:
-    """What to write; None where not asked for. ``points`` is the length of the table."""
+    """What to write; None where not asked for. ``points`` is the length of the table.
+
+    ``force``: also in place of files of others.
+    """
 
     header: Path | None = None
     table: Path | None = None
@@ -35,6 +39,7 @@ class Outputs:
     toml: Path | None = None
     plot: Path | None = None
     prefix: str = "halltwin"
+    force: bool = False
 
 
 def run(
@@ -50,7 +55,11 @@ def run(
     """Correction of a sweep or of a twin; errors on the sweeps of ``check``, or on held-out blocks of the sweep."""
     if not _FEWEST_POINTS <= outputs.points <= _MOST_POINTS:
         raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
+    checked_on = sweep_paths(check)
+    files = _files(outputs, inputs=[source, *checked_on, *effect_files])
     sweep = None if source.suffix == ".toml" else Sweep.read(source)
+    if outputs.plot is not None and sweep is None and not check:
+        raise UserError(f"{outputs.plot.name}: nothing to draw; give sweeps to --check the twin's correction on")
     if sweep is None:
         twin = read_twin(source, effects=effects_with(effect_files))
         correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)
@@ -62,23 +71,17 @@ def run(
     )
     for name in correction.left_out:
         print(f"- {name}: not in the correction; a single angle reading cannot tell it")
-    judged = _judge(correction, sweep, check, tolerance_deg, seed)
+    judged = _judge(correction, sweep, checked_on, tolerance_deg, seed)
     for name, found, tested in judged:
         for line in _lines(name, found, tested, other=bool(check)):
             print(line)
-    _write(correction, outputs, source=source.name)
-    if outputs.plot is not None:
-        from scenarios.commands.compensate_plot import plot_before_after
+    _write(files, outputs, correction, source=source.name, judged=_with_own_zero(judged) if check else judged)
 
-        if not judged:
-            raise UserError(f"{outputs.plot.name}: nothing to draw; give sweeps to --check the twin's correction on")
-        if check:
-            judged = [
-                (f"{name}, own zero taken out", found.per_turn(_turns(tested)), tested)
-                for name, found, tested in judged
-            ]
-        plot_before_after(outputs.plot, judged)
-        print(f"wrote {outputs.plot}")
+
+def _files(outputs: Outputs, *, inputs: Sequence[Path]) -> OutputFiles:
+    """The files to write. Raises UserError where one of them cannot or must not be written."""
+    asked = [(outputs.header, HEADER), (outputs.table, TABLE), (outputs.toml, TOML), (outputs.plot, PICTURE)]
+    return OutputFiles.checked(asked, inputs=inputs, force=outputs.force)
 
 
 def _angles(sweep: Sweep) -> tuple[Array, Array]:
@@ -96,10 +99,10 @@ def _of_readings(tolerance_deg: float, seed: int) -> Callable[[Array, Array], Co
 
 
 def _judge(
-    correction: Correction, sweep: Sweep | None, check: Sequence[str], tolerance_deg: float, seed: int
+    correction: Correction, sweep: Sweep | None, check: Sequence[Path], tolerance_deg: float, seed: int
 ) -> list[tuple[str, BeforeAfter, Sweep]]:
     if check:
-        sweeps = [Sweep.read(path) for path in sweep_paths(check)]
+        sweeps = [Sweep.read(path) for path in check]
         return [(f"on {other.name}", against(*_angles(other), correction.shaft), other) for other in sweeps]
     if sweep is None:
         return []
@@ -126,19 +129,37 @@ def _line(name: str, found: BeforeAfter) -> str:
     return f"{name:34} RMS {rms:.4f} -> {rms_after:.4f} deg   largest {peak:.4f} -> {peak_after:.4f} deg"
 
 
-def _write(correction: Correction, outputs: Outputs, *, source: str) -> None:
-    if outputs.header is not None:
-        text = header(correction, source=f"from {source}", prefix=outputs.prefix)
-        write_beside(outputs.header, text.encode())
-        print(f"wrote {outputs.header}")
-    if outputs.table is not None:
-        write_beside(outputs.table, _table(correction, outputs.points).encode())
-        print(f"wrote {outputs.table} ({outputs.points} points)")
-    if outputs.toml is not None:
-        import tomli_w
+Judged = list[tuple[str, BeforeAfter, Sweep]]
 
-        write_beside(outputs.toml, tomli_w.dumps(to_dict(correction)).encode())
-        print(f"wrote {outputs.toml}")
+
+def _with_own_zero(judged: Judged) -> Judged:
+    """Each turn's own zero taken out: another sweep's reference may have found its zero anew."""
+    return [(f"{name}, own zero taken out", found.per_turn(_turns(tested)), tested) for name, found, tested in judged]
+
+
+def _write(files: OutputFiles, outputs: Outputs, correction: Correction, *, source: str, judged: Judged) -> None:
+    files.write(
+        {
+            outputs.header: lambda: header(correction, source=f"from {source}", prefix=outputs.prefix),
+            outputs.table: lambda: _table(correction, outputs.points),
+            outputs.toml: lambda: _toml(correction),
+            outputs.plot: lambda: _picture(judged),
+        }
+    )
+    for path in files.formats:
+        print(f"wrote {path}" + (f" ({outputs.points} points)" if path == outputs.table else ""))
+
+
+def _toml(correction: Correction) -> str:
+    import tomli_w
+
+    return tomli_w.dumps(to_dict(correction))
+
+
+def _picture(judged: Judged) -> Any:
+    from scenarios.commands.compensate_plot import before_after_figure
+
+    return before_after_figure(judged)
 
 
 def _table(correction: Correction, points: int) -> str:

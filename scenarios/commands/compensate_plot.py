@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from diagnosis.correction.cross_validation import BeforeAfter
-from diagnosis.report.plotting import save, style
+from diagnosis.report.plotting import style
 from twin.sweep import Sweep
 
 _BEFORE, _AFTER = "#cc3311", "#4477aa"
 
 
-def plot_before_after(path: Path, judged: Sequence[tuple[str, BeforeAfter, Sweep]]) -> None:
+def before_after_figure(judged: Sequence[tuple[str, BeforeAfter, Sweep]]) -> Any:
     """One panel a tested sweep, on readings that the correction never saw."""
-    plt = style(path)
+    plt = style()
     figure, axes = plt.subplots(
         len(judged), 1, figsize=(7.0, max(3.2 * len(judged), 3.8)), squeeze=False, layout="constrained"
     )
@@ -31,4 +31,5 @@ def plot_before_after(path: Path, judged: Sequence[tuple[str, BeforeAfter, Sweep
         axis.set(xlim=(0, 360), xticks=range(0, 361, 90), xlabel="shaft angle [deg]", ylabel="angle error [deg]")
         axis.grid(alpha=0.25)
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
-    save(figure, path)
+    plt.close(figure)
+    return figure

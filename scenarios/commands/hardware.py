@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from diagnosis.report.plotting import save, style
+from diagnosis.report.plotting import style
+from scenarios.commands.outputs import PICTURE, TABLE, OutputFiles
 from scenarios.commands.protocol import Protocol
 from twin.angles import Array, wrap_deg
 from twin.cordic.bit_true import angle_rad
@@ -16,12 +18,15 @@ from twin.hall.spinning_current import residual_offset_mT
 from twin.hardware import Hardware, Run, run
 from twin.magnet.assembly import Assembly
 from twin.presets import read_twin_or_preset
-from twin.sweep_file import write_columns
+from twin.sweep_file import csv_text
 
 
-def run_command(twin: str, folder: Path, *, effect_files: Sequence[Path] = (), seed: int) -> None:
+def run_command(twin: str, folder: Path, *, effect_files: Sequence[Path] = (), force: bool = False, seed: int) -> None:
     """Write hardware.csv, hardware.png and .svg for a twin's magnet, disk, plates and reference; the rest typical."""
-    folder.mkdir(parents=True, exist_ok=True)
+    csv, png, svg = (folder / f"hardware.{ending}" for ending in ("csv", "png", "svg"))
+    files = OutputFiles.checked(
+        [(csv, TABLE), (png, PICTURE), (svg, PICTURE)], inputs=[twin, *effect_files], force=force, folders=True
+    )
     chain = read_twin_or_preset(twin, effects=effects_with(effect_files))
     disk, plate = chain.parts.disk, chain.parts.plate
     hardware = Hardware(assembly=chain.magnet or Assembly(), disk=disk, plates=(plate, plate))
@@ -30,8 +35,8 @@ def run_command(twin: str, folder: Path, *, effect_files: Sequence[Path] = (), s
     signals = run(hardware, motion, rng)
     shaft, reference = np.degrees(motion.shaft_rad), np.degrees(chain.recorded_reference(motion, rng))
     columns = table(hardware, signals, shaft, reference)
-    write_columns(folder / "hardware.csv", columns)
-    _draw(folder, columns)
+    figure = _figure(columns)
+    files.write({csv: csv_text(columns), png: figure, svg: figure})
     for axis, plate in zip("xy", hardware.plates, strict=True):
         before, after = residual_offset_mT(plate)
         print(f"plate {axis}: offset {before:.4g} mT before spinning, {after:.4g} mT after it")
@@ -55,8 +60,8 @@ def table(hardware: Hardware, signals: Run, shaft_deg: Array, reference_deg: Arr
     return columns
 
 
-def _draw(folder: Path, columns: dict[str, Array]) -> None:
-    plt = style(folder / "hardware.png")
+def _figure(columns: dict[str, Array]) -> Any:
+    plt = style()
     figure, axes = plt.subplots(3, 2, figsize=(10.0, 9.0), sharex=True, layout="constrained")
     across = columns["shaft_deg"]
     panels: list[tuple[str, str, dict[str, Array]]] = [
@@ -91,4 +96,5 @@ def _draw(folder: Path, columns: dict[str, Array]) -> None:
         axis.legend(fontsize=7)
     for axis in axes[-1]:
         axis.set_xlabel("shaft angle / deg")
-    save(figure, folder / "hardware.png", folder / "hardware.svg")
+    plt.close(figure)
+    return figure

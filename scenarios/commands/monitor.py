@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -12,9 +11,9 @@ import numpy as np
 from diagnosis.factors.control_chart import WEIGHT, Chart
 from diagnosis.factors.series import FEWEST_SWEEPS, RUN_LENGTH, MonitoredSeries, monitor, turns_of
 from scenarios.commands.inputs import sweep_paths
+from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from twin.errors import UserError
 from twin.sweep import Sweep
-from twin.whole_file import write_beside
 
 SCHEMA = "halltwin.monitor/1"
 
@@ -25,27 +24,31 @@ def run(
     run_length: float = RUN_LENGTH,
     json_path: Path | None = None,
     plot: Path | None = None,
+    force: bool = False,
     seed: int = 0,
 ) -> None:
     """Fit every sweep of the series, chart the factors, print what was signalled."""
     if run_length < 10.0:
         raise UserError(f"run length is {run_length:g}; expected at least 10 sweeps between false alarms")
-    found = monitor(series(names), rng=np.random.default_rng(seed), run_length=run_length)
+    paths = sweep_paths(names)
+    files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE)], inputs=paths, force=force)
+    found = monitor(series(paths), rng=np.random.default_rng(seed), run_length=run_length)
     for line in _report(found):
         print(line)
-    if json_path is not None:
-        write_beside(json_path, (json.dumps(to_dict(found), indent=1, allow_nan=False) + "\n").encode())
-        print(f"wrote {json_path}")
-    if plot is not None:
-        from scenarios.commands.monitor_plot import plot_charts
-
-        plot_charts(plot, found)
-        print(f"wrote {plot}")
+    files.write({json_path: lambda: json_text(to_dict(found)), plot: lambda: _charts(found)})
+    for written in files.formats:
+        print(f"wrote {written}")
 
 
-def series(names: Sequence[str]) -> list[Sweep]:
+def _charts(found: MonitoredSeries) -> Any:
+    from scenarios.commands.monitor_plot import charts_figure
+
+    return charts_figure(found)
+
+
+def series(paths: Sequence[Path]) -> list[Sweep]:
     """The sweeps in order: the files as given, or the turns of a single file. Raises UserError for too few."""
-    sweeps = [Sweep.read(path) for path in sweep_paths(names)]
+    sweeps = [Sweep.read(path) for path in paths]
     if len(sweeps) == 1 and sweeps[0].turn is not None:
         sweeps = turns_of(sweeps[0])
     if len(sweeps) < FEWEST_SWEEPS:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from diagnosis.factors.series import MonitoredSeries
-from diagnosis.report.plotting import save, style
+from diagnosis.report.plotting import style
 
 _LINE, _SIGNAL = "#4477aa", "#cc3311"
 
 
-def plot_charts(path: Path, found: MonitoredSeries) -> None:
+def charts_figure(found: MonitoredSeries) -> Any:
     """One row a factor: values on the left, chart on the right; a signal is marked in both."""
-    plt = style(path)
+    plt = style()
     rows = len(found.charts)
     figure, axes = plt.subplots(rows, 2, figsize=(10.0, 1.55 * rows), sharex=True, layout="constrained")
     number = np.arange(1, len(found.names) + 1)
@@ -36,4 +36,5 @@ def plot_charts(path: Path, found: MonitoredSeries) -> None:
     for axis in axes[-1]:
         axis.set_xlabel("sweep")
     figure.align_ylabels(axes[:, 0])
-    save(figure, path)
+    plt.close(figure)
+    return figure

@@ -13,13 +13,13 @@ from typing import Any
 from diagnosis.report.answer import SCHEMA
 from diagnosis.report.wording import structure_words
 from scenarios.commands.effect_skeleton import skeleton
+from scenarios.commands.outputs import PYTHON, OutputFiles
 from twin.catalogue import find
 from twin.contract import check
 from twin.declaration import NAME
 from twin.effect import Effect
 from twin.errors import UserError
 from twin.extensions import RESERVED, effects_of, effects_with, unfit
-from twin.whole_file import check_writable, write_beside
 
 _PLAIN = "structure of your own: a line of order 5 in the shaft angle, to begin with"
 
@@ -33,13 +33,11 @@ class Origin:
     words: str = _PLAIN
 
 
-def run(name: str, *, output: Path | None, answer: Path | None) -> None:
+def run(name: str, *, output: Path | None, answer: Path | None, force: bool = False) -> None:
     """Write the skeleton. Raises UserError for a name or a file that is taken, and for an answer that is none."""
     path = output if output is not None else Path(f"{name}.py")
     _check_name(name)
-    if path.exists():
-        raise UserError(f"{path}: is there already; give another name with -o, or remove it first")
-    check_writable(path)
+    files = OutputFiles.checked([(path, PYTHON)], inputs=[answer], force=force)
     origin = origin_of(answer) if answer is not None else Origin()
     text = skeleton(
         name,
@@ -48,7 +46,7 @@ def run(name: str, *, output: Path | None, answer: Path | None) -> None:
         sweep=origin.sweep,
         found=f"Written by halltwin new-effect, for {origin.words}.",
     )
-    write_beside(path, text.encode())
+    files.write({path: text})
     print(f"wrote {path}, for {origin.words}")
 
 

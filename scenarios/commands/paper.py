@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.report.plotting import save, style
+from diagnosis.report.plotting import style
+from scenarios.commands.outputs import PICTURE, TABLE, OutputFiles
 from scenarios.commands.paper_table import (
     Q_PERCENT_PER_MT,
     cordic_error,
@@ -23,26 +24,29 @@ from twin.angles import Array
 from twin.chain import Chain
 from twin.hall.gain_mismatch import GAIN_MISMATCH
 from twin.hall.phase import PHASE
-from twin.sweep_file import write_columns
-from twin.whole_file import write_beside
+from twin.sweep_file import csv_text
 
 Columns = dict[str, Array]
 TURN = whole_turn(360)
 ANGLE_DEG = np.degrees(TURN.shaft_rad)
 
 
-def run(folder: Path) -> None:
+def run(folder: Path, *, force: bool = False) -> None:
     """Write table1.csv and, for each figure, its data (.csv) and its picture (.svg, .png)."""
-    folder.mkdir(parents=True, exist_ok=True)
-    plt = style(folder / "fig3.png")
+    names = {number: [folder / f"fig{number}{ending}" for ending in (".csv", ".svg", ".png")] for number in FIGURES}
+    asked = [(path, TABLE if path.suffix == ".csv" else PICTURE) for paths in names.values() for path in paths]
+    files = OutputFiles.checked([(folder / "table1.csv", TABLE), *asked], force=force, folders=True)
+    plt = style()
     rows = table()
-    write_beside(folder / "table1.csv", table_csv(rows).encode())
     for row in rows:
         print(f"{row.factor:20s} printed {row.printed:<8g} computed {row.computed:.5f} {row.unit}  {row.remark}")
+    contents: dict[Path | None, Any] = {folder / "table1.csv": table_csv(rows)}
     for number, draw in FIGURES.items():
         figure, columns = draw(plt)
-        write_columns(folder / f"fig{number}.csv", columns)
-        save(figure, folder / f"fig{number}.svg", folder / f"fig{number}.png")
+        csv, *pictures = names[number]
+        contents |= {csv: csv_text(columns), **dict.fromkeys(pictures, figure)}
+        plt.close(figure)
+    files.write(contents)
     print(f"wrote table1.csv and figures {', '.join(map(str, FIGURES))} to {folder}")
 
 

@@ -5,21 +5,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
+from scenarios.commands.outputs import PICTURE, SWEEP, TABLE, OutputFiles
 from scenarios.commands.protocol import Protocol
+from scenarios.commands.trace import trace, trace_figure, trace_text
 from twin.extensions import effects_with
 from twin.presets import read_twin_or_preset
 from twin.reference.encoder import Encoder
 from twin.sweep import Sweep
+from twin.sweep_file import csv_text
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outputs:
-    """Files to write: the sweep, and where asked for the intermediate signals as a table and as a picture."""
+    """Files to write: the sweep, and where asked for the intermediate signals as a table and as a picture.
+
+    ``force``: also in place of files of others.
+    """
 
     sweep: Path
     trace: Path | None = None
     plot: Path | None = None
+    force: bool = False
 
 
 def run(
@@ -36,22 +44,24 @@ def run(
 
     ``reference_lines``: lines of the reference encoder, in place of those of the twin's [reference]; None: as there.
     """
+    files = OutputFiles.checked(
+        [(outputs.sweep, SWEEP), (outputs.trace, TABLE), (outputs.plot, PICTURE)],
+        inputs=[twin, recorded, *effect_files],
+        force=outputs.force,
+    )
     chain = read_twin_or_preset(twin, effects=effects_with(effect_files))
     if reference_lines is not None:
         chain = replace(chain, encoder=replace(chain.encoder or Encoder(), lines=reference_lines))
     # A recorded motion holds the reference's readings: the shaft is where its errors are undone.
     motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded).motion())
     sweep = chain.simulate(motion, seed=seed)
-    sweep.write(outputs.sweep)
-    print(f"wrote {outputs.sweep} ({len(motion)} readings)")
-    if outputs.trace is None and outputs.plot is None:
-        return
-    from scenarios.commands.trace import plot_trace, trace, write_trace
-
-    traced = trace(chain, motion, seed=seed)
-    if outputs.trace is not None:
-        write_trace(outputs.trace, traced)
-        print(f"wrote {outputs.trace}")
-    if outputs.plot is not None:
-        plot_trace(outputs.plot, traced, title=f"{Path(twin).stem}, seed {seed}")
-        print(f"wrote {outputs.plot}")
+    contents: dict[Path | None, Any] = {outputs.sweep: lambda: csv_text(sweep.columns)}
+    if outputs.trace is not None or outputs.plot is not None:
+        traced = trace(chain, motion, seed=seed)
+        contents |= {
+            outputs.trace: lambda: trace_text(traced),
+            outputs.plot: lambda: trace_figure(traced, title=f"{Path(twin).stem}, seed {seed}"),
+        }
+    files.write(contents)
+    for path in files.formats:
+        print(f"wrote {path}" + (f" ({len(motion)} readings)" if path == outputs.sweep else ""))

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from diagnosis.report.plotting import save, style
+from diagnosis.report.plotting import style
+from scenarios.commands.outputs import PICTURE, TABLE, OutputFiles
 from twin.hall.spinning_current import PHASES, Plate, Spinning, corner_of, density, residual_offset_mT, spin
-from twin.sweep_file import write_columns
+from twin.sweep_file import csv_text
 
 SHOWN = 5
 NOISE_CYCLES = 1 << 15
 
 
-def run(folder: Path, *, seed: int, field_mT: float = 5.0) -> None:
+def run(folder: Path, *, seed: int, force: bool = False, field_mT: float = 5.0) -> None:
     """Write spinning.csv, the trace of a few cycles, spinning.png and .svg, and print the figures."""
-    folder.mkdir(parents=True, exist_ok=True)
+    csv, png, svg = (folder / f"spinning.{ending}" for ending in ("csv", "png", "svg"))
+    files = OutputFiles.checked([(csv, TABLE), (png, PICTURE), (svg, PICTURE)], force=force, folders=True)
     plate = Plate()
     rng = np.random.default_rng(seed)
     # Field off, on, off: what the output must follow.
@@ -31,13 +34,14 @@ def run(folder: Path, *, seed: int, field_mT: float = 5.0) -> None:
         "demodulated_uV": traced.demodulated_uV,
         "output_mT": np.broadcast_to(traced.output_mT[:, None, None], traced.time_s.shape),
     }
-    write_columns(folder / "spinning.csv", {name: values.ravel() for name, values in samples.items()})
     spectra = {
         name: density(values, plate.cycle_Hz)
         for name, values in (("without spinning", noisy.unspun_mT), ("with spinning", noisy.output_mT))
     }
     corners = {name: corner_of(*spectrum) for name, spectrum in spectra.items()}
-    _draw(folder, plate, traced, spectra, offsets=(before, after), corners=corners)
+    figure = _figure(plate, traced, spectra, offsets=(before, after), corners=corners)
+    trace = csv_text({name: values.ravel() for name, values in samples.items()})
+    files.write({csv: trace, png: figure, svg: figure})
     print(f"offset before {before:.4g} mT, after {after:.4g} mT: {abs(before / after):.0f} times smaller")
     for name, corner in corners.items():
         print(f"1/f corner {name}: {_stated(corner, spectra[name][0])}")
@@ -49,16 +53,15 @@ def _stated(corner_Hz: float, frequency_Hz: np.ndarray) -> str:
     return f"below {lowest:.2g} Hz" if corner_Hz < lowest else f"{corner_Hz:.3g} Hz"
 
 
-def _draw(
-    folder: Path,
+def _figure(
     plate: Plate,
     traced: Spinning,
     spectra: dict[str, tuple[np.ndarray, np.ndarray]],
     *,
     offsets: tuple[float, float],
     corners: dict[str, float],
-) -> None:
-    plt = style(folder / "spinning.png")
+) -> Any:
+    plt = style()
     figure, axes = plt.subplots(3, 1, figsize=(8.0, 9.0), layout="constrained")
     time = 1e6 * traced.time_s.ravel()
     axes[0].plot(time, traced.amplified_uV.ravel(), linewidth=0.8, label="at the amplifier's output, input-referred")
@@ -76,4 +79,5 @@ def _draw(
         axis.grid(alpha=0.3)
         axis.legend(fontsize=8, loc="best")
     figure.suptitle(f"Spinning current, {PHASES} phases of {1e6 * plate.phase_s:g} us")
-    save(figure, folder / "spinning.png", folder / "spinning.svg")
+    plt.close(figure)
+    return figure

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from diagnosis.report.plotting import save, style
+from diagnosis.report.plotting import style
 from twin.angles import TAU, Array, wrap
 from twin.catalogue import STAGES
 from twin.chain import Chain, Step
 from twin.concentrator.disk import vertical_mT
 from twin.hall.spinning_current import residual_offset_mT
 from twin.motion import Motion
-from twin.sweep_file import write_columns
+from twin.sweep_file import csv_text
 
 CONVERSIONS = {
     "after shaft": "field angle",
@@ -127,7 +127,7 @@ def _angle(signal: Array, kind: str) -> Array:
     return np.asarray(signal[0])
 
 
-def write_trace(path: Path, traced: Trace) -> None:
+def trace_text(traced: Trace) -> str:
     """The trace as CSV, one row a reading; the unit ends each name, ``_1`` being the nominal amplitude."""
     columns = {"time_s": traced.motion.time_s}
     for place, signal in enumerate(traced.signals):
@@ -136,12 +136,12 @@ def write_trace(path: Path, traced: Trace) -> None:
             columns[f"{stem}{axis}_{signal.unit}"] = values
     columns["reference_deg"] = traced.reference_deg
     columns["error_deg"] = traced.error_deg
-    write_columns(path, columns, comments=traced.notes)
+    return csv_text(columns, comments=traced.notes)
 
 
-def plot_trace(path: Path, traced: Trace, *, title: str) -> None:
+def trace_figure(traced: Trace, *, title: str) -> Any:
     """Three panels: the channels, what each effect does to the angle, and the error that is left."""
-    plt = style(path)
+    plt = style()
     figure, axes = plt.subplots(3, 1, figsize=(8.0, 8.5), sharex=True, layout="constrained")
     turn = traced.motion.shaft_rad
     single = traced.motion.turns <= 1.0 and np.all(np.diff(turn) > 0)
@@ -166,4 +166,5 @@ def plot_trace(path: Path, traced: Trace, *, title: str) -> None:
         axis.grid(alpha=0.3)
         axis.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     figure.suptitle(title)
-    save(figure, path)
+    plt.close(figure)
+    return figure

@@ -58,10 +58,17 @@ def test_explain_answers_as_the_command_does(tmp_path: Path, monkeypatch: pytest
     ended = halltwin("explain", BENCH, "--json", json_path, "--report", report, "--extended", twin)
     found = bench()
     assert ended.out == found.summary() + "\n"
-    assert json_path.read_text() == json.dumps(found.to_dict(), indent=1, allow_nan=False) + "\n"
+    assert answer_of(json_path) == found.to_dict()
     assert to_dict(read_twin(twin)) == to_dict(found.extended)
     found.write_report(str(tmp_path / "b.html"))
-    assert (tmp_path / "b.html").read_bytes() == report.read_bytes()
+    assert report.read_bytes().startswith((tmp_path / "b.html").read_bytes())
+
+
+def answer_of(path: Path) -> Any:
+    """The answer in a file, without the mark that a file bears."""
+    answer = json.loads(path.read_text())
+    del answer["written_by"]
+    return answer
 
 
 def test_diagnose_answers_as_the_command_does(tmp_path: Path) -> None:
@@ -69,7 +76,7 @@ def test_diagnose_answers_as_the_command_does(tmp_path: Path) -> None:
         json_path = tmp_path / "a.json"
         ended = halltwin("diagnose", *files, "--json", json_path)
         assert ended.out == f"{found.summary()}\nwrote {json_path}\n"
-        assert json_path.read_text() == json.dumps(found.to_dict(), indent=1, allow_nan=False) + "\n"
+        assert answer_of(json_path) == found.to_dict()
 
 
 # ---- what a result offers ----------------------------------------------------------------------------------------

@@ -1,0 +1,228 @@
+"""What a command writes, under one rule: nothing of the user's is lost, and all files are written together or none.
+
+Each output is named before any work is done. It must have an ending of its format and a place where it can be written;
+it must be none of the command's inputs and no other output, under whatever name; and a file that is there already must
+be one that the program wrote and nobody changed (see ``marks``), unless the user said ``--force``.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gzip
+import json
+import os
+import stat
+import unicodedata
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from scenarios.commands.inputs import ENDINGS
+from scenarios.commands.marks import is_own, marked
+from twin.errors import UserError
+from twin.whole_file import check_writable, is_stream, target_of, write_together
+
+
+@dataclass(frozen=True)
+class Format:
+    """What may be written under a name: its endings, and whether files of it are marked as the program's own."""
+
+    words: str
+    endings: tuple[str, ...]
+    marked: bool = True
+
+
+SWEEP = Format("sweeps", (".csv", ".csv.gz"))
+MEASURED = Format("sweeps", SWEEP.endings, marked=False)
+"""What a bench measured: nobody can compute it again, so that it is never replaced unasked."""
+TABLE = Format("tables", (".csv", ".csv.gz"))
+JSON = Format("answers", (".json",))
+TOML = Format("such files", (".toml",))
+HTML = Format("reports", (".html", ".htm"))
+HEADER = Format("C headers", (".h", ".hh", ".hpp"))
+PICTURE = Format("pictures", (".png", ".svg", ".pdf"))
+PYTHON = Format("effects", (".py",), marked=False)
+"""A file to write one's own physics into."""
+
+Given = tuple[Path | None, Format]
+
+
+@dataclass(frozen=True)
+class OutputFiles:
+    """The files that a command will write; see the module's text.
+
+    ``inputs`` are the files that it reads, ``force`` lets it replace files of others, ``folders`` lets it make the
+    folders that are not there yet.
+    """
+
+    formats: Mapping[Path, Format]
+    inputs: tuple[Path, ...] = ()
+    force: bool = False
+    folders: bool = False
+
+    @classmethod
+    def checked(
+        cls,
+        given: Iterable[Given],
+        *,
+        inputs: Iterable[str | Path | None] = (),
+        force: bool = False,
+        folders: bool = False,
+    ) -> OutputFiles:
+        """The outputs that are not None, all of them fit to be written. Raises UserError before anything is done."""
+        asked = [(path, form) for path, form in given if path is not None]
+        read = tuple(file for name in inputs if name is not None for file in _files(Path(name)))
+        outputs = cls(formats=dict(asked), inputs=read, force=force, folders=folders)
+        _check_distinct([path for path, _ in asked])
+        outputs.check()
+        return outputs
+
+    def check(self) -> None:
+        """Refuse what cannot be written here, an input, and a file of somebody else's. Raises UserError."""
+        self._check_inputs()
+        for path in self.formats:
+            if self.folders and not path.parent.exists():
+                _check_can_be_made(path.parent)
+            else:
+                check_writable(path)
+        for path, form in self.formats.items():
+            _check_ending(path, form)
+            if not self.force and not is_stream(path):
+                _check_own(path, form)
+
+    def _check_inputs(self) -> None:
+        """Refuse an output that is an input, or the file that the printed answer goes to. Raises UserError."""
+        read = {identity for path in self.inputs if (identity := _identity(path))}
+        if (printed := _printed_to()) is not None:
+            read.add(printed)
+        for path in self.formats:
+            if _identity(path) in read and not is_stream(path):
+                raise _used_already(path)
+
+    def write(self, contents: Mapping[Path | None, Any]) -> None:
+        """Make the contents of the outputs, then write all of them or none. Raises UserError.
+
+        A content is text, bytes or a figure of matplotlib's, or a function that makes one of them. The key None is
+        passed over, so that a command lists everything it may be asked for.
+        """
+        made = {path: self._packed(path, content) for path, content in contents.items() if path is not None}
+        # Much may have happened since the work began.
+        self.check()
+        with _folders_for(made) if self.folders else contextlib.nullcontext():
+            write_together(made)
+
+    def _packed(self, path: Path, content: Any) -> bytes:
+        """The bytes of a file, with its mark, compressed where the name says so."""
+        form = self.formats[path]
+        raw = _bytes_of(content() if callable(content) else content, path)
+        if form.marked and not is_stream(path):
+            raw = marked(path, raw)
+        return gzip.compress(raw, mtime=0) if path.suffix.lower() == ".gz" else raw
+
+
+def _bytes_of(content: Any, path: Path) -> bytes:
+    """Text as UTF-8, a figure in the format that the path's ending says."""
+    if isinstance(content, bytes):
+        return content
+    if isinstance(content, str):
+        # Names of files may hold bytes that are no text.
+        return content.encode(errors="backslashreplace")
+    from diagnosis.report.plotting import figure_bytes
+
+    return figure_bytes(content, path.suffix)
+
+
+def _check_ending(path: Path, form: Format) -> None:
+    if form is PICTURE:
+        from diagnosis.report.plotting import check_format
+
+        check_format(path)
+    elif not path.name.lower().endswith(form.endings) and not is_stream(path):
+        raise UserError(f"{path}: {form.words} end in {' or '.join(form.endings)}; give a name that does")
+
+
+def _check_distinct(paths: Iterable[Path]) -> None:
+    """Refuse two names of one file, also where the disk does not tell large letters from small."""
+    seen: set[object] = set()
+    for path in paths:
+        if is_stream(path):
+            continue
+        name = unicodedata.normalize("NFC", str(target_of(path))).casefold()
+        names = {name, _identity(path) or name}
+        if names & seen:
+            raise _used_already(path)
+        seen |= names
+
+
+def _used_already(path: Path) -> UserError:
+    return UserError(f"{path}: is read or written already by this command; give each output a name of its own")
+
+
+def _check_own(path: Path, form: Format) -> None:
+    """Refuse to replace a file that holds anything and is not as the program wrote it."""
+    try:
+        if not path.exists() or path.stat().st_size == 0 or (form.marked and is_own(path)):
+            return
+    except OSError as error:
+        raise UserError(f"{path}: is there already and cannot be read ({error.strerror}); give another name") from None
+    whose = " and was not written by halltwin, or was changed since" if form.marked else ""
+    raise UserError(f"{path}: is there already{whose}; give another name, or --force to replace it")
+
+
+def _files(path: Path) -> list[Path]:
+    """The files that an input stands for: a folder stands for the sweeps in it."""
+    return [item for item in path.iterdir() if item.name.endswith(ENDINGS)] if path.is_dir() else [path]
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """What is the same for all names of a file; None where there is no file."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
+
+
+def _printed_to() -> tuple[int, int] | None:
+    """The identity of the file that standard output goes to, where it goes to one."""
+    try:
+        found = os.fstat(1)
+    except OSError:
+        return None
+    return (found.st_dev, found.st_ino) if stat.S_ISREG(found.st_mode) else None
+
+
+def _check_can_be_made(folder: Path) -> None:
+    """Refuse a folder that cannot be made: below a file, or where the user may not write. Raises UserError."""
+    there = next(parent for parent in folder.parents if parent.exists())
+    if not there.is_dir():
+        raise UserError(f"{folder}: {there} is a file; give a folder to write to")
+    if not os.access(there, os.W_OK):
+        raise UserError(f"{folder}: no permission to make it; give another path")
+
+
+def json_text(content: Mapping[str, Any]) -> str:
+    """Plain values as the text of a JSON file. Raises ValueError for a figure that is not finite."""
+    return json.dumps(content, indent=1, allow_nan=False) + "\n"
+
+
+@contextlib.contextmanager
+def _folders_for(paths: Iterable[Path]) -> Iterator[None]:
+    """Make the folders of these files; take them away again where the files cannot be written."""
+    made: list[Path] = []
+    try:
+        for parent in {path.parent: None for path in paths}:
+            missing = [folder for folder in (parent, *parent.parents) if not folder.exists()]
+            for folder in reversed(missing):
+                try:
+                    folder.mkdir(exist_ok=True)
+                except OSError as error:
+                    raise UserError(f"{folder}: cannot be made ({error.strerror}); give another path") from None
+                made.append(folder)
+        yield
+    except BaseException:
+        for folder in reversed(made):
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+        raise

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from diagnosis.explanation import Explanation
@@ -177,8 +177,11 @@ def _searched(own: OwnEffects, twin: str | os.PathLike[str] | Chain | None) -> t
     from twin.catalogue import in_order
     from twin.chain import Chain
     from twin.effect import Effect
+    from twin.errors import UserError
     from twin.extensions import effects_with
 
+    if not isinstance(own, str | os.PathLike | Effect | Iterable):
+        raise UserError(f"effects is of the type {type(own).__name__}; expected files or effects, one or several")
     effects = effects_with((own,) if isinstance(own, str | os.PathLike | Effect) else tuple(own))
     known = {effect.name for effect in effects}
     brought = [effect for effect in twin.effects if effect.name not in known] if isinstance(twin, Chain) else []

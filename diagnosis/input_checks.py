@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from contextlib import suppress
 from decimal import Decimal
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
@@ -88,9 +89,10 @@ def as_sweep(source: SweepLike) -> Sweep:
 def checked_seed(seed: int) -> int:
     """The seed of a call of the interface. Raises UserError where it is none."""
     from twin.errors import UserError
+    from twin.limits import shown
 
     if isinstance(seed, bool) or not hasattr(seed, "__index__") or seed.__index__() < 0:
-        raise UserError(f"seed is {seed!r}; expected a whole number, 0 or more")
+        raise UserError(f"seed is {shown(seed)}; expected a whole number, 0 or more")
     return seed.__index__()
 
 
@@ -128,13 +130,15 @@ def _values(column: Any, where: str) -> Array:
 def _cell(cell: Any, row: int, where: str) -> float:
     """The number of one cell."""
     from twin.errors import SweepError
+    from twin.limits import shown
 
     if type(cell).__name__ in _MISSING:
         return float("nan")
     if isinstance(cell, Real | Decimal) and not isinstance(cell, bool):
-        return float(cell)
-    shown = repr(cell)
+        # A whole number may be larger than all floating-point numbers, a decimal may be a signalling NaN.
+        with suppress(OverflowError, ValueError):
+            return float(cell)
     raise SweepError(
-        f"{where}, row {row}: found {shown if len(shown) <= 40 else shown[:40] + '...'} ({type(cell).__name__}); "
+        f"{where}, row {row}: found {shown(cell, 40)} ({type(cell).__name__}); "
         "expected a number, or NaN where a reading is missing: convert the column"
     )

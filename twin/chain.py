@@ -11,6 +11,7 @@ import numpy as np
 from twin.angles import Array, channels_of, wrap
 from twin.catalogue import CATALOGUE, base_name, find
 from twin.effect import ActsOn, Effect, Parameters
+from twin.limits import OutOfRangeError, shown
 from twin.magnet.assembly import Assembly
 from twin.motion import Motion
 from twin.parts import Parts
@@ -99,18 +100,19 @@ class Chain:
         ------
         KeyError
             For an unknown effect or parameter.
-        ValueError
-            For a value out of range.
+        OutOfRangeError
+            For a value out of range; a ``ValueError``.
         """
         effect = find(key, self.effects)
         for name, value in params.items():
             if name not in effect.params:
                 raise KeyError(f"{key} has no parameter '{name}'; it has {', '.join(effect.params)}")
             param = effect.params[name]
-            array = np.asarray(value, dtype=np.float64)
+            array = _numbers(value)
             if not np.all((array >= param.lower) & (array <= param.upper)):
-                raise ValueError(
-                    f"{key}.{name} must lie between {param.lower:g} and {param.upper:g} {param.unit}; found {value}"
+                raise OutOfRangeError(
+                    f"{key}.{name} must lie between {param.lower:g} and {param.upper:g} {param.unit}; "
+                    f"found {value if np.ndim(value) else shown(value)}"
                 )
         merged = {**effect.null(), **self.values.get(key, {}), **params}
         return replace(self, values={**self.values, key: merged})
@@ -118,6 +120,22 @@ class Chain:
     def with_values(self, values: Values) -> Chain:
         """The chain with several effects' parameters set, unchecked (a fit's inner loop)."""
         return replace(self, values={**self.values, **values})
+
+    def within_limits(self) -> Chain:
+        """The chain with every parameter that lies beyond its limits at the nearest one, so that a twin file holds it.
+
+        Returns
+        -------
+        Chain
+            This very chain where none does.
+        """
+        limited: dict[str, Parameters] = {}
+        for key, params in self.values.items():
+            known = find(key, self.effects).params
+            inside = {name: np.clip(value, known[name].lower, known[name].upper) for name, value in params.items()}
+            if any(np.any(inside[name] != value) for name, value in params.items()):
+                limited[key] = inside
+        return self.with_values(limited) if limited else self
 
     def without(self, *keys: str) -> Chain:
         """The chain with some effects back at null.
@@ -314,6 +332,14 @@ class Chain:
         """
         slope = self.sensor_sense * self.output_sense
         return wrap(self.readings(motion) - slope * self.reference(motion))
+
+
+def _numbers(value: Any) -> Array:
+    """A parameter as an array; a whole number beyond all floating-point numbers is as good as infinite."""
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except OverflowError:
+        return np.asarray(np.inf)
 
 
 def _aligned(value: Any, effect: Effect, name: str) -> Any:

@@ -57,13 +57,15 @@ def check(effect: Effect, *, example: Example | None = None, motion: Motion | No
     """Check every promise in turn; an exception in the effect's own code breaks the promise that was being checked."""
     motion = motion or full_motion()
     with np.errstate(all="ignore"):
-        said = undeclared(effect)
+        said = _asked(undeclared, effect)
         yield Result("is declared and documented", not said, said)
         if said:
             return
         try:
             case = example or example_of(effect, motion)
-        except Exception as error:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
             yield Result("has a grid of shapes", False, _raised(error))
             return
         for promise in PROMISES:
@@ -71,14 +73,21 @@ def check(effect: Effect, *, example: Example | None = None, motion: Motion | No
             if unasked:
                 yield Result(promise.name, None, unasked)
                 continue
-            try:
-                said = promise.broken(effect, case, motion)
-            except Exception as error:
-                said = _raised(error)
+            said = _asked(promise.broken, effect, case, motion)
             yield Result(promise.name, not said, said, promise.binding)
 
 
-def _raised(error: Exception) -> str:
+def _asked(question: Callable[..., str], *given: Any) -> str:
+    """The answer to a question, or that the effect's code raised an exception; an exit is one too."""
+    try:
+        return question(*given)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        return _raised(error)
+
+
+def _raised(error: BaseException) -> str:
     return f"its code raises {type(error).__name__}: {error}"
 
 

@@ -13,17 +13,14 @@ from typing import Any
 from twin.catalogue import CATALOGUE, in_order
 from twin.contract import check
 from twin.effect import Effect
-from twin.errors import UserError
 from twin.example import full_motion
+from twin.guarded import EffectError, guarded
+from twin.limits import shown
 
 GROUP = "halltwin.effects"
 """Entry points of this group name an :class:`Effect` or a sequence of them."""
 RESERVED = "unnamed"
 """What the names of structure without a name begin with."""
-
-
-class EffectError(UserError):
-    """An effect cannot be used; the message says in one line where it is declared, what is wrong and what to do."""
 
 
 def effects_with(own: Sequence[str | PathLike[str] | Effect] = ()) -> tuple[Effect, ...]:
@@ -35,10 +32,11 @@ def effects_with(own: Sequence[str | PathLike[str] | Effect] = ()) -> tuple[Effe
     :mod:`twin.contract`.
     """
     declared = {effect.name: "the catalogue" for effect in CATALOGUE}
+    known: list[Effect] = []
     found: list[Effect] = []
     for where, effects in (*_installed(), *map(_declared, own)):
         for effect in effects:
-            if any(effect is known for known in found):
+            if any(effect is one for one in known):
                 continue
             if effect.name in declared:
                 raise EffectError(
@@ -47,7 +45,8 @@ def effects_with(own: Sequence[str | PathLike[str] | Effect] = ()) -> tuple[Effe
                 )
             refuse_broken(effect, where)
             declared[effect.name] = where
-            found.append(effect)
+            known.append(effect)
+            found.append(guarded(effect, where))
     return in_order((*CATALOGUE, *found)) if found else CATALOGUE
 
 
@@ -55,6 +54,8 @@ def _declared(own: str | PathLike[str] | Effect) -> tuple[str, tuple[Effect, ...
     """Where effects of one's own come from, and which these are."""
     if isinstance(own, Effect):
         return "handed in", _effects_in(own)
+    if not isinstance(own, str | PathLike):
+        raise EffectError(f"effects holds {shown(own)}; expected the path of a Python file, or an Effect")
     path = Path(own)
     return path.name, effects_of(path)
 
@@ -72,7 +73,10 @@ def effects_of(path: Path) -> tuple[Effect, ...]:
         if error.filename != str(path):
             raise EffectError(_does_not_run(path, error)) from None
         raise EffectError(f"{path.name}: cannot be read ({error.strerror}); give another file") from None
-    except (Exception, SystemExit) as error:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        # A file that ends the program is one that does not run.
         raise EffectError(_does_not_run(path, error)) from None
     # One that is declared by name may stand in a list as well: by identity, because effects hold tables.
     effects = tuple({id(effect): effect for value in names.values() for effect in _effects_in(value)}.values())
@@ -107,7 +111,9 @@ def _installed() -> Iterable[tuple[str, tuple[Effect, ...]]]:
         where = f"package {entry.dist.name if entry.dist else '?'}, entry point '{entry.name}'"
         try:
             effects = _effects_in(entry.load())
-        except Exception as error:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
             raise EffectError(
                 f"{where}: cannot be loaded ({type(error).__name__}: {error}); mend or uninstall the package"
             ) from None

@@ -15,10 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from twin.bounded_input import whole
 from twin.catalogue import CATALOGUE, base_name, find
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.errors import UserError
+from twin.limits import shown
 from twin.magnet.assembly import assembly_from, assembly_table
 from twin.parts import Parts, parts_from, parts_table
 from twin.reference.encoder import Encoder
@@ -71,7 +73,7 @@ def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[
     )
     declared = content.get("effects", {})
     if not isinstance(declared, Mapping):
-        raise TwinError(f"{name}: effects is {declared!r}; expected tables such as [effects.offset]")
+        raise TwinError(f"{name}: effects is {shown(declared)}; expected tables such as [effects.offset]")
     for key, params in declared.items():
         chain = _with_declared(chain, key, params, name=name)
     return chain
@@ -81,19 +83,19 @@ def _check_keys(content: Mapping[str, Any], *, name: str) -> None:
     """Refuse another schema and keys that a twin file does not have. Raises TwinError."""
     if content.get("schema") != SCHEMA:
         raise TwinError(
-            f"{name}: schema is {content.get('schema')!r}; expected {SCHEMA!r}: give a twin file, "
+            f"{name}: schema is {shown(content.get('schema'))}; expected {SCHEMA!r}: give a twin file, "
             "such as --extended writes"
         )
     for key in content:
         if key not in _KEYS:
-            raise TwinError(f"{name}: unknown key {key!r}; expected only {', '.join(_KEYS)}")
+            raise TwinError(f"{name}: unknown key {shown(key)}; expected only {', '.join(_KEYS)}")
 
 
 def _sense(content: Mapping[str, Any], key: str, *, name: str) -> int:
     """Who counts which way: 1 where nothing is said. Raises TwinError."""
     sense = content.get(key, 1)
     if sense not in (1, -1):
-        raise TwinError(f"{name}: {key} is {sense!r}; expected 1 or -1")
+        raise TwinError(f"{name}: {key} is {shown(sense)}; expected 1 or -1")
     return int(sense)
 
 
@@ -124,26 +126,33 @@ def _with_declared(chain: Chain, key: str, params: Any, *, name: str) -> Chain:
 def _check_params(effect: Effect, params: Any) -> None:
     """Refuse parameters that are unknown or no numbers. Raises ValueError."""
     if not isinstance(params, Mapping):
-        raise ValueError(f"found {params!r}; expected a table of parameters: {', '.join(effect.params)}")
+        raise ValueError(f"found {shown(params)}; expected a table of parameters: {', '.join(effect.params)}")
     for name, value in params.items():
         if name not in effect.params:
             raise ValueError(f"has no parameter '{name}'; it has {', '.join(effect.params)}")
         several = effect.params[name].role == "per turn"
         for item in value if several and isinstance(value, list) and value else [value]:
             if isinstance(item, bool) or not isinstance(item, int | float):
-                raise ValueError(f"{name} is {value!r}; expected {'numbers, one a turn' if several else 'a number'}")
-            if effect.params[name].counts and not float(item).is_integer():
-                raise ValueError(f"{name} is {value!r}; expected a whole number")
+                raise ValueError(
+                    f"{name} is {shown(value)}; expected {'numbers, one a turn' if several else 'a number'}"
+                )
+            if effect.params[name].counts and isinstance(item, float) and not item.is_integer():
+                raise ValueError(f"{name} is {shown(value)}; expected a whole number")
 
 
 def read_twin(path: str | Path, *, effects: tuple[Effect, ...] = CATALOGUE) -> Chain:
     """Read a twin file. Raises TwinError."""
     name = Path(path).name
     try:
-        content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise TwinError(f"{name}: cannot be read ({error.strerror}); give the path of a twin TOML") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        content = tomllib.loads(whole(Path(path), expected="a twin TOML").decode())
+    except UserError as error:
+        raise TwinError(str(error)) from None
+    except RecursionError:
+        raise TwinError(
+            f"{name}: holds tables or lists too deep in one another; give the path of a twin TOML"
+        ) from None
+    except ValueError as error:
+        # No TOML, no UTF-8, or a number of more digits than Python reads.
         raise TwinError(f"{name}: is no TOML ({error}); give the path of a twin TOML") from None
     return from_dict(content, name=name, effects=effects)
 

@@ -13,14 +13,24 @@ class OutOfRangeError(UserError):
     """A parameter lies outside its allowed range; the message names it, its value and the range."""
 
 
+def shown(value: Any, most: int = 60) -> str:
+    """A value as it may stand in a message: not longer than ``most`` characters."""
+    try:
+        text = repr(value)
+    except ValueError:
+        # Python writes out no whole number of more than 4300 digits.
+        text = f"a {type(value).__name__} too long to be shown"
+    return text if len(text) <= most else text[:most] + "..."
+
+
 def require_within(name: str, value: Any, lower: float, upper: float, unit: str = "", *, whole: bool = False) -> None:
     """Check that every element of ``value`` lies in ``[lower, upper]`` (NaN does not). Raises OutOfRangeError."""
     tail = f" {unit}" if unit else ""
     kind = "a whole number " if whole else ""
     try:
         array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise OutOfRangeError(f"{name} is {value!r}; expected {kind}from {lower:g} to {upper:g}{tail}") from None
+    except (TypeError, ValueError, OverflowError):
+        raise OutOfRangeError(f"{name} is {shown(value)}; expected {kind}from {lower:g} to {upper:g}{tail}") from None
     bad = ~((array >= lower) & (array <= upper))
     if whole:
         bad |= array != np.round(array)

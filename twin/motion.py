@@ -40,6 +40,13 @@ class Motion:
     temperature_c: Array
     columns: frozenset[str] = frozenset()
 
+    def __post_init__(self) -> None:
+        # Views that cannot be written to: an effect that changed its motion would change it for all that come after.
+        for name in ("shaft_rad", "time_s", "direction", "speed_rad_s", "turn", "temperature_c"):
+            view = getattr(self, name).view()
+            view.flags.writeable = False
+            object.__setattr__(self, name, view)
+
     def __repr__(self) -> str:
         recorded = ", ".join(sorted(self.columns)) or "the angle alone"
         return f"Motion({len(self)} readings, {self.turns:.4g} turns, recorded: {recorded})"

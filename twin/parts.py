@@ -8,7 +8,7 @@ from typing import Any
 
 from twin.concentrator.disk import Disk
 from twin.hall.spinning_current import Plate
-from twin.limits import OutOfRangeError, require_within
+from twin.limits import OutOfRangeError, require_within, shown
 from twin.magnet.stray_field import FIELD_MT
 from twin.tables import from_table, to_table
 
@@ -34,7 +34,7 @@ def parts_from(content: Any) -> Parts:
     Raises OutOfRangeError for an unknown name or a number out of range.
     """
     if not isinstance(content, Mapping):
-        raise OutOfRangeError(f"hardware is {content!r}; expected a table")
+        raise OutOfRangeError(f"hardware is {shown(content)}; expected a table")
     kinds: dict[str, type[Disk] | type[Plate]] = {"disk": Disk, "plate": Plate}
     values = {
         key: from_table(kinds[key], value, f"hardware.{key}") if key in kinds else value

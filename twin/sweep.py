@@ -10,10 +10,12 @@ from typing import Any, Self
 import numpy as np
 
 from twin.angles import Array, IntArray, radians, wrap_deg
+from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
 from twin.motion import Motion
-from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, PLAUSIBLE, REQUIRED
-from twin.sweep_file import read_columns, write_columns
+from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, PLAUSIBLE, REQUIRED, SMALLEST_AMPLITUDE
+from twin.sweep_file import write_columns
+from twin.sweep_reader import read_columns
 
 FEWEST_ROWS = 8
 _ONE_ANGLE_DEG = 0.1
@@ -177,13 +179,15 @@ class Sweep:
         )
 
     @classmethod
-    def read(cls, path: str | Path) -> Self:
+    def read(cls, path: str | Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> Self:
         """Read a sweep file and check it.
 
         Parameters
         ----------
         path : str or Path
-            CSV, ``.csv.gz``, or Parquet where pyarrow is installed.
+            CSV, plain or gzip, or Parquet where pyarrow is installed; its content says which.
+        max_bytes : int, optional
+            Most bytes of the file after decompression.
 
         Returns
         -------
@@ -195,7 +199,7 @@ class Sweep:
         SweepError
             Where the file cannot be read or used: which line and column, what was found, expected, and to do.
         """
-        return cls.from_columns(read_columns(Path(path)), name=Path(path).name)
+        return cls.from_columns(read_columns(Path(path), max_bytes=max_bytes), name=Path(path).name)
 
     def write(self, path: str | Path) -> None:
         """Write the used rows as CSV, whole or not at all.
@@ -311,6 +315,11 @@ def _check_follows(measured: Array, reference: Array, *, name: str) -> None:
 def _check_channels(vx: Array, vy: Array, measured: Array, *, name: str) -> None:
     """Refuse channels (n,) whose angle is not what the sensor reports: a radius taken from them would say nothing."""
     for key, values in (("vx", vx), ("vy", vy)):
+        if np.max(np.abs(values)) < SMALLEST_AMPLITUDE:
+            raise SweepError(
+                f"{name}: column {key}: no reading is larger than {np.max(np.abs(values)):.3g}; expected a signal of at "
+                f"least {SMALLEST_AMPLITUDE:g} in its unit: scale both channels, or leave them out"
+            )
         if np.ptp(values) == 0.0:
             raise SweepError(
                 f"{name}: column {key}: every row is {values[0]:g} while the reference moves; "

@@ -28,3 +28,5 @@ PLAUSIBLE = {
     "vy": (-1e12, 1e12),
 }
 """Lowest and highest value of a column, in its unit; beyond them a cell is a mistake."""
+SMALLEST_AMPLITUDE = 1e-12
+"""Largest value of a channel below which it holds no signal in any unit, and squares leave the range of numbers."""

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from twin.limits import OutOfRangeError
+from twin.limits import OutOfRangeError, shown
 
 Part = TypeVar("Part")
 
@@ -20,18 +20,18 @@ def from_table(kind: type[Part], content: Any, where: str) -> Part:
     """
     known = {item.name: item for item in fields(kind)}  # type: ignore[arg-type]
     if not isinstance(content, Mapping):
-        raise OutOfRangeError(f"{where} is {content!r}; expected a table")
+        raise OutOfRangeError(f"{where} is {shown(content)}; expected a table")
     values = {}
     for key, value in content.items():
         if key not in known:
             raise OutOfRangeError(f"{where} has no '{key}'; it has {', '.join(known)}")
         default = known[key].default
         if isinstance(value, list | Mapping):
-            raise OutOfRangeError(f"{key} is {value!r}; expected a single value")
+            raise OutOfRangeError(f"{key} is {shown(value)}; expected a single value")
         # Python takes true for 1 and any text for true; a twin file does not.
         if isinstance(value, bool) != isinstance(default, bool):
             kind_of = "true or false" if isinstance(default, bool) else "a number or a word, not true or false"
-            raise OutOfRangeError(f"{key} is {value!r}; expected {kind_of}")
+            raise OutOfRangeError(f"{key} is {shown(value)}; expected {kind_of}")
         whole = isinstance(default, int) and isinstance(value, float) and value.is_integer()
         values[key] = int(value) if whole else value
     return kind(**values)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -51,6 +51,9 @@ class Discovery:
     def of(cls, state: State) -> Discovery:
         """The answer that a state holds after the last stage."""
         fit, observations = state.fit, state.fit.observations
+        # What the answer hands on as a twin is a twin that every command takes.
+        if (limited := fit.chain.within_limits()) is not fit.chain:
+            fit = replace(fit, chain=limited)
         held = [of_readings(rms_deg(residual, observations.usable), observations) for residual in state.held_out]
         provides = observations.motion.provides
         return cls(

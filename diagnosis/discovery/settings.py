@@ -17,6 +17,9 @@ import numpy as np
 FOOTPRINTS = 4
 """Places where a cause can show: the mean, the spread, the values, and the sequence of the readings."""
 
+CAUSE_PARAMETERS = 2
+"""Of a plain cause: the cosine and the sine of a line."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class DiscoverySettings:
@@ -84,6 +87,9 @@ class DiscoverySettings:
     rival_share: float = 0.3
     """Limit. Share of a cause's gain to first order below which an effect is not fitted as its rival: an exact fit
     gains up to three times what first order says."""
+    seen_share: float = 0.9
+    """Limit. Share of what the error model leaves that a cause makes up if it is three times the noise: so few readings
+    that not even such a one would be seen are not searched."""
     radius_left: float = 1.5
     """Limit. Variance of the radius against that of its noise above which something in it is unexplained: with
     thirty degrees of freedom a ratio of 1.5 is exceeded by chance in 4 % (chi-square), with ten in 13 %."""
@@ -172,6 +178,15 @@ class DiscoverySettings:
     def effect_log_p(self, effects: int) -> float:
         """Log probability of one effect, below which it counts among so many (Bonferroni within the footprint)."""
         return self.footprint_log_p - float(np.log(max(effects, 1)))
+
+    def fewest_rows(self, fitted: int, effects: int) -> int:
+        """Fewest independent rows that can carry a verdict, beside so many fitted parameters.
+
+        A cause of two parameters that makes up the share s of what is left has by chance, over f degrees of freedom,
+        the probability (1 - s)^(f/2) (F test): f is such that a cause three times the noise is seen.
+        """
+        freedom = 2.0 * self.effect_log_p(effects) / np.log(1.0 - self.seen_share)
+        return fitted + CAUSE_PARAMETERS + int(np.ceil(freedom))
 
     def same_fit(self, *, coarse: bool) -> float:
         """Difference of twice the log likelihood below which two causes cannot be told apart; ``coarse``: stairs."""

@@ -52,6 +52,7 @@ NOTICED_BY: dict[str, tuple[str, ...]] = {
     "contender_share": (f"{_D}/search/test_forward_step.py::test_of_strong_causes_the_reach_is_a_share_of_the_score",),
     "fair_share": (f"{_D}/search/test_forward_step.py::test_who_explains_a_fair_share_is_remembered",),
     "rival_share": (f"{_D}/search/test_rivals.py::test_only_who_gains_a_share_to_first_order_is_fitted",),
+    "seen_share": (f"{_VALUES}[seen_share]",),
     "radius_left": (f"{_D}/search/test_iterate.py::test_more_than_its_noise_is_left_of_the_radius",),
     "smallest_rms_deg": (f"{_D}/stages/test_stepwise.py::test_below_a_files_last_digit_nothing_is_searched",),
     "spike_sigma": (f"{_D}/stages/test_row_masks.py::test_which_rows_are_masked",),

@@ -89,7 +89,7 @@ NOISE = Effect(
     acts_on="channels",
     params={
         "rms_deg": Param(
-            unit="deg", null=0.0, lower=0.0, upper=20.0, doc="RMS in the angle", role="random", field_power=-1.0
+            unit="deg", null=0.0, lower=0.0, upper=180.0, doc="RMS in the angle", role="random", field_power=-1.0
         ),
         "correlation": _shape("1", 0.0, (0.0, 0.999), "from one reading to the next", typical=0.5),
         "correlated_share": _shape("1", 1.0, (0.0, 1.0), "share of the variance that is correlated or 1/f"),

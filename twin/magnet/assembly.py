@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from twin.angles import Array, channels_of
-from twin.limits import OutOfRangeError
+from twin.limits import OutOfRangeError, shown
 from twin.magnet.field import Series, series_of
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement, designs_of
@@ -68,7 +68,7 @@ def assembly_from(content: Any) -> Assembly:
     Raises OutOfRangeError for an unknown name or a number out of range.
     """
     if not isinstance(content, Mapping):
-        raise OutOfRangeError(f"magnet is {content!r}; expected a table")
+        raise OutOfRangeError(f"magnet is {shown(content)}; expected a table")
     body = {key: value for key, value in content.items() if key != "placement"}
     place = from_table(Placement, content.get("placement", {}), "magnet.placement")
     return Assembly(from_table(Magnet, body, "magnet"), place)

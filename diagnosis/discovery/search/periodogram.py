@@ -39,21 +39,28 @@ def line_shapes(
     span = float(np.ptp(clock))
     if span <= 0.0 or high <= low:
         return [], 0.0
-    whole = np.arange(np.ceil(low), np.floor(high) + 1)
     if line.clock == "shaft" and span < _ONE_TURN:
         # Over one turn only whole orders are told apart; others are what an aperiodic residual looks like.
-        grid = whole[line.within(whole)]
+        grid = _whole(low, high)
+        grid = grid[line.within(grid)]
         looks = max(float(grid.size), 1.0)
     elif (high - low) * span < _FEW:
         # Few enough to try them all, at a quarter of the resolution.
         grid = np.linspace(low, high, int(np.ceil((high - low) * span * OVERSAMPLING)) + 2)
-        grid = np.unique(np.concatenate([grid, whole]))
+        # Whole ones that lie closer together than these add nothing, and may be as many as a fast clock has hertz.
+        if span * OVERSAMPLING >= 1.0:
+            grid = np.unique(np.concatenate([grid, _whole(low, high)]))
         grid = grid[line.within(grid)]
         looks = max(float((high - low) * span), 1.0)
     else:
         spectra = _spectra(matched, fit, effect, clock)
         grid, looks = spectra.whole_orders(line, peaks) if spectra.whole_only(line) else spectra.peaks(line, peaks)
     return [{line.param: float(f)} for f in grid], looks
+
+
+def _whole(low: float, high: float) -> Array:
+    """The whole numbers from low to high."""
+    return np.arange(np.ceil(low), np.floor(high) + 1)
 
 
 def _clock(fit: Fit, line: Line) -> Array:
@@ -85,7 +92,7 @@ class _Spectra:
     def whole_orders(self, line: Line, count: int) -> tuple[Array, float]:
         """The best whole orders of each power, and how many there are."""
         low, high = self.limits
-        whole = np.arange(np.ceil(low), np.floor(high) + 1)
+        whole = _whole(low, high)
         whole = whole[line.within(whole)]
         ranked = [np.argsort(np.interp(whole, self.frequency, power))[::-1][:count] for power in self.powers]
         return whole[np.unique(np.concatenate(ranked))], float(whole.size)

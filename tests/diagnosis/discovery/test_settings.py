@@ -69,6 +69,8 @@ DERIVED: dict[str, tuple[Callable[[DiscoverySettings], float], float, float]] = 
     # What stairs at the limit add to the RMS of the noise.
     "stairs_in_noise": (lambda s: np.hypot(1.0, s.stairs_in_noise) - 1.0, 0.004, 0.005),
     # A stretch is loud from an RMS half as large again on.
+    # A cause that makes up this share of what is left is so many times the noise.
+    "seen_share": (lambda s: np.sqrt(s.seen_share / (1.0 - s.seen_share)), 3.0, 3.0001),
     "burst_ratio": (lambda s: np.sqrt(s.burst_ratio), 1.5, 1.5),
     # The variance of a parameter in a fit of the other folds, against that in the final fit.
     "folds": (lambda s: s.folds / (s.folds - 1.0), 1.33, 1.34),

@@ -18,7 +18,7 @@ from scenarios.bench.plan import Plan
 from scenarios.bench.sequence import Patience
 from scenarios.bench.virtual import Setup, running
 from twin.chain import Chain
-from twin.sweep_file import read_columns
+from twin.sweep_reader import read_columns
 
 PLAN = Plan(points=64, both_directions=True)
 

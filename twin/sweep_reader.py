@@ -1,0 +1,65 @@
+"""Reading a sweep file: what its first bytes say it is, CSV as text or Parquet, whatever its name ends in."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+
+from twin.angles import Array
+from twin.bounded_input import LARGEST_SWEEP_BYTES, blocks
+from twin.errors import SweepError, UserError
+from twin.sweep_columns import COLUMNS
+from twin.sweep_text import parse_csv
+
+RAISED_BY = "--max-size (max_bytes in Python)"
+_EXPECTED = "a sweep (CSV, plain or gzip, or Parquet)"
+_PARQUET = b"PAR1"
+
+
+def read_columns(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> dict[str, Array]:
+    """All columns of the file that the project knows, each (n,); missing cells are NaN.
+
+    ``max_bytes``: most bytes after decompression. Raises SweepError.
+    """
+    try:
+        content = blocks(path, most=max_bytes, expected=_EXPECTED, raised_by=RAISED_BY)
+        first = next(content, b"")
+        if first[:4] == _PARQUET:
+            return _read_parquet(path, max_bytes=max_bytes)
+        return parse_csv(itertools.chain((first,), content), name=path.name)
+    except SweepError:
+        raise
+    except UserError as error:
+        raise SweepError(str(error)) from None
+
+
+def _read_parquet(path: Path, *, max_bytes: int) -> dict[str, Array]:
+    if not path.is_file():
+        raise SweepError(f"{path.name}: holds Parquet, which is no stream; give the file itself, or CSV")
+    try:
+        import pyarrow.parquet as parquet  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    except ImportError:
+        raise SweepError(f"{path.name}: reading Parquet needs pyarrow; pip install pyarrow, or save as CSV") from None
+    try:
+        file = parquet.ParquetFile(path)
+        known = [name for name in COLUMNS if name in file.schema_arrow.names]
+        # A column of one repeated value takes a few bytes in the file, and eight a row once it is read.
+        size = file.metadata.num_rows * max(len(known), 1) * 8
+        table = file.read(columns=known) if size <= max_bytes else None
+    except Exception as error:
+        said = " ".join(str(error).split())[:200]
+        raise SweepError(f"{path.name}: cannot be read as Parquet ({said}); expected a Parquet file") from None
+    if table is None:
+        raise SweepError(
+            f"{path.name}: holds {size / 1e6:g} MB in {file.metadata.num_rows} rows; expected at most "
+            f"{max_bytes / 1e6:g} MB; {RAISED_BY} raises the limit"
+        )
+    columns = {}
+    for name in known:
+        try:
+            columns[name] = np.asarray(table.column(name).to_numpy(), dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise SweepError(f"{path.name}: column {name}: {error}; expected numbers") from None
+    return columns

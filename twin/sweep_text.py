@@ -1,0 +1,209 @@
+"""A sweep as text: CSV with units in the column names; comma, semicolon or tab; UTF-8, UTF-16 or Latin-1.
+
+Lines are taken in blocks, so that beside the columns themselves no more than a block of the file is held.
+"""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.angles import Array
+from twin.errors import SweepError
+from twin.sweep_columns import COLUMNS, REQUIRED
+
+LONGEST_LINE_BYTES = 1_000_000
+"""A line that is longer belongs to no sweep: a row of all nine columns takes some hundred bytes."""
+_WIDE = (b"\xff\xfe", b"\xfe\xff")
+_MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "-", "inf", "+inf", "-inf", "infinity", "-infinity"})
+
+
+@dataclass(frozen=True)
+class _Header:
+    """What the header line says: its number, how cells are parted, all names, and which are known."""
+
+    line: int
+    delimiter: str
+    names: tuple[str, ...]
+
+    @property
+    def wanted(self) -> dict[str, int]:
+        """Place of each known column."""
+        return {cell: place for place, cell in enumerate(self.names) if cell in COLUMNS}
+
+
+def parse_csv(content: Iterable[bytes], *, name: str) -> dict[str, Array]:
+    """The known columns (n,) of a CSV file, handed over in blocks of bytes; lines that begin with # are comments.
+
+    Raises SweepError.
+    """
+    header: _Header | None = None
+    tables: list[Array] = []
+    first = 1
+    for text in _whole_lines(content, name=name):
+        # Not splitlines(): it also breaks at characters that editors do not count as the end of a line.
+        lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+        told = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
+        if header is None and told:
+            header = _header_of(lines[told[0]], first + told[0], name=name)
+            told = told[1:]
+        if header is not None and told:
+            tables.append(_table(lines, told, header, where=(name, first)))
+        first += len(lines) - 1
+    if header is None:
+        raise SweepError(f"{name}: the file is empty; expected a header line and one row per reading")
+    if not tables:
+        raise SweepError(f"{name}: no row below the header of line {header.line}; expected one row per reading")
+    return {cell: np.concatenate([table[:, k] for table in tables]) for k, cell in enumerate(header.wanted)}
+
+
+def _whole_lines(content: Iterable[bytes], *, name: str) -> Iterator[str]:
+    """Blocks of text that end where a line ends. Raises SweepError for what is no text."""
+    before, pending = 0, b""
+    for block in _narrow(content):
+        pending += block
+        # A carriage return at the very end may be half of a line's end.
+        cut = max(pending.rfind(b"\n"), pending.rfind(b"\r", 0, -1)) + 1
+        if cut:
+            text = _decoded(pending[:cut], before, name=name)
+            before += text.count("\n")
+            pending = pending[cut:]
+            yield text
+        if len(pending) > LONGEST_LINE_BYTES:
+            _refuse_binary(pending.decode("latin-1"), before, name=name)
+            raise SweepError(
+                f"{name}: line {before + 1} is longer than {LONGEST_LINE_BYTES:,} bytes; "
+                "expected one row per reading, with the columns of a sweep"
+            )
+    if pending:
+        yield _decoded(pending, before, name=name)
+
+
+def _narrow(content: Iterable[bytes]) -> Iterator[bytes]:
+    """The blocks without a byte order mark; those of UTF-16 as UTF-8, in which a line's end is a byte of its own."""
+    decoder: codecs.IncrementalDecoder | None = None
+    for number, block in enumerate(content):
+        if number == 0 and block[:2] in _WIDE:
+            decoder = codecs.getincrementaldecoder("utf-16")("replace")
+        if decoder is not None:
+            yield decoder.decode(block).encode("utf-8", "replace")
+        else:
+            yield block.removeprefix(codecs.BOM_UTF8) if number == 0 else block
+
+
+def _decoded(raw: bytes, before: int, *, name: str) -> str:
+    """Whole lines as text: UTF-8, else Latin-1. Only comments and names can tell the two."""
+    try:
+        text = raw.decode()
+    except UnicodeDecodeError:
+        text = raw.decode("latin-1")
+    _refuse_binary(text, before, name=name)
+    return text
+
+
+def _refuse_binary(text: str, before: int, *, name: str) -> None:
+    """Raise SweepError for bytes that no text holds; ``before`` lines stand before this text."""
+    binary = re.search("[\x00-\x08\x0e-\x1a]", text)
+    if binary:
+        line = before + text.count("\n", 0, binary.start()) + 1
+        raise SweepError(
+            f"{name}: line {line} holds the byte {ord(binary[0])}, so this is no text file; "
+            "expected CSV: export the sweep as text"
+        )
+
+
+def _header_of(text: str, line: int, *, name: str) -> _Header:
+    delimiter = ";" if ";" in text else "\t" if "\t" in text else ","
+    names = tuple(cell.strip() for cell in _cells(text, delimiter))
+    _check_header(names, where=f"{name}: line {line}")
+    return _Header(line, delimiter, names)
+
+
+def _check_header(header: tuple[str, ...], *, where: str) -> None:
+    found = _shown(",".join(header), 200)
+    if all(_is_number(cell) for cell in header):
+        raise SweepError(
+            f"{where} holds {found} where the header is expected; "
+            "put the column names above the numbers, e.g. reference_deg,measured_deg"
+        )
+    for cell in COLUMNS:
+        if header.count(cell) > 1:
+            raise SweepError(f"{where}: column {cell} stands {header.count(cell)} times; expected it once: keep one")
+    for needed in REQUIRED:
+        if needed not in header:
+            raise SweepError(f"{where}: column {needed} is missing; found {found}; rename the column or add it")
+
+
+def _cells(line: str, delimiter: str) -> list[str]:
+    """The cells of a line; the csv module is asked only where there are quotes for it to undo."""
+    if '"' not in line:
+        return line.split(delimiter)
+    try:
+        return next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
+    except csv.Error:
+        return [line]
+
+
+def _shown(text: str, most: int = 40) -> str:
+    """Text of a file as it may stand in a message."""
+    return repr(text if len(text) <= most else text[:most] + "...")
+
+
+def _table(lines: list[str], told: list[int], header: _Header, *, where: tuple[str, int]) -> Array:
+    """The known columns (rows, columns) of some lines; ``where``: name of the file, number of the first line."""
+    table = _fast_table([lines[k] for k in told], header)
+    if table is None:
+        name, first = where
+        table = _careful_table([(first + k, lines[k]) for k in told], header, name=name)
+    return table[:, list(header.wanted.values())]
+
+
+def _fast_table(rows: list[str], header: _Header) -> Array | None:
+    """All cells at once where every one is a number; None where one is not, or a row is ragged."""
+    try:
+        table = np.loadtxt(rows, delimiter=header.delimiter, ndmin=2, comments=None, dtype=np.float64)
+    except ValueError:
+        return None
+    return table if table.shape[1] == len(header.names) else None
+
+
+def _careful_table(rows: list[tuple[int, str]], header: _Header, *, name: str) -> Array:
+    """Cell by cell, so that the first fault is named by line and column."""
+    table = np.full((len(rows), len(header.names)), np.nan)
+    for row, (number, line) in enumerate(rows):
+        cells = _cells(line, header.delimiter)
+        if len(cells) != len(header.names):
+            raise SweepError(
+                f"{name}: line {number} has {len(cells)} cells; expected {len(header.names)} as in the header "
+                f"({_shown(','.join(header.names), 200)}); leave a cell empty where a reading is missing"
+            )
+        for key, place in header.wanted.items():
+            text = cells[place].strip()
+            if text.lower() in _MISSING:
+                continue
+            # Where cells are not parted by commas, a comma is a decimal point.
+            value = _number(text if header.delimiter == "," else text.replace(",", "."))
+            if value is None:
+                raise SweepError(
+                    f"{name}: line {number}, column {key}: {_shown(text)} is not a number; "
+                    "leave the cell empty where a reading is missing"
+                )
+            table[row, place] = value
+    return table
+
+
+def _number(text: str) -> float | None:
+    try:
+        # Python reads 1_000 as a thousand; nobody who wrote a sweep meant that.
+        return None if "_" in text else float(text)
+    except ValueError:
+        return None
+
+
+def _is_number(text: str) -> bool:
+    return text.strip().lower() in _MISSING or _number(text.strip().replace(",", ".")) is not None

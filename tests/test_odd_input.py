@@ -147,7 +147,7 @@ def test_rejected_rows_alone_leave_adequate(tmp_path: Path) -> None:
     assert answer["verdict"] == "adequate"
 
 
-@pytest.mark.parametrize("rows", [8, 9, 12, 91])
+@pytest.mark.parametrize("rows", [17, 19, 91])
 @pytest.mark.parametrize("span_deg", [90.0, 315.0])
 def test_few_rows_and_a_quarter_turn_name_nothing(rows: int, span_deg: float, tmp_path: Path) -> None:
     """Too little to part causes: nothing is claimed, least of all from as many parameters as readings."""

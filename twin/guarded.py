@@ -26,7 +26,8 @@ def guarded(effect: Effect, where: str) -> Effect:
     What they raise, an exit included, becomes an :class:`EffectError`; so does a signal of another shape or with values
     that are not finite. What they are handed cannot be written to.
     """
-    return _with_guards(effect, f"{where}: effect '{effect.name}'", where)
+    found: Effect = _with_guards(effect, f"{where}: effect '{effect.name}'", where)
+    return found
 
 
 def sealed(value: Any) -> Any:

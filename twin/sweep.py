@@ -317,8 +317,8 @@ def _check_channels(vx: Array, vy: Array, measured: Array, *, name: str) -> None
     for key, values in (("vx", vx), ("vy", vy)):
         if np.max(np.abs(values)) < SMALLEST_AMPLITUDE:
             raise SweepError(
-                f"{name}: column {key}: no reading is larger than {np.max(np.abs(values)):.3g}; expected a signal of at "
-                f"least {SMALLEST_AMPLITUDE:g} in its unit: scale both channels, or leave them out"
+                f"{name}: column {key}: no reading is larger than {np.max(np.abs(values)):.3g}; expected a signal of "
+                f"at least {SMALLEST_AMPLITUDE:g} in its unit: scale both channels, or leave them out"
             )
         if np.ptp(values) == 0.0:
             raise SweepError(

@@ -14,7 +14,7 @@ from twin.sweep_columns import COLUMNS
 from twin.sweep_text import parse_csv
 
 RAISED_BY = "--max-size (max_bytes in Python)"
-_EXPECTED = "a sweep (CSV, plain or gzip, or Parquet)"
+_EXPECTED = "a sweep (CSV)"
 _PARQUET = b"PAR1"
 
 

@@ -11,11 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from twin.errors import SweepError
 from twin.files import SCHEMA
 from twin.sweep import Sweep
 
 from .command_line import Array, csv_text, halltwin, sweep_angles
 
+DATA = Path(__file__).parents[1] / "scenarios/data"
 TURN = np.arange(0.0, 360.0, 2.0)
 READ = sweep_angles(TURN)
 TABLE = {"reference_deg": TURN, "measured_deg": READ}
@@ -118,6 +120,14 @@ UNUSABLE: dict[str, tuple[bytes, tuple[str, ...]]] = {
     "zeros": (b"\0" * 500, ("line 1", "no text file")),
     "PNG": (b"\x89PNG\r\n\x1a\n" + bytes(100), ("no text file",)),
     "workbook": (b"PK\x03\x04" + bytes(300), ("no text file", "CSV")),
+    "a million columns": (text(",".join(["x"] * 1_000_000), *ROWS), ("line 1 is longer than 1,000,000 bytes",)),
+    "a line without end": (text(HEADER, *ROWS[:10], "1" * 1_500_000, *ROWS[10:]), ("line 12 is longer",)),
+    "eight readings": (text(HEADER, *ROWS[::23]), ("8 readings", "at least 17", "halltwin diagnose")),
+    "forty readings at sixteen angles": (
+        only(reference_deg=np.repeat(TURN[::12], 5)[:75], measured_deg=np.repeat(READ[::12], 5)[:75]),
+        ("75 readings at 15 angles", "at least 17", "counts once"),
+    ),
+    "channels without size": (columns(vx=1e-13 * CIRCLE_X, vy=1e-13 * CIRCLE_Y), ("vx", "expected a signal")),
     "cut gzip": (gzip.compress(text(*LINES))[:500], ("cannot be read", "gzip")),
 }
 
@@ -173,6 +183,34 @@ def test_parquet_that_is_none(tmp_path: Path) -> None:
     assert "Parquet" in refused("explain", path)
 
 
+BOMB = gzip.compress(text(HEADER, *ROWS) + b"\n" * 5_000_000)
+"""Five megabytes of empty lines below a sweep, packed into a few kilobytes."""
+
+
+def test_more_than_is_asked_for_is_not_unpacked(tmp_path: Path) -> None:
+    path = tmp_path / "bomb.csv"
+    path.write_bytes(BOMB)
+    assert len(Sweep.read(path)) == TURN.size
+    with pytest.raises(SweepError, match=r"bomb\.csv: holds more than 5 MB after decompression; .*--max-size"):
+        Sweep.read(path, max_bytes=5_000_000)
+
+
+def test_what_never_ends_is_not_read_to_its_end() -> None:
+    assert "no text file" in refused("explain", "/dev/zero")
+    assert "holds more than 20 MB" in refused("explain", DATA / "bench_sweep.csv", "--twin", "/dev/zero")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="a system without named pipes")
+def test_a_pipe_is_read_like_a_file(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with subprocess.Popen(["dd", f"of={pipe}", "status=none"], stdin=subprocess.PIPE) as writer:
+        assert writer.stdin is not None
+        writer.stdin.write(gzip.compress(text(*LINES)))
+        writer.stdin.close()
+        assert np.array_equal(Sweep.read(pipe).reference_deg, TURN)
+
+
 HEAD = f'schema = "{SCHEMA}"\n'
 BAD_TWINS = {
     "no TOML": ("this is { no toml", ("is no TOML", "line 1")),
@@ -188,6 +226,13 @@ BAD_TWINS = {
     "a truth value": (HEAD + "[effects.offset]\nx_percent = true\n", ("x_percent", "True", "a number")),
     "a list": (HEAD + "[effects.offset]\nx_percent = [1, 2]\n", ("x_percent", "[1, 2]", "a number")),
     "a table": (HEAD + "[effects.offset.x_percent]\na = 1\n", ("x_percent", "a number")),
+    "more digits than a number has": (HEAD + f"[effects.offset]\nx_percent = {'9' * 400}\n", ("x_percent", "999...")),
+    "more digits than Python reads": (HEAD + f"[effects.offset]\nx_percent = {'9' * 5000}\n", ("is no TOML",)),
+    "a whole number of many digits": (
+        HEAD + f"[effects.cordic_truncation]\niterations = {'9' * 400}\n",
+        ("iterations", "between"),
+    ),
+    "lists in lists": (HEAD + f"x = {'[' * 5000}", ("too deep",)),
     "a fraction of a step": (HEAD + "[effects.cordic_truncation]\niterations = 7.5\n", ("7.5", "whole number")),
     "an effect that is a number": (HEAD + "[effects]\noffset = 3\n", ("effects.offset", "found 3", "table")),
     "effects as a list": (HEAD + "effects = [1]\n", ("effects", "[1]", "tables")),

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from twin.chain import Chain
+from twin.errors import SweepError
 from twin.motion import Motion
 from twin.sweep import Sweep
+from twin.sweep_text import parse_csv
 
 from .command_line import Array, csv_text, explained, sweep_angles
 
@@ -117,6 +119,26 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 @pytest.mark.parametrize("case", SAME_SWEEP)
 def test_format_does_not_matter(case: str, tmp_path: Path, plain: dict[str, Any]) -> None:
     assert ask(tmp_path, SAME_SWEEP[case]) == plain
+
+
+@pytest.mark.parametrize("name", ["sweep.csv.gz", "sweep.parquet", "sweep"])
+def test_the_content_says_what_a_file_is(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text(PLAIN, encoding="utf-8")
+    assert np.array_equal(Sweep.read(tmp_path / name).reference_deg, TABLE["reference_deg"])
+
+
+@pytest.mark.parametrize("line_end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_lines_are_whole_wherever_a_block_ends(line_end: str, encoding: str) -> None:
+    """Of blocks of every size the columns and the lines' numbers are those of the whole."""
+    content = csv_text({name: values[:12] for name, values in TABLE.items()}, line_end=line_end).encode(encoding)
+    for size in (1, 2, 3, 7, 64, len(content)):
+        blocks = [content[k : k + size] for k in range(0, len(content), size)]
+        found = parse_csv(blocks, name="sweep.csv")
+        assert np.allclose(found["reference_deg"], TABLE["reference_deg"][:12])
+        broken = [content.replace("7.5".encode(encoding)[-6:], "x.5".encode(encoding)[-6:])]
+        with pytest.raises(SweepError, match="line 5, column reference_deg: 'x"):
+            parse_csv([broken[0][k : k + size] for k in range(0, len(broken[0]), size)], name="sweep.csv")
 
 
 @pytest.mark.parametrize("case", SAME_READINGS)

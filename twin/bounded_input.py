@@ -69,7 +69,7 @@ def blocks(path: Path, *, most: int, expected: str, raised_by: str = "") -> Iter
         raise UserError(f"{path}: is a folder; give the path of {expected}") from None
     except (OSError, EOFError, zlib.error) as error:
         reason = getattr(error, "strerror", None) or error
-        raise UserError(f"{path.name}: cannot be read ({reason}); expected {expected}") from None
+        raise UserError(f"{path.name}: cannot be read ({reason}); expected {expected}, plain or gzip") from None
     except ValueError as error:
         # A zero byte in a name: no file can bear it.
         if isinstance(error, UserError):

@@ -13,7 +13,7 @@ from twin.errors import SweepError, UserError
 from twin.sweep_columns import COLUMNS
 from twin.sweep_text import parse_csv
 
-RAISED_BY = "--max-size (max_bytes in Python)"
+RAISED_BY = "--max-size (max_bytes of Sweep.read)"
 _EXPECTED = "a sweep (CSV)"
 _PARQUET = b"PAR1"
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import codecs
 import csv
+import itertools
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -86,14 +87,17 @@ def _whole_lines(content: Iterable[bytes], *, name: str) -> Iterator[str]:
 
 def _narrow(content: Iterable[bytes]) -> Iterator[bytes]:
     """The blocks without a byte order mark; those of UTF-16 as UTF-8, in which a line's end is a byte of its own."""
-    decoder: codecs.IncrementalDecoder | None = None
-    for number, block in enumerate(content):
-        if number == 0 and block[:2] in _WIDE:
-            decoder = codecs.getincrementaldecoder("utf-16")("replace")
-        if decoder is not None:
-            yield decoder.decode(block).encode("utf-8", "replace")
-        else:
-            yield block.removeprefix(codecs.BOM_UTF8) if number == 0 else block
+    rest = iter(content)
+    first = b""
+    while len(first) < len(codecs.BOM_UTF8) and (block := next(rest, b"")):
+        first += block
+    if first[:2] not in _WIDE:
+        yield first.removeprefix(codecs.BOM_UTF8)
+        yield from rest
+        return
+    decoder = codecs.getincrementaldecoder("utf-16")("replace")
+    for block in itertools.chain((first,), rest):
+        yield decoder.decode(block).encode("utf-8", "replace")
 
 
 def _decoded(raw: bytes, before: int, *, name: str) -> str:

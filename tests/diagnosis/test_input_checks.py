@@ -105,6 +105,9 @@ REFUSED: dict[str, tuple[Any, tuple[str, ...]]] = {
     "words": (with_cell("banana"), ("dict: column measured_deg, row 7", "'banana'", "expected a number")),
     "numbers as text": (FRAME.astype(str), ("DataFrame: column", "row 1", "(str)", "convert the column")),
     "truth values": (with_cell(True), ("column measured_deg, row 7", "True (bool)", "expected a number")),
+    "a number of many digits": (with_cell(10**400), ("column measured_deg, row 7", "1000", "expected a number")),
+    "a signalling NaN": (with_cell(Decimal("sNaN")), ("column measured_deg, row 7", "sNaN", "expected a number")),
+    "a name that no file can bear": ("a\0b.csv", ("is no name of a file",)),
     "complex numbers": (with_cell(1j), ("column measured_deg, row 7", "1j (complex)", "expected a number")),
     "points in time": (
         FRAME.assign(time_s=pd.to_datetime(FRAME["time_s"], unit="s")),

@@ -239,6 +239,11 @@ def test_own_effects_are_files_or_effects_one_or_several() -> None:
         assert explain(GEAR, twin=extended, effects=own).verdict == "adequate"
     with pytest.raises(EffectError, match=r"nowhere\.py: no such file"):
         explain(GEAR, effects="nowhere.py")
+    for none in (5, None):
+        with pytest.raises(UserError, match=r"effects is of the type (int|NoneType); expected files or effects"):
+            explain(GEAR, effects=none)  # type: ignore[arg-type]
+    with pytest.raises(EffectError, match="effects holds None; expected the path of a Python file, or an Effect"):
+        explain(GEAR, effects=[None])  # type: ignore[list-item]
 
 
 def test_the_seed_alone_decides_what_is_random() -> None:

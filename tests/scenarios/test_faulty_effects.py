@@ -1,0 +1,83 @@
+"""Effects of one's own whose code does wrong end in one line with file and effect, whatever it raises or returns."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.command_line import halltwin
+from twin.chain import Chain
+from twin.example import full_motion
+from twin.extensions import EffectError, effects_with
+from twin.motion import Motion
+
+DATA = Path(__file__).parents[2] / "scenarios/data"
+SWEEP, GEAR = DATA / "gear_sweep.csv", DATA / "gear_mesh.py"
+
+
+def refused(*arguments: str | Path) -> str:
+    """The one line that a command refuses with."""
+    ended = halltwin(*arguments)
+    assert ended.code == 2
+    assert ended.err.count("\n") == 1
+    return ended.err
+
+
+FAULTS: dict[str, tuple[str, str]] = {
+    "exits": ("raise SystemExit(0)", "forward raises SystemExit in line"),
+    "raises what no program catches": ("raise GeneratorExit", "forward raises GeneratorExit in line"),
+    "divides by zero": ("1 // 0", "ZeroDivisionError in line"),
+    "writes to its motion": ("motion.time_s[...] = 0.0", "read-only; an effect may not write to what it is given"),
+    "writes to its signal": ("signal[...] = 0.0", "read-only; an effect may not write to what it is given"),
+    "returns one reading less": ("return after[..., 1:]", "returns an array of shape"),
+    "returns a word": ("return 'after'", "returns str; expected an array of numbers"),
+    "returns no number": ("return np.nan * after", "values that are not finite at forward_deg ="),
+}
+
+
+@pytest.mark.parametrize("case", FAULTS)
+def test_a_fault_that_the_checks_do_not_meet_ends_in_one_line(case: str, tmp_path: Path) -> None:
+    """Beyond the lengths at which promises are checked; the search itself is then the first to meet it."""
+    code, said = FAULTS[case]
+    path = tmp_path / "gear_mesh.py"
+    source = GEAR.read_text().replace("def forward(", "def right(", 1)
+    path.write_text(
+        source.replace(
+            "EFFECT = ",
+            f"""
+def forward(signal, motion, values, rng):
+    after = np.array(right(signal, motion, values, rng))
+    if len(motion) > {len(full_motion())} and np.any(np.asarray(values["forward_deg"]) != 0.0):
+        {code}
+    return after
+
+
+EFFECT = """,
+            1,
+        )
+    )
+    motion = Motion.from_angle(np.linspace(0.0, 30.0, len(full_motion()) + 1))
+    (effect,) = (one for one in effects_with([path]) if one.name == "gear_mesh")
+    chain = Chain(effects=(effect,)).with_effect("gear_mesh", forward_deg=0.1)
+    with pytest.raises(EffectError, match=r"^gear_mesh\.py: effect 'gear_mesh': forward ") as caught:
+        chain.simulate(motion)
+    assert said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("error", ["SystemExit(0)", "GeneratorExit", "BaseException('no')"])
+def test_a_file_that_ends_the_program_does_not_run(error: str, tmp_path: Path) -> None:
+    path = tmp_path / "ends.py"
+    path.write_text(f"raise {error}\n")
+    assert "ends.py: line 1: " in refused("explain", SWEEP, "--effects", path)
+    assert "ends.py: line 1: " in refused("check-effect", path)
+
+
+def test_check_effect_finds_what_writes_to_its_motion(tmp_path: Path) -> None:
+    path = tmp_path / "gear_mesh.py"
+    path.write_text(GEAR.read_text().replace("    return ", "    motion.time_s[...] = 0.0\n    return ", 1))
+    ended = halltwin("check-effect", path)
+    assert ended.code == 2
+    assert "read-only" in "".join(ended.out.split("\n"))

@@ -22,7 +22,7 @@ class Finding:
     ``log_p`` is the log probability by chance of this effect alone, ``family_log_p`` that of any effect, where known.
     ``rivals`` are the fits with another effect in its place, ``options`` the measurements that would part them.
     ``rows`` are the raw rows (from 0) that a cause of single readings has touched; ``intervals`` are of parameters
-    that no fit of the mean has.
+    that no fit of the mean has, by instance and name.
     """
 
     keys: tuple[str, ...]
@@ -33,7 +33,7 @@ class Finding:
     before_deg: float = float("nan")
     after_deg: float = float("nan")
     rows: tuple[int, ...] = ()
-    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    intervals: Mapping[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     family_log_p: float | None = None
 
     def __repr__(self) -> str:
@@ -55,7 +55,10 @@ class Finding:
 
 
 def merge(entries: Sequence[Finding]) -> list[Finding]:
-    """Instances of one effect, and all structure without a name, as one entry each; strongest first."""
+    """Instances of one effect, and all structure without a name, as one entry each; strongest first.
+
+    The held-out figures of a merged entry are those of no single instance: they are left open.
+    """
     merged: dict[str, Finding] = {}
     for entry in entries:
         if entry.name in merged:
@@ -67,7 +70,10 @@ def merge(entries: Sequence[Finding]) -> list[Finding]:
                 family_log_p=min((p for p in (first.family_log_p, entry.family_log_p) if p is not None), default=None),
                 gain=first.gain + entry.gain,
                 rivals={name: fit for name, fit in first.rivals.items() if name in entry.rivals},
-                after_deg=entry.after_deg,
+                before_deg=float("nan"),
+                after_deg=float("nan"),
+                rows=tuple(sorted({*first.rows, *entry.rows})),
+                intervals={**first.intervals, **entry.intervals},
             )
         else:
             merged[entry.name] = entry

@@ -12,7 +12,7 @@ from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.watch import Watch
-from twin.angles import TAU, Array
+from twin.angles import TAU, Array, IntArray
 from twin.chain import Chain
 from twin.effect import BoolArray, Effect
 from twin.sweep import Sweep
@@ -36,7 +36,8 @@ class State:
     (see :attr:`fit`); ``baseline``, the same before any cause was added; ``bits``, the length of the output's word;
     ``keys`` of the causes in the joint fit; ``findings`` beside it, from values, sequence and spread; ``touched``,
     the raw rows (n_raw,) that single-reading causes have claimed; ``looked_at``, how many effects were searched for;
-    ``held``, held-out residuals (n,) [rad] of the baseline and after each of ``causes``; ``causes``, the entries of
+    ``fold`` (n,), the block in which each row was held out; ``held``, held-out residuals (n,) [rad] of the baseline and
+    after each of ``keys``, and once there is an answer after each of ``causes``; ``causes``, the entries of
     the answer; ``likeness``, the predictive check.
     """
 
@@ -53,6 +54,7 @@ class State:
     keys: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
     looked_at: int = 0
+    fold: IntArray | None = None
     held: tuple[Array, ...] = ()
     causes: tuple[Finding, ...] = ()
     likeness: PredictiveCheck | None = None

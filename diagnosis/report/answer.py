@@ -10,6 +10,7 @@ from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.marks.row_masks import raw_residual
+from diagnosis.discovery.marks.row_numbers import number_in_file
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
 from twin.angles import wrap_deg
@@ -123,8 +124,11 @@ def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
             {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options
         ],
     }
-    if effect.marks is not None and effect.marks.rows_listed:
-        answer["rows"] = found.sweep.numbers[list(cause.rows)].tolist()
+    if effect.marks is not None:
+        touched = np.degrees(raw_residual(fit, found.sweep))[list(cause.rows)]
+        answer["rows_rms_deg"] = _rms(touched)
+        if effect.marks.rows_listed:
+            answer["rows"] = found.sweep.numbers[list(cause.rows)].tolist()
     return answer
 
 
@@ -134,9 +138,10 @@ def parameters(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
     answer: dict[str, dict[str, Any]] = {}
     for number, key in enumerate(cause.keys):
         suffix = "" if number == 0 else f"_{number + 1}"
-        figures = _instance(found.fit, key, deviation)
-        for name, (low, high) in cause.intervals.items():
-            figures[name] |= {"low": low, "high": high}
+        figures = _instance(found.fit, key, deviation) | _row_numbers(found, key)
+        for (instance, name), (low, high) in cause.intervals.items():
+            if instance == key:
+                figures[name] |= {"low": low, "high": high}
         answer.update({name + suffix: figure for name, figure in figures.items()})
     return answer | _counted(found, cause)
 
@@ -173,6 +178,18 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
             told, value = figures[name], float(values[name])
             told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
     figures.update({name: _figure(*figure) for name, figure in derived.items()})
+    return figures
+
+
+def _row_numbers(found: Discovery, key: str) -> dict[str, dict[str, Any]]:
+    """Parameters that count rows, by the numbers that the rows have in the file."""
+    effect = find(key, found.fit.chain.effects)
+    values = found.fit.chain.values.get(key, {})
+    figures = {}
+    for name, param in effect.params.items():
+        if param.unit == "row" and name in values:
+            number = number_in_file(found.sweep, int(values[name]))
+            figures[name] = _figure(number, number, number, param.unit)
     return figures
 
 
@@ -215,7 +232,8 @@ def _counted(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
 def _structure(found: Discovery, key: str) -> dict[str, Any]:
     effect, values = find(key, found.fit.chain.effects), found.fit.chain.values[key]
     own = {name: float(value) for name, value in values.items() if np.ndim(value) == 0}
-    return {"kind": effect.kind, **own, **effect.figures(values)}
+    rows = {name: figure["value"] for name, figure in _row_numbers(found, key).items()}
+    return {"kind": effect.kind, **own, **effect.figures(values), **rows}
 
 
 def wild_rows(found: Discovery) -> list[int]:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, solve
+from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, evaluate, solve
 from twin.angles import TAU, Array, IntArray, wrap
 from twin.catalogue import base_name
 from twin.effect import BoolArray
@@ -39,24 +38,23 @@ def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray) -> list[Ar
 
     ``fold`` (n,) is that of each row.
     """
+    return [held_out_residual(fit, keys, keys[:count], fold) for count in range(len(keys) + 1)]
+
+
+def held_out_residual(fit: Fit, keys: Sequence[str], present: Collection[str], fold: IntArray) -> Array:
+    """Residual (n,) [rad] on held-out rows of the baseline with those of the causes ``keys`` that are present."""
     use = fit.observations.usable
     base_free = [f for f in fit.free if base_name(f.key) not in {base_name(k) for k in keys}] or list(BASELINE)
-    stages: list[tuple[list[str], list[Free]]] = []
-    for count in range(len(keys) + 1):
-        present = set(keys[:count])
-        stages.append(([k for k in keys if k not in present], [*base_free, *(f for f in fit.free if f.key in present)]))
-    residuals = [np.full(len(fit.observations), np.nan) for _ in stages]
+    free = (*base_free, *(f for f in fit.free if f.key in present))
+    chain = fit.chain.without(*(key for key in keys if key not in present))
+    residual = np.full(len(fit.observations), np.nan)
     for number in range(fit.settings.folds):
         held = fold == number
         if not np.any(held & use) or np.count_nonzero(use & ~held) < _FEWEST_ROWS:
             continue
-        observations = fit.observations.masked(use & ~held)
-        for place, (absent, free) in enumerate(stages):
-            chain = fit.chain.without(*absent)
-            trained = solve(evaluate(chain, tuple(free), observations, fit.weighting), iterations=6)
-            seen = replace(trained, observations=fit.observations)
-            residuals[place][held] = wrap(seen.observations.measured - trained.linear.angle)[held]
-    return residuals
+        trained = solve(evaluate(chain, free, fit.observations.masked(use & ~held), fit.weighting), iterations=6)
+        residual[held] = wrap(fit.observations.measured - trained.linear.angle)[held]
+    return residual
 
 
 def rms_deg(residual: Array, use: BoolArray) -> float:

@@ -2,34 +2,57 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import replace
-
-import numpy as np
 
 from diagnosis.discovery.finding import Finding, merge
 from diagnosis.discovery.fitting.observations import of_readings
-from diagnosis.discovery.marks.stairs import without_stairs
-from diagnosis.discovery.proof.cross_validation import rms_deg
+from diagnosis.discovery.proof.cross_validation import held_out_residual, rms_deg
 from diagnosis.discovery.state import State
+from twin.angles import Array
 from twin.catalogue import find
 
 
 def answer(state: State) -> State:
-    """Merge instances of one effect, and give every entry its figures, over single readings."""
-    return state.with_(causes=tuple(_with_figures(entry, state) for entry in merge(state.findings)))
+    """Merge instances of one effect, and give every entry the held-out RMS before and after it.
+
+    The figures chain from the baseline to the extended twin, all on the same rows and of single readings: what is
+    before an entry is after the one above it. Causes of single readings and of the scatter change nothing there.
+    """
+    entries = merge(state.findings)
+    held = _chained(state, entries)
+    observations = state.fit.observations
+    figures = [of_readings(rms_deg(residual, observations.usable), observations) for residual in held]
+    pairs = itertools.pairwise(figures)
+    causes = [replace(e, before_deg=b, after_deg=a) for e, (b, a) in zip(entries, pairs, strict=True)]
+    return state.with_(causes=tuple(causes), held=tuple(held))
 
 
-def _with_figures(entry: Finding, state: State) -> Finding:
-    """The entry with its RMS before and after; of causes that no fit of the mean carries from what they leave."""
-    fit, (_, held) = state.fit, state.held_out
-    use = fit.observations.usable
-    before, after = entry.before_deg, entry.after_deg
-    if not np.isfinite(before):
-        before = after = rms_deg(held, use)
-        if entry.rows:
-            before = rms_deg(held, np.ones_like(use))
-        elif find(entry.keys[0], fit.chain.effects).footprint == "values":
-            before, after = rms_deg(without_stairs(fit, entry.keys[0]), use), rms_deg(fit.residual[0], use)
-    return replace(
-        entry, before_deg=of_readings(before, fit.observations), after_deg=of_readings(after, fit.observations)
-    )
+def _chained(state: State, entries: Sequence[Finding]) -> list[Array]:
+    """Held-out residuals (n,) [rad] of the baseline without any entry, and with one after the other added."""
+    predicted = [[key for key in entry.keys if _predicts(state, key)] for entry in entries]
+    keys = [key for several in predicted for key in several]
+    stairs = {key for key in keys if key not in state.keys}
+    # Those that the proof has made already: with all stairs known, and the causes one by one.
+    made = {frozenset({*stairs, *state.keys[:count]}): one for count, one in enumerate(state.held)}
+    held = []
+    for count in range(len(entries) + 1):
+        present = frozenset(itertools.chain.from_iterable(predicted[:count]))
+        if present not in made:
+            made[present] = _held_out(state, keys, present)
+        held.append(made[present])
+    return held
+
+
+def _predicts(state: State, key: str) -> bool:
+    """Whether the chain predicts another reading with this finding than without it."""
+    footprint = find(key, state.fit.chain.effects).footprint
+    return footprint in ("mean", "values") and key in state.fit.chain.values
+
+
+def _held_out(state: State, keys: Sequence[str], present: frozenset[str]) -> Array:
+    """The residual (n,) [rad] on held-out rows with these of the keys; NaN where nothing was held out."""
+    if state.fold is None:
+        return state.held_out[0]
+    return held_out_residual(state.fit, keys, present, state.fold)

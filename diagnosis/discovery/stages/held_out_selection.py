@@ -13,4 +13,4 @@ def held_out_selection(state: State) -> State:
     rng = deepcopy(state.rng)
     proof = select(state.fit, state.searched, state.keys, rng=rng)
     findings = (*proof.entries(), *state.findings)
-    return state.with_(proof.fit, keys=proof.ordered, held=proof.held, findings=findings, rng=rng)
+    return state.with_(proof.fit, keys=proof.ordered, held=proof.held, fold=proof.fold, findings=findings, rng=rng)

@@ -7,10 +7,11 @@ import numpy as np
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.marks.row_masks import scaled
-from diagnosis.discovery.marks.spread import bursts, spread_shapes
+from diagnosis.discovery.marks.row_numbers import place_in_recording
+from diagnosis.discovery.marks.spread import SpreadFinding, bursts, spread_shapes
 from diagnosis.discovery.search.likelihood_ratio import doubt_beside
 from diagnosis.discovery.state import State
-from twin.catalogue import unnamed
+from twin.catalogue import find, unnamed
 
 
 def spread(state: State) -> State:
@@ -35,7 +36,20 @@ def spread(state: State) -> State:
             return state
         # What looked like uneven noise before the search was structure: a scale that no cause carries goes.
         return state.with_(scaled(fit, np.ones(len(fit.observations))))
-    chain = fit.chain.with_values({best.name: best.values})
-    named = Finding((best.name,), best.log_p, best.gain, intervals=best.intervals)
+    chain = fit.chain.with_values({best.name: _in_recording(state, best)})
+    intervals = {(best.name, name): limits for name, limits in best.intervals.items()}
+    named = Finding((best.name,), best.log_p, best.gain, intervals=intervals)
     weighed = scaled(evaluate(chain, fit.free, fit.observations, fit.weighting), best.variance)
     return state.with_(weighed, findings=(*state.findings, named))
+
+
+def _in_recording(state: State, found: SpreadFinding) -> dict[str, float]:
+    """The parameters found, those that count rows as places in the recording, as the chain counts them."""
+    params = find(found.name, state.fit.chain.effects).params
+    observations = state.fit.observations
+    return {
+        name: float(place_in_recording(state.sweep, observations, int(value), last=name.startswith("last")))
+        if params[name].unit == "row"
+        else value
+        for name, value in found.values.items()
+    }

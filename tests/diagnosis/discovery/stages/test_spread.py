@@ -76,7 +76,7 @@ def test_of_two_the_more_improbable_is_named() -> None:
 @pytest.mark.parametrize("percent", [0.1, 0.3])
 def test_the_size_of_a_converters_jitter_lies_in_its_interval(percent: float) -> None:
     (finding,) = spread(handed(spread, Loud(jitter_percent=percent))).findings
-    low, high = finding.intervals["percent_rms"]
+    low, high = finding.intervals["reference_jitter", "percent_rms"]
     assert low < percent < high
     # 360 squares in all, half of them loud: a variance is known to a tenth, and a size to half of that.
     assert high - low < 0.4 * percent

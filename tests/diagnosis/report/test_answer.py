@@ -1,0 +1,58 @@
+"""The JSON's figures of rows: by the numbers that the rows have in the file, however they were averaged."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diagnosis import explain
+from twin.chain import Chain
+from twin.motion import Motion
+from twin.sweep import Sweep
+
+REPEATS, ANGLES, MISSING = 5, 120, 7
+
+
+def loud_stretch() -> tuple[dict[str, np.ndarray], int, int]:
+    """Columns of readings repeated at each angle, seven of them missing, and first and last number of a loud stretch.
+
+    It scatters by 0.5 deg among others that scatter by 0.02 deg.
+    """
+    angle = np.radians(np.repeat(np.arange(ANGLES) * 3.0, REPEATS))
+    sweep = Chain().with_effect("noise", rms_deg=0.02).simulate(Motion.from_angle(angle), seed=4)
+    measured = sweep.measured_deg.copy()
+    first, last = 200, 349
+    measured[first : last + 1] += 0.5 * np.random.default_rng(5).standard_normal(last - first + 1)
+    measured[10 : 10 + MISSING] = np.nan
+    return {"reference_deg": sweep.reference_deg, "measured_deg": measured}, first + 1, last + 1
+
+
+def test_a_noisy_stretch_is_told_by_the_rows_of_the_file() -> None:
+    columns, first, last = loud_stretch()
+    found = explain(Sweep.from_columns(columns))
+    answer = found.to_dict()
+    (structure,) = answer["unexplained"]["structure"]
+    assert structure["kind"] == "noise"
+    # To within six angles of five readings: lengths are tried in steps of 30 %, here of 25 and 33 angles for 30.
+    assert structure["first_row"] == pytest.approx(first, abs=6 * REPEATS)
+    assert structure["last_row"] == pytest.approx(last, abs=6 * REPEATS)
+    assert answer["causes"][0]["parameters"]["first_row"]["value"] == structure["first_row"]
+    assert f"rows {structure['first_row']} to {structure['last_row']} scatter" in found.summary(200)
+    # The twin counts the rows that it simulates from 0, without those that cannot be read.
+    assert found.extended.values["unnamed_burst"]["first_row"] == structure["first_row"] - 1 - MISSING
+    again = found.extended.simulate(Sweep.from_columns(columns).motion(), seed=1)
+    error = np.remainder(again.measured_deg - again.reference_deg + 180.0, 360.0) - 180.0
+    loud = np.flatnonzero(np.abs(error) > 0.2) + 1 + MISSING
+    assert structure["first_row"] <= loud.min() < loud.max() <= structure["last_row"]
+
+
+def test_what_touches_single_readings_says_how_far_off_they_are() -> None:
+    motion = Motion.from_angle(np.radians(np.arange(0.0, 720.0, 2.0)))
+    sweep = Chain().with_effect("noise", rms_deg=0.02).simulate(motion, seed=4)
+    measured = sweep.measured_deg.copy()
+    measured[[40, 200]] += (22.5, -22.5)
+    answer = explain({"reference_deg": sweep.reference_deg, "measured_deg": measured}).to_dict()
+    (cause,) = answer["causes"]
+    assert (cause["name"], cause["rows"]) == ("bus_glitch", [41, 201])
+    assert cause["rows_rms_deg"] == pytest.approx(22.5, abs=0.05)
+    assert cause["heldout_rms_deg_before"] == cause["heldout_rms_deg_after"] == answer["extended"]["heldout_rms_deg"]

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from diagnosis.correction.compensation import Correction, correction_of, to_dict
 from scenarios.bench.faults import Opener
-from scenarios.bench.journal import Journal, finished_readings, running_path
-from scenarios.bench.measure import Measured, Measurement, measure
-from scenarios.bench.pretreatment import errors_deg, pretreat
+from scenarios.bench.journal import Journal
+from scenarios.bench.measure import Measured, Measurement, finish, measure
+from scenarios.bench.pretreatment import errors_deg
 from scenarios.bench.readings import Reading
 from twin.angles import Array, wrap_deg
 from twin.catalogue import CATALOGUE
 from twin.effect import Effect
 from twin.errors import UserError
 from twin.whole_file import write_beside
+
+if TYPE_CHECKING:
+    from diagnosis.explanation import Explanation
 
 SCHEMA = "halltwin.closed_loop/1"
 AIM_DEG = 0.2
@@ -73,45 +76,41 @@ def run_loop(
 ) -> Loop:
     """Run the loop, the first half explained by these effects; all files lie beside ``job.output``.
 
-    A run that was broken off in its second half goes on there.
+    A run that was broken off goes on where it was, in whichever half.
     """
-    from diagnosis import explain
     from twin.files import write_twin
 
-    first = _half(job, "before")
-    second = _half(job, "after")
-    kept = finished_readings(first.output) if running_path(second.output).exists() and not restart else []
-    if kept:
-        # The second half was broken off: the readings before belong to the correction that it was measured with.
-        before = Measured(pretreat(kept, manifest_deg=job.manifest_deg), Counter(), len(kept))
-    else:
-        before = measure(
-            first,
-            Journal(first.output, first.plan, twin=first.twin, restart=restart),
-            open_bus,
-            prepare=lambda sequence: sequence.load(None),
-        )
-    say(f"measured {first.output.name}: {len(before.pretreated.kept)} readings")
-    found = explain(first.output, effects=effects, seed=seed)
-    answer = found.to_dict()
-    correction = correction_of(found.extended)
-    twin_path, correction_path = part_path(job.output, "twin", ".toml"), part_path(job.output, "correction", ".toml")
-    write_twin(twin_path, found.extended)
-    _write_toml(correction_path, to_dict(correction))
-    named = ", ".join(cause["name"] for cause in answer["causes"]) or "no cause beyond the paper's error model"
-    say(f"explained: {answer['verdict']}: {named}; correction of {correction.series.shape[1]} orders loaded")
-    after = measure(
-        second,
-        Journal(second.output, second.plan, twin=second.twin, restart=restart),
-        open_bus,
-        prepare=lambda sequence: sequence.load(correction),
-    )
-    if not all(one.corrected for one in after.pretreated.kept):
-        raise UserError(f"{second.output}: the Hall encoder lost its correction on the way; run again with --restart")
-    loop = Loop(before, after, answer, correction)
-    report = part_path(job.output, "report", ".json")
-    write_beside(report, (json.dumps(summary(loop), indent=1) + "\n").encode())
+    first, second = _half(job, "before"), _half(job, "after")
+    with contextlib.closing(Journal(first.output, first.plan, twin=first.twin, restart=restart)) as earlier:
+        # What was measured with a correction belongs to the readings that this came from.
+        anew = restart or not earlier.complete
+        before = measure(first, earlier, open_bus, prepare=lambda sequence: sequence.load(None), last=False)
+        say(f"measured {first.output.name}: {len(before.pretreated.kept)} readings")
+        found = _explained(first.output, effects, seed)
+        answer = found.to_dict()
+        correction = correction_of(found.extended)
+        write_twin(part_path(job.output, "twin", ".toml"), found.extended)
+        _write_toml(part_path(job.output, "correction", ".toml"), to_dict(correction))
+        named = ", ".join(cause["name"] for cause in answer["causes"]) or "no cause beyond the paper's error model"
+        say(f"explained: {answer['verdict']}: {named}; correction of {correction.series.shape[1]} orders loaded")
+        with contextlib.closing(Journal(second.output, second.plan, twin=second.twin, restart=anew)) as later:
+            after = measure(second, later, open_bus, prepare=lambda sequence: sequence.load(correction), last=False)
+            if not all(one.corrected for one in after.pretreated.kept):
+                raise UserError(
+                    f"{second.output}: the Hall encoder lost its correction on the way; run again with --restart"
+                )
+            loop = Loop(before, after, answer, correction)
+            report = part_path(job.output, "report", ".json")
+            write_beside(report, (json.dumps(summary(loop), indent=1) + "\n").encode())
+            finish(later, after)
+        finish(earlier, before)
     return loop
+
+
+def _explained(sweep: Path, effects: tuple[Effect, ...], seed: int) -> Explanation:
+    from diagnosis import explain
+
+    return explain(sweep, effects=effects, seed=seed)
 
 
 def summary(loop: Loop) -> dict[str, Any]:

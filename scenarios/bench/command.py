@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -131,6 +132,8 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
     from scenarios.bench.closed_loop import lines, run_loop
     from scenarios.bench.journal import Journal
     from scenarios.bench.measure import measure
+    from scenarios.commands.file_lock import alone
+    from scenarios.commands.interrupt import interruptible
     from twin.extensions import effects_with
 
     if options.plot is not None:
@@ -140,11 +143,27 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
         if not options.closed_loop:
             raise UserError("--plot draws the closed loop; give --closed-loop, or draw the sweep with halltwin report")
     job = _measurement(options)
+    encoder = _encoder(options, faults)
     own_bus = with_bench_faults(open_bus, faults, options.seed)
-    if options.closed_loop:
+    kept = f"the readings so far are kept beside {job.output}: run again with the same options to go on"
+    lock = job.output.with_name(f"{job.output.name}.lock")
+    with (
+        interruptible(lambda: kept),
+        alone(lock, busy=f"{job.output}: another halltwin measures into it; wait until it ends"),
+    ):
+        if not options.closed_loop:
+            with (
+                contextlib.closing(
+                    Journal(job.output, job.plan, twin=_twin_name(options), restart=options.restart)
+                ) as journal,
+                _bench(options, encoder, open_bus, faults, start=len(journal.readings)),
+            ):
+                measured = measure(job, journal, own_bus)
+            _report(job.output, measured)
+            return
         # Noise is drawn anew for each pose, so both measurements may share a bench and a seed.
-        with _bench(options, open_bus, faults, start=0) as twin:
-            job = replace(job, twin=twin)
+        with _bench(options, encoder, open_bus, faults, start=0):
+            job = replace(job, twin=_twin_name(options))
             effects = effects_with(options.effect_files)
             loop = run_loop(job, own_bus, restart=options.restart, effects=effects, seed=options.seed, say=print)
         for line in lines(loop):
@@ -154,31 +173,38 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
 
             plot_loop(options.plot, loop)
             print(f"wrote {options.plot}")
-        return
-    twin = _twin_name(options)
-    journal = Journal(job.output, job.plan, twin=twin, restart=options.restart)
-    with _bench(options, open_bus, faults, start=len(journal.readings)):
-        measured = measure(job, journal, own_bus)
-    _report(job.output, measured)
 
 
-@contextmanager
-def _bench(options: Options, open_bus: Opener, faults: Sequence[Fault], *, start: int) -> Iterator[str]:
-    """The virtual bench where the bus is virtual and nobody else can be on it; yields the name of its encoder."""
+def _encoder(options: Options, faults: Sequence[Fault]) -> Chain | None:
+    """The encoder of the virtual bench; None where the nodes are on the bus already. Raises UserError."""
     if options.interface != "virtual":
         if options.twin is not None or options.hide or any(fault.node != "bench" for fault in faults):
             raise UserError(
                 f"--twin, --hide and --fault of a node are for the virtual bench; on {options.interface} "
                 "the nodes are there already: give them where the nodes run (--serve)"
             )
-        yield _twin_name(options)
+        return None
+    from scenarios.bench.hall_node import check_playable
+
+    chain = _chain(options)
+    check_playable(chain)
+    return chain
+
+
+@contextmanager
+def _bench(
+    options: Options, encoder: Chain | None, open_bus: Opener, faults: Sequence[Fault], *, start: int
+) -> Iterator[None]:
+    """The virtual bench around its encoder, where the bus is virtual and nobody else can be on it."""
+    if encoder is None:
+        yield
         return
     from scenarios.bench.virtual import Setup, running
 
     # A continued run draws other noise than the one it continues.
-    setup = Setup(chain=_chain(options), faults=faults, seed=(options.seed, start), real_time=options.real_time)
+    setup = Setup(chain=encoder, faults=faults, seed=(options.seed, start), real_time=options.real_time)
     with running(setup, open_bus):
-        yield _twin_name(options)
+        yield
 
 
 def _chain(options: Options) -> Chain:

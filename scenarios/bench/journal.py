@@ -5,17 +5,23 @@ One JSON object a line. It lies beside the sweep while the measurement runs and 
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import json
-from dataclasses import asdict
+import math
+import os
+from dataclasses import asdict, fields
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from scenarios.bench.plan import Plan
 from scenarios.bench.readings import Event, Reading
 from twin.errors import UserError
-from twin.whole_file import check_writable, write_beside
+from twin.whole_file import check_writable
 
 SCHEMA = "halltwin.bench/1"
+_WHOLE, _FLAGS, _OPTIONAL = ("index", "direction", "turn"), ("index_seen", "corrected"), ("temperature_c", "vx", "vy")
+"""Entries of a reading: whole numbers, true or false, and such as may be missing. All others are numbers."""
 
 
 def running_path(sweep: Path) -> Path:
@@ -29,75 +35,131 @@ def finished_path(sweep: Path) -> Path:
 
 
 class Journal:
-    """Open for appending; a line is with the operating system before the next angle is driven to."""
+    """Open for appending; a line is with the operating system before the next angle is driven to.
+
+    Whoever opens it closes it, or has it finished; without a reading it leaves no file.
+    """
 
     def __init__(self, sweep: Path, plan: Plan, *, twin: str, restart: bool) -> None:
-        """Begin a journal, or take up the one of a broken run. Raises UserError where that one is of another plan."""
+        """Begin a journal, or take up the one of a broken run.
+
+        Raises UserError where that one is of another plan and holds readings, or is damaged.
+        """
         check_writable(sweep)
         self._sweep = sweep
+        self._plan = plan
         self.path = running_path(sweep)
         head = {"schema": SCHEMA, "plan": plan.digest(), "twin": twin}
         if restart:
             self.path.unlink(missing_ok=True)
-        self.readings = _taken_up(self.path, head)
-        fresh = not self.path.exists()
-        self._file: IO[str] = self.path.open("a", encoding="utf-8")
-        if fresh:
-            self._line(head)
+        self.readings, self._size = _taken_up(self.path, head, plan.readings)
+        # Without a buffer: what fails, fails here, and nothing is written later.
+        self._file = self.path.open("ab", buffering=0)
+        try:
+            # A line that was cut off goes, and so does a head that no reading followed.
+            self._file.truncate(self._size)
+            if not self._size:
+                self._line(head)
+        except BaseException:
+            self.close()
+            raise
+
+    @property
+    def complete(self) -> bool:
+        """Whether every reading of the plan is there."""
+        return {reading.index for reading in self.readings} >= {stop.index for stop in self._plan.stops()}
 
     def keep(self, reading: Reading) -> None:
-        """Write a reading."""
-        self.readings.append(reading)
+        """Write a reading. Raises UserError."""
         self._line({"reading": asdict(reading)})
+        self.readings.append(reading)
 
     def note(self, event: Event) -> None:
-        """Write an event."""
+        """Write an event. Raises UserError."""
         self._line({"event": asdict(event)})
 
     def finish(self, summary: dict[str, Any]) -> Path:
-        """Write the summary and give the journal its lasting name."""
+        """Write the summary and give the journal its lasting name. Raises UserError."""
         self._line({"summary": summary})
         self._file.close()
-        return self.path.rename(finished_path(self._sweep))
+        return self.path.replace(finished_path(self._sweep))
 
     def close(self) -> None:
         """Leave the journal for a later run, where there is something to go on from."""
-        self._file.close()
-        if not self.readings:
+        if not self._file.closed and not self.readings:
             self.path.unlink(missing_ok=True)
+        self._file.close()
+
+    def kept(self) -> str:
+        """What a run that broke off leaves, and how to go on."""
+        return (
+            f"{len(self.readings)} of {self._plan.readings} readings are kept in {self.path}: run again with the same "
+            "options to go on"
+        )
 
     def _line(self, content: dict[str, Any]) -> None:
-        self._file.write(json.dumps(content) + "\n")
-        self._file.flush()
+        line = (json.dumps(content) + "\n").encode()
+        try:
+            if self._file.write(line) != len(line):
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                self._file.truncate(self._size)
+            raise UserError(f"{self.path}: cannot be written ({error.strerror}); make room; {self.kept()}") from None
+        self._size += len(line)
 
 
-def finished_readings(sweep: Path) -> list[Reading]:
-    """The readings in the log of a finished sweep; none where there is no such log."""
-    path = finished_path(sweep)
-    if not path.exists():
-        return []
-    content = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
-    return [Reading(**entry["reading"]) for entry in content if "reading" in entry]
-
-
-def _taken_up(path: Path, head: dict[str, Any]) -> list[Reading]:
-    """The readings of a broken run; a last line that was cut off is taken away."""
-    if not path.exists():
-        return []
-    whole, newline, _ = path.read_text(encoding="utf-8").rpartition("\n")
-    lines = whole.split("\n") if newline else []
+def _taken_up(path: Path, head: dict[str, Any], readings: int) -> tuple[list[Reading], int]:
+    """The readings of a broken run, and how many bytes of its journal hold; none where it comes to nothing."""
     try:
-        content = [json.loads(line) for line in lines]
-    except json.JSONDecodeError as error:
-        raise UserError(f"{path}: is no journal of the bench ({error}); move it away, or --restart") from None
-    if not content:
-        path.unlink()
-        return []
+        raw = path.read_bytes()
+    except FileNotFoundError:
+        return [], 0
+    whole = raw[: raw.rfind(b"\n") + 1]
+    begins = json.dumps({"schema": SCHEMA}).removesuffix("}").encode()
+    if not raw.startswith(begins[: len(raw)]):
+        raise UserError(f"{path}: is no journal of the bench; move it away, or --restart")
+    entries = []
+    for number, line in enumerate(whole.splitlines(), 1):
+        try:
+            entries.append(_entry(line, readings))
+        except (ValueError, RecursionError) as error:
+            said = "is no JSON" if isinstance(error, json.JSONDecodeError | UnicodeDecodeError) else str(error)
+            raise UserError(f"{path}: line {number} is damaged: {said}; move the file away, or --restart") from None
+    found = [entry["reading"] for entry in entries if "reading" in entry]
+    if not found:
+        return [], 0
     for key, value in head.items():
-        if content[0].get(key) != value:
+        if entries[0].get(key) != value:
             raise UserError(
-                f"{path}: belongs to another measurement (its {key} is {content[0].get(key)!r}, not {value!r}); "
+                f"{path}: belongs to another measurement (its {key} is {entries[0].get(key)!r}, not {value!r}); "
                 "give the same options to go on with it, or --restart"
             )
-    write_beside(path, (whole + "\n").encode())
-    return [Reading(**entry["reading"]) for entry in content if "reading" in entry]
+    return found, len(whole)
+
+
+def _entry(line: bytes, readings: int) -> dict[str, Any]:
+    """A line of a journal, its reading as such. Raises ValueError."""
+    entry = json.loads(line)
+    if not isinstance(entry, dict):
+        raise ValueError("is no object")
+    return {**entry, "reading": _reading(entry["reading"], readings)} if "reading" in entry else entry
+
+
+def _reading(content: Any, readings: int) -> Reading:
+    """A reading whose every entry is of its kind. Raises ValueError."""
+    names = [item.name for item in fields(Reading)]
+    if not isinstance(content, dict) or content.keys() != set(names):
+        raise ValueError("a reading has not the entries of one")
+    for name, value in content.items():
+        if name in _FLAGS:
+            fits = isinstance(value, bool)
+        elif isinstance(value, bool) or not isinstance(value, int | float):
+            fits = value is None and name in _OPTIONAL
+        else:
+            fits = math.isfinite(value) and (name not in _WHOLE or isinstance(value, int))
+        if not fits:
+            raise ValueError(f"{name} is {str(value)[:40]!r}")
+    if not 0 <= content["index"] < readings or content["direction"] not in (-1, 1):
+        raise ValueError("a reading that the plan does not hold")
+    return Reading(**content)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,8 @@ class Link:
     def __init__(self, open_bus: Opener, assembler: Assembler, record: Path | None = None) -> None:
         self._open = open_bus
         self._bus = open_bus()
-        self._assembler = assembler
+        self.assembler = assembler
+        self._record = record
         self._log: Any = None if record is None else open_log(record)
         self._sequence = 0
         # An interface may hand back what it sent itself.
@@ -44,7 +46,7 @@ class Link:
         message = messages().encode(name, values)
         message.is_rx = False
         self._kept_on(lambda: self._bus.send(message))
-        self._assembler.feed(message)
+        self.assembler.feed(message)
         self._write(message)
 
     def receive(self, timeout_s: float) -> Frame | None:
@@ -55,7 +57,7 @@ class Link:
             if message is None or message.arbitration_id in self._own:
                 continue
             self._write(message)
-            frame = self._assembler.feed(message)
+            frame = self.assembler.feed(message)
             if frame is not None:
                 return frame
         return None
@@ -64,16 +66,33 @@ class Link:
         return self._bus.recv(timeout_s)
 
     def close(self) -> None:
-        """Close log and bus."""
-        if self._log is not None:
-            self._log.stop()
-        self._bus.shutdown()
+        """Close log and bus. Raises UserError where the log could not be written to its end."""
+        log, self._log = self._log, None
+        try:
+            if log is not None:
+                with self._log_told():
+                    log.stop()
+        finally:
+            self._bus.shutdown()
 
     def _write(self, message: can.Message) -> None:
-        if self._log is not None:
-            # Sent frames have no stamp of their own; logs want one order of time.
-            message.timestamp = time.time()
-            self._log.on_message_received(message)
+        if self._log is None:
+            return
+        # Sent frames have no stamp of their own; logs want one order of time.
+        message.timestamp = time.time()
+        log = self._log
+        with self._log_told():
+            # A log that failed once fails when it is closed, too.
+            self._log = None
+            log.on_message_received(message)
+            self._log = log
+
+    @contextlib.contextmanager
+    def _log_told(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise UserError(f"{self._record}: cannot be written ({error.strerror or error}); make room") from None
 
     def _kept_on(self, action: Callable[[], Any]) -> Any:
         for attempt in range(RECOVERIES):
@@ -83,8 +102,8 @@ class Link:
                 return action()
             except can.CanError as error:
                 if attempt == 0:
-                    self._assembler.counts["bus off"] += 1
-                    self._assembler.on_event(Event(f"bus off: {error}", "", None))
+                    self.assembler.counts["bus off"] += 1
+                    self.assembler.on_event(Event(f"bus off: {error}", "", None))
                 time.sleep(RECOVERY_S)
         raise UserError(f"the bus stays off after {RECOVERIES} attempts to open it again; check adapter and wiring")
 

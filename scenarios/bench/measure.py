@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -10,7 +11,7 @@ from pathlib import Path
 from scenarios.bench.faults import Opener
 from scenarios.bench.journal import Journal
 from scenarios.bench.link import Link
-from scenarios.bench.plan import Plan
+from scenarios.bench.plan import Plan, Stop
 from scenarios.bench.pretreatment import MANIFEST_DEG, Pretreated, pretreat, write_sweep
 from scenarios.bench.progress import progress
 from scenarios.bench.readings import Assembler, Reading
@@ -42,17 +43,23 @@ class Measured:
 
 
 def measure(
-    job: Measurement, journal: Journal, open_bus: Opener, *, prepare: Callable[[Sequence], None] | None = None
+    job: Measurement,
+    journal: Journal,
+    open_bus: Opener,
+    *,
+    prepare: Callable[[Sequence], None] | None = None,
+    last: bool = True,
 ) -> Measured:
-    """Run the plan, from the last complete reading where there is one. Raises UserError where a node is gone.
+    """Run the plan, from the last complete reading where there is one, and write the sweep.
 
-    ``prepare`` (sequence -> None) is called first: to load a correction, or to take one out.
+    ``prepare`` (sequence -> None) is called first: to load a correction, or to take one out. Unless it is the ``last``
+    measurement of the run, its journal stays as it is: should the run break off later, it is there to be taken up.
+    Raises UserError where a node is gone or nothing can be written.
     """
     continued = len(journal.readings)
     done = {reading.index for reading in journal.readings}
     stops = [stop for stop in job.plan.stops() if stop.index not in done]
-    if job.record is not None and continued:
-        journal.close()
+    if job.record is not None and continued and stops:
         raise UserError(
             f"{journal.path}: holds {continued} readings of a broken run, and a log would lack them; "
             "go on without --record, or --restart"
@@ -60,40 +67,45 @@ def measure(
     assembler = Assembler(channels=job.channels, chamber=job.chamber, on_event=journal.note)
     if stops:
         try:
-            link = Link(open_bus, assembler, job.record)
-        except BaseException:
-            journal.close()
-            raise
-        clock = _Clock(journal)
-        try:
-            sequence = Sequence(link, assembler, job.patience)
-            if prepare is not None:
-                prepare(sequence)
-            sequence.prepare(job.plan, stops[0])
-            with progress(job.plan.readings, assembler, job.output.name) as display:
-
-                def keep(reading: Reading) -> None:
-                    journal.keep(clock.going_on(reading))
-                    display.show(journal.readings)
-
-                sequence.take(job.plan, stops, keep)
+            with contextlib.closing(Link(open_bus, assembler, job.record)) as link:
+                _take(job, journal, link, stops=stops, prepare=prepare)
         except NodeGone as error:
-            journal.close()
-            raise UserError(
-                f"{error}; {len(journal.readings)} of {job.plan.readings} readings are kept in {journal.path}: "
-                "mend it and run again with the same options to go on"
-            ) from None
-        except BaseException as error:
-            journal.close()
-            if isinstance(error, KeyboardInterrupt) and journal.readings:
-                print(f"{len(journal.readings)} readings are kept in {journal.path}: run again to go on")
-            raise
-        finally:
-            link.close()
+            raise UserError(f"{error}; mend it; {journal.kept()}") from None
     pretreated = pretreat(journal.readings, manifest_deg=job.manifest_deg)
     write_sweep(job.output, pretreated.kept)
-    journal.finish({"readings": len(pretreated.kept), "rejected": pretreated.rejected, "bus": dict(assembler.counts)})
-    return Measured(pretreated, assembler.counts, continued)
+    measured = Measured(pretreated, assembler.counts, continued)
+    if last:
+        finish(journal, measured)
+    return measured
+
+
+def finish(journal: Journal, measured: Measured) -> None:
+    """Turn the journal of a sweep that is written into its log."""
+    pretreated = measured.pretreated
+    journal.finish({"readings": len(pretreated.kept), "rejected": pretreated.rejected, "bus": dict(measured.counts)})
+
+
+def _take(
+    job: Measurement,
+    journal: Journal,
+    link: Link,
+    *,
+    stops: list[Stop],
+    prepare: Callable[[Sequence], None] | None,
+) -> None:
+    """Take the readings at these stops into the journal."""
+    clock = _Clock(journal)
+    sequence = Sequence(link, link.assembler, job.patience)
+    if prepare is not None:
+        prepare(sequence)
+    sequence.prepare(job.plan, stops[0])
+    with progress(job.plan.readings, link.assembler, job.output.name) as display:
+
+        def keep(reading: Reading) -> None:
+            journal.keep(clock.going_on(reading))
+            display.show(journal.readings)
+
+        sequence.take(job.plan, stops, keep)
 
 
 class _Clock:

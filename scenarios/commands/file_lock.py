@@ -27,7 +27,7 @@ def alone(path: Path, *, busy: str) -> Iterator[None]:
     Raises
     ------
     UserError
-        Another process holds the lock.
+        Another process holds the lock, or the file is none.
     OSError
         The file cannot be made.
     """
@@ -49,6 +49,8 @@ def _held(path: Path) -> int | None:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
         try:
             locked = _locked(descriptor, path)
+            if os.fstat(descriptor).st_size:
+                raise UserError(f"{path}: holds something and is no lock; move it away")
             # Its holder may have taken the file away in between: then the lock is on a file that nobody else sees.
             current = locked and path.exists() and os.path.samestat(os.fstat(descriptor), path.stat())
         except BaseException:

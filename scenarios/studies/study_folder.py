@@ -14,7 +14,6 @@ import io
 import json
 import re
 import shutil
-import sys
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -25,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.commands.file_lock import alone
+from scenarios.commands.interrupt import interruptible
 from scenarios.studies.identity import flat, read_record, refuse_other
 from twin.errors import UserError
 from twin.whole_file import TEMPORARY, new_name, write_whole
@@ -32,8 +32,6 @@ from twin.whole_file import TEMPORARY, new_name, write_whole
 _IDENTITY, _LOCK, _DONE, _CHUNKS = "study.json", "study.lock", "done", "chunks"
 _OWN_UNFINISHED = re.compile(re.escape(TEMPORARY).replace(r"\*", "[0-9a-f]{16}"))
 _ZARR_UNFINISHED = re.compile(r".+\.[0-9a-f]{32}\.partial")
-INTERRUPTED = 130
-"""Exit code of a command that was ended by Ctrl-C, as shells have it."""
 
 
 def version() -> str:
@@ -65,18 +63,14 @@ class StudyFolder:
         identity = {"study": study, "version": version(), "seed": seed, "settings": settings}
         folder._refuse_foreign()
         made = folder._make()
+        busy = f"{path}: another halltwin is at work in this folder; wait until it ends"
         try:
-            with alone(
-                folder.path / _LOCK, busy=f"{path}: another halltwin is at work in this folder; wait until it ends"
-            ):
+            with interruptible(lambda: folder._kept(path)), alone(folder.path / _LOCK, busy=busy):
                 folder._begin(identity, stores)
                 try:
                     yield folder
                 finally:
                     folder._clear_unfinished(stores)
-        except KeyboardInterrupt:
-            print(f"halltwin: {folder._stopped(path)}", file=sys.stderr)
-            raise SystemExit(INTERRUPTED) from None
         finally:
             if made and not (folder.path / _IDENTITY).exists():
                 with contextlib.suppress(OSError):
@@ -132,8 +126,8 @@ class StudyFolder:
         """How many chunks are marked as complete."""
         return sum(mark.name.isdigit() for mark in (self.path / _DONE).glob("*"))
 
-    def _stopped(self, path: Path) -> str:
-        return f"stopped; {self._complete()} complete chunks are kept in {path}: run the same command again to go on"
+    def _kept(self, path: Path) -> str:
+        return f"{self._complete()} complete chunks are kept in {path}: run the same command again to go on"
 
     def _clear_unfinished(self, stores: Sequence[str]) -> None:
         """Take away what killed runs left half-written: our own names alone, and zarr's in its stores."""

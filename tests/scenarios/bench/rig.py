@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -51,8 +52,10 @@ def run_bench(
         plan=plan, output=output, record=record, patience=patience or Patience(timeout_s=0.03, attempts=100)
     )
     setup = Setup(chain=quiet_encoder(), faults=parsed)
-    with running(setup, open_bus) as done:
-        journal = Journal(output, plan, twin=job.twin, restart=False)
+    with (
+        contextlib.closing(Journal(output, plan, twin=job.twin, restart=False)) as journal,
+        running(setup, open_bus) as done,
+    ):
         found = measure(job, journal, with_bench_faults(open_bus, parsed, 0))
     return Outcome(found, done)
 

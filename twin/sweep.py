@@ -13,6 +13,7 @@ from twin.angles import Array, IntArray, radians, wrap_deg
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
 from twin.motion import Motion
+from twin.shown_name import shown_name
 from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, PLAUSIBLE, REQUIRED, SMALLEST_AMPLITUDE
 from twin.sweep_file import write_columns
 from twin.sweep_reader import read_columns
@@ -199,7 +200,7 @@ class Sweep:
         SweepError
             Where the file cannot be read or used: which line and column, what was found, expected, and to do.
         """
-        return cls.from_columns(read_columns(Path(path), max_bytes=max_bytes), name=Path(path).name)
+        return cls.from_columns(read_columns(Path(path), max_bytes=max_bytes), name=shown_name(path))
 
     def write(self, path: str | Path) -> None:
         """Write the used rows as CSV, whole or not at all.

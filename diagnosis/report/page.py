@@ -24,7 +24,7 @@ from twin.whole_file import write_beside
 
 def write_report(path: Path, found: Discovery, answer: Mapping[str, Any]) -> None:
     """Write the report whole or not at all; its numbers are the answer's, its pictures drawn from what was found."""
-    write_beside(path, page(found, answer).encode())
+    write_beside(path, page(found, answer).encode(errors="backslashreplace"))
 
 
 def page(found: Discovery, answer: Mapping[str, Any]) -> str:

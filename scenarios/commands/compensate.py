@@ -20,6 +20,7 @@ from twin.angles import TAU, Array, radians
 from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.files import read_twin
+from twin.shown_name import shown_name
 from twin.sweep import Sweep
 
 _FEWEST_POINTS = 4
@@ -66,7 +67,7 @@ def run(
     else:
         correction = _of_readings(tolerance_deg, seed)(*_angles(sweep))
     print(
-        f"{source.name}: shaft = {correction.slope:+d} x reading {-np.degrees(correction.zero_rad):+.4f} deg + "
+        f"{shown_name(source)}: shaft = {correction.slope:+d} x reading {-np.degrees(correction.zero_rad):+.4f} deg + "
         f"{correction.series.shape[1]} orders, the largest {_largest_deg(correction):.4f} deg"
     )
     for name in correction.left_out:
@@ -75,7 +76,7 @@ def run(
     for name, found, tested in judged:
         for line in _lines(name, found, tested, other=bool(check)):
             print(line)
-    _write(files, outputs, correction, source=source.name, judged=_with_own_zero(judged) if check else judged)
+    _write(files, outputs, correction, source=shown_name(source), judged=_with_own_zero(judged) if check else judged)
 
 
 def _files(outputs: Outputs, *, inputs: Sequence[Path]) -> OutputFiles:

@@ -53,13 +53,14 @@ class OutputFiles:
     """The files that a command will write; see the module's text.
 
     ``inputs`` are the files that it reads, ``force`` lets it replace files of others, ``folders`` lets it make the
-    folders that are not there yet.
+    folders that are not there yet; ``unfinished`` are files that an earlier run of the same work began.
     """
 
     formats: Mapping[Path, Format]
     inputs: tuple[Path, ...] = ()
     force: bool = False
     folders: bool = False
+    unfinished: frozenset[Path] = frozenset()
 
     @classmethod
     def checked(
@@ -69,27 +70,32 @@ class OutputFiles:
         inputs: Iterable[str | Path | None] = (),
         force: bool = False,
         folders: bool = False,
+        unfinished: Iterable[Path] = (),
     ) -> OutputFiles:
         """The outputs that are not None, all of them fit to be written. Raises UserError before anything is done."""
         asked = [(path, form) for path, form in given if path is not None]
         read = tuple(file for name in inputs if name is not None for file in _files(Path(name)))
-        outputs = cls(formats=dict(asked), inputs=read, force=force, folders=folders)
+        outputs = cls(formats=dict(asked), inputs=read, force=force, folders=folders, unfinished=frozenset(unfinished))
         _check_distinct([path for path, _ in asked])
         outputs.check()
         return outputs
 
-    def check(self) -> None:
-        """Refuse what cannot be written here, an input, and a file of somebody else's. Raises UserError."""
+    def check(self, paths: Iterable[Path] | None = None) -> None:
+        """Refuse what cannot be written here, an input, and a file of somebody else's. Raises UserError.
+
+        ``paths``: some of the outputs; None: all.
+        """
+        asked = list(self.formats if paths is None else paths)
         self._check_inputs()
-        for path in self.formats:
+        for path in asked:
             if self.folders and not path.parent.exists():
                 _check_can_be_made(path.parent)
             else:
                 check_writable(path)
-        for path, form in self.formats.items():
-            _check_ending(path, form)
-            if not self.force and not is_stream(path):
-                _check_own(path, form)
+        for path in asked:
+            _check_ending(path, self.formats[path])
+            if not (self.force or path in self.unfinished or is_stream(path)):
+                _check_own(path, self.formats[path])
 
     def _check_inputs(self) -> None:
         """Refuse an output that is an input, or the file that the printed answer goes to. Raises UserError."""
@@ -108,7 +114,7 @@ class OutputFiles:
         """
         made = {path: self._packed(path, content) for path, content in contents.items() if path is not None}
         # Much may have happened since the work began.
-        self.check()
+        self.check(made)
         with _folders_for(made) if self.folders else contextlib.nullcontext():
             write_together(made)
 

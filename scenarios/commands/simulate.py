@@ -13,6 +13,7 @@ from scenarios.commands.trace import trace, trace_figure, trace_text
 from twin.extensions import effects_with
 from twin.presets import read_twin_or_preset
 from twin.reference.encoder import Encoder
+from twin.shown_name import shown_name
 from twin.sweep import Sweep
 from twin.sweep_file import csv_text
 
@@ -60,7 +61,7 @@ def run(
         traced = trace(chain, motion, seed=seed)
         contents |= {
             outputs.trace: lambda: trace_text(traced),
-            outputs.plot: lambda: trace_figure(traced, title=f"{Path(twin).stem}, seed {seed}"),
+            outputs.plot: lambda: trace_figure(traced, title=f"{shown_name(twin).removesuffix('.toml')}, seed {seed}"),
         }
     files.write(contents)
     for path in files.formats:

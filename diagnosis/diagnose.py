@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 from diagnosis.diagnosed import Diagnoses, Diagnosis
 from diagnosis.input_checks import SweepLike, as_sweep, checked_seed
+from diagnosis.progress import Count, Listener
 
 
 def diagnose(sweep: SweepLike, *, robust: bool = True, seed: int = 0) -> Diagnosis:
@@ -61,7 +62,9 @@ def diagnose(sweep: SweepLike, *, robust: bool = True, seed: int = 0) -> Diagnos
     return diagnose_many([sweep], robust=robust, seed=seed)[0]
 
 
-def diagnose_many(sweeps: Iterable[SweepLike], *, robust: bool = True, seed: int = 0) -> Diagnoses:
+def diagnose_many(
+    sweeps: Iterable[SweepLike], *, robust: bool = True, seed: int = 0, progress: Listener | None = None
+) -> Diagnoses:
     """Quantify the paper's error factors of many sweeps; those of equal length in one swarm.
 
     Parameters
@@ -72,6 +75,8 @@ def diagnose_many(sweeps: Iterable[SweepLike], *, robust: bool = True, seed: int
         Leave isolated gross errors out of the fits.
     seed : int, optional
         Seed of the swarm, 0 or more.
+    progress : callable, optional
+        Called with a :class:`diagnosis.Progress` as the sweeps are read, fitted and judged.
 
     Returns
     -------
@@ -106,8 +111,11 @@ def diagnose_many(sweeps: Iterable[SweepLike], *, robust: bool = True, seed: int
     rng = np.random.default_rng(checked_seed(seed))
     if isinstance(sweeps, str | os.PathLike | Sweep) or hasattr(sweeps, "keys"):
         raise UserError("found a single sweep where several are expected; give a list of sweeps, or call diagnose")
-    read = [as_sweep(sweep) for sweep in sweeps]
+    wanted = list(sweeps)
+    count = Count(len(wanted), progress)
+    read = [count.of("reading", done, as_sweep(sweep)) for done, sweep in enumerate(wanted, 1)]
     if not read:
         raise UserError("found no sweep; give at least one")
     with one_blas_thread():
-        return Diagnoses(tuple(Diagnosis(one) for one in quantify_many(read, rng=rng, robust=robust)))
+        found = quantify_many(read, rng=rng, robust=robust, count=count)
+    return Diagnoses(tuple(map(Diagnosis, found)))

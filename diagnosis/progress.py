@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 
 @dataclass(frozen=True)
@@ -14,7 +15,8 @@ class Progress:
     Attributes
     ----------
     stage : str
-        Name of the step that runs: a stage of the discovery, ``"search"`` where its loop begins, ``"error_model"``.
+        Name of the step that runs: a stage of the discovery, ``"search"`` where its loop begins, ``"error_model"``;
+        of several sweeps ``"reading"``, ``"error_model"`` and ``"judging"``.
     elapsed_s : float
         Seconds since the call began.
     causes : tuple of str
@@ -35,3 +37,18 @@ class Progress:
 
 Listener: TypeAlias = Callable[[Progress], object]
 """What is called with each :class:`Progress`; what it returns is not looked at."""
+_T = TypeVar("_T")
+
+
+class Count:
+    """Tells a listener how many of so many sweeps a step has dealt with."""
+
+    def __init__(self, total: int, listener: Listener | None = None) -> None:
+        self._total, self._listener = total, listener
+        self._began_s = time.monotonic()
+
+    def of(self, stage: str, done: int, what: _T) -> _T:
+        """What is handed in, once the listener has heard that so many are done."""
+        if self._listener is not None:
+            self._listener(Progress(stage, time.monotonic() - self._began_s, done=done, total=self._total))
+        return what

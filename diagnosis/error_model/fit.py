@@ -38,7 +38,8 @@ QUICK = swarm.SwarmSettings(particles=32, iterations=64, stop_settled=True)
 
 _CLEAR_SIGMA2 = 100.0
 """Swapped senses whose first fit is worse by this many squared standard errors are not fitted to the readings."""
-_BATCH = 128
+BATCH = 128
+"""Sweeps of equal length that are fitted at once."""
 
 
 def fit_baseline(
@@ -106,8 +107,8 @@ def fit_equal(
 ) -> list[BaselineFit]:
     """Fit sweeps of equal length, all arrays (batch, n), with one batched swarm; see the module's text."""
     fits: list[BaselineFit] = []
-    for start in range(0, reference_rad.shape[0], _BATCH):
-        rows = slice(start, start + _BATCH)
+    for start in range(0, reference_rad.shape[0], BATCH):
+        rows = slice(start, start + BATCH)
         fits += _fit_batch(
             reference_rad[rows],
             measured_rad[rows],

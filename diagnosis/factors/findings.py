@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.error_model.fit import fit_equal
+from diagnosis.error_model.fit import BATCH, fit_equal
 from diagnosis.error_model.model import Readings
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors import channels
@@ -17,6 +17,7 @@ from diagnosis.factors.channels import Added
 from diagnosis.factors.identifiability import Identifiability, identifiability
 from diagnosis.factors.mechanical import Mechanical, mechanical
 from diagnosis.factors.repeats import between_angles
+from diagnosis.progress import Count
 from twin.angles import Array, radians
 from twin.sweep import Sweep
 
@@ -55,26 +56,32 @@ class Findings:
 
 
 def quantify_many(
-    sweeps: Sequence[Sweep], *, rng: np.random.Generator | None = None, robust: bool = True
+    sweeps: Sequence[Sweep],
+    *,
+    rng: np.random.Generator | None = None,
+    robust: bool = True,
+    count: Count | None = None,
 ) -> list[Findings]:
-    """Fit and judge many sweeps; those of equal length and senses in one batched swarm."""
+    """Fit and judge many sweeps; those of equal length and senses in one batched swarm.
+
+    ``count`` tells how many are fitted, and then how many are judged.
+    """
+    count = count or Count(len(sweeps))
     rng = rng or np.random.default_rng(DEFAULT_SEED)
     groups: dict[tuple[int, tuple[int, int] | None], list[int]] = {}
     angles = [(radians(sweep.reference_deg), radians(sweep.measured_deg)) for sweep in sweeps]
     for index, sweep in enumerate(sweeps):
         senses = senses_from_channels(sweep, *angles[index])
         groups.setdefault((len(sweep), senses), []).append(index)
-    found: dict[int, Findings] = {}
+    fits: dict[int, BaselineFit] = {}
     for (_, senses), indices in groups.items():
-        fits = fit_equal(
-            np.stack([angles[i][0] for i in indices]),
-            np.stack([angles[i][1] for i in indices]),
-            rng=rng,
-            senses=senses,
-            robust=robust,
-        )
-        found.update({i: _findings(sweeps[i], fit) for i, fit in zip(indices, fits, strict=True)})
-    return [found[i] for i in range(len(sweeps))]
+        for start in range(0, len(indices), BATCH):
+            batch = indices[start : start + BATCH]
+            reference, measured = (np.stack([angles[i][side] for i in batch]) for side in (0, 1))
+            fitted = fit_equal(reference, measured, rng=rng, senses=senses, robust=robust)
+            fits.update(zip(batch, fitted, strict=True))
+            count.of("error_model", len(fits), None)
+    return [count.of("judging", i + 1, _findings(sweep, fits[i])) for i, sweep in enumerate(sweeps)]
 
 
 def gap_laws(found: Sequence[Findings]) -> tuple[Law, ...]:

@@ -58,10 +58,24 @@ def to_json(found: Discovery) -> dict[str, Any]:
             },
             "not_visible": {name: list(missing) for name, missing in sorted(found.invisible.items())},
             "searched": found.looked_at,
+            "cut_short": _cut_short(found),
             "twin": to_dict(found.fit.chain),
         }
     )
     return answer
+
+
+def _cut_short(found: Discovery) -> dict[str, str] | None:
+    """Where the search was stopped and what that leaves open; None where it came to its own end."""
+    if found.cut_short is None:
+        return None
+    if not found.looked_at:
+        left = "whether any cause is there: none had been searched for"
+    elif not found.causes:
+        left = "whether any cause is there: none had been found that stands on held-out readings"
+    else:
+        left = "whether there are further causes, or better ones in the place of those found"
+    return {"stage": found.cut_short, "left_open": left}
 
 
 def _sweep(found: Discovery) -> dict[str, Any]:

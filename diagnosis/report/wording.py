@@ -170,8 +170,15 @@ def _largest(structure: Mapping[str, Any]) -> float:
 def verdict_words(answer: Mapping[str, Any]) -> str:
     """The verdict and what follows from it, in one or two sentences."""
     like = likeness_words(answer["extended"])
-    rest = " Part of that is structure without a name." if answer["verdict"] == "partly explained" else ""
-    return f"{_gain_words(answer)}{f'; {like}' if like else ''}.{rest}"
+    names = {cause["name"] for cause in answer["causes"]}
+    rest = " Part of that is structure without a name." if len(names) > 1 and "unnamed" in names else ""
+    return f"{_gain_words(answer)}{f'; {like}' if like else ''}.{rest}{cut_words(answer)}"
+
+
+def cut_words(answer: Mapping[str, Any]) -> str:
+    """That the search was stopped, and what that leaves open; empty where it came to its own end."""
+    cut = answer.get("cut_short")
+    return f" The search was stopped before its end, which leaves open {cut['left_open']}." if cut else ""
 
 
 def likeness_words(extended: Mapping[str, Any]) -> str:
@@ -188,6 +195,8 @@ def _gain_words(answer: Mapping[str, Any]) -> str:
     verdict = answer["verdict"]
     if verdict == "adequate":
         return "The baseline is adequate: nothing else stands out of the noise"
+    if not answer["causes"]:
+        return "No cause was found"
     gain = answer["extended"]["gain"]
     if gain < _NO_GAIN:
         # Single readings and scatter are no part of what a twin predicts for the mean.

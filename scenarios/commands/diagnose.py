@@ -8,6 +8,7 @@ from pathlib import Path
 from diagnosis import diagnose_many
 from scenarios.commands.inputs import sweep_paths
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
+from scenarios.commands.progress import ended_by_interrupt, progress_line
 
 
 def run(
@@ -22,7 +23,8 @@ def run(
     """Diagnose what the names stand for; print the answer; write JSON and pictures where asked."""
     paths = sweep_paths(names)
     files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE), (convergence, PICTURE)], inputs=paths, force=force)
-    found = diagnose_many(paths, seed=seed)
+    with ended_by_interrupt(), progress_line() as listener:
+        found = diagnose_many(paths, seed=seed, progress=listener)
     print(found.summary())
     files.write(
         {

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from diagnosis import explain
+from diagnosis import Explanation, explain
 from diagnosis.report.console import show
 from diagnosis.report.page import page
 from scenarios.commands.outputs import HTML, JSON, PICTURE, TOML, OutputFiles, json_text
+from scenarios.commands.progress import INTERRUPTED, ended_by_interrupt, progress_line
 from twin.files import twin_text
 
 
@@ -31,7 +33,7 @@ def run(path: Path, *, twin: Path | None, outputs: Outputs, effect_files: Sequen
         inputs=[path, twin, *effect_files],
         force=outputs.force,
     )
-    found = explain(path, twin=twin, effects=effect_files, seed=seed)
+    found = _explained(path, twin=twin, effects=effect_files, seed=seed)
     answer = found.to_dict()
     try:
         show(answer)
@@ -45,3 +47,11 @@ def run(path: Path, *, twin: Path | None, outputs: Outputs, effect_files: Sequen
                 outputs.plot: found.plot,
             }
         )
+    if answer["cut_short"] is not None:
+        raise SystemExit(INTERRUPTED)
+
+
+def _explained(path: Path, **given: Any) -> Explanation:
+    """The answer, with a line that says where the search stands; Ctrl-C gives the answer so far, twice none."""
+    with ended_by_interrupt(), progress_line("Ctrl-C: the answer so far") as listener:
+        return explain(path, **given, progress=listener, on_interrupt="answer")

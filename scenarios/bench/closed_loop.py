@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,11 +16,13 @@ from scenarios.bench.journal import Journal
 from scenarios.bench.measure import Measured, Measurement, finish, measure
 from scenarios.bench.pretreatment import errors_deg
 from scenarios.bench.readings import Reading
+from scenarios.bench.written import part_path, record_path
+from scenarios.commands.outputs import json_text
 from twin.angles import Array, wrap_deg
 from twin.catalogue import CATALOGUE
 from twin.effect import Effect
 from twin.errors import UserError
-from twin.whole_file import write_beside
+from twin.files import twin_text
 
 if TYPE_CHECKING:
     from diagnosis.explanation import Explanation
@@ -51,14 +52,6 @@ class Loop:
         return direct_errors_deg(self.after.pretreated.kept)
 
 
-def part_path(output: Path, part: str, suffix: str) -> Path:
-    """The name of one of the files of a closed loop."""
-    name = output.name
-    for ending in (".csv.gz", ".csv"):
-        name = name.removesuffix(ending)
-    return output.with_name(f"{name}-{part}{suffix}")
-
-
 def direct_errors_deg(readings: Sequence[Reading]) -> Array:
     """Measured minus reference [deg] (n,), nothing taken off."""
     measured = np.array([one.measured_deg for one in readings])
@@ -78,8 +71,6 @@ def run_loop(
 
     A run that was broken off goes on where it was, in whichever half.
     """
-    from twin.files import write_twin
-
     first, second = _half(job, "before"), _half(job, "after")
     with contextlib.closing(Journal(first.output, first.plan, twin=first.twin, restart=restart)) as earlier:
         # What was measured with a correction belongs to the readings that this came from.
@@ -89,8 +80,12 @@ def run_loop(
         found = _explained(first.output, effects, seed)
         answer = found.to_dict()
         correction = correction_of(found.extended)
-        write_twin(part_path(job.output, "twin", ".toml"), found.extended)
-        _write_toml(part_path(job.output, "correction", ".toml"), to_dict(correction))
+        job.files.write(
+            {
+                part_path(job.output, "twin", ".toml"): twin_text(found.extended),
+                part_path(job.output, "correction", ".toml"): _toml(to_dict(correction)),
+            }
+        )
         named = ", ".join(cause["name"] for cause in answer["causes"]) or "no cause beyond the paper's error model"
         say(f"explained: {answer['verdict']}: {named}; correction of {correction.series.shape[1]} orders loaded")
         with contextlib.closing(Journal(second.output, second.plan, twin=second.twin, restart=anew)) as later:
@@ -100,8 +95,7 @@ def run_loop(
                     f"{second.output}: the Hall encoder lost its correction on the way; run again with --restart"
                 )
             loop = Loop(before, after, answer, correction)
-            report = part_path(job.output, "report", ".json")
-            write_beside(report, (json.dumps(summary(loop), indent=1) + "\n").encode())
+            job.files.write({part_path(job.output, "report", ".json"): json_text(summary(loop))})
             finish(later, after)
         finish(earlier, before)
     return loop
@@ -146,7 +140,7 @@ def lines(loop: Loop) -> list[str]:
 
 
 def _half(job: Measurement, part: str) -> Measurement:
-    record = None if job.record is None else job.record.with_name(f"{job.record.stem}-{part}{job.record.suffix}")
+    record = None if job.record is None else record_path(job.record, part)
     return replace(job, output=part_path(job.output, part, ".csv"), record=record)
 
 
@@ -165,7 +159,7 @@ def _size(errors: Array) -> tuple[float, float]:
     return float(np.sqrt(np.mean(errors**2))), float(np.max(np.abs(errors)))
 
 
-def _write_toml(path: Path, content: dict[str, Any]) -> None:
+def _toml(content: dict[str, Any]) -> str:
     import tomli_w
 
-    write_beside(path, tomli_w.dumps(content).encode())
+    return tomli_w.dumps(content)

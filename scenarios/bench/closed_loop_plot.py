@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from diagnosis.report.plotting import save, style
+from diagnosis.report.plotting import style
 from scenarios.bench.closed_loop import AIM_DEG, Loop
 from scenarios.bench.readings import Reading
 from twin.angles import Array
@@ -14,9 +14,9 @@ from twin.angles import Array
 _BEFORE, _AFTER = "#cc3311", "#4477aa"
 
 
-def plot_loop(path: Path, loop: Loop) -> None:
+def loop_figure(loop: Loop) -> Any:
     """Both errors on one scale, and the one that is left on a scale of its own."""
-    plt = style(path)
+    plt = style()
     figure, (both, left) = plt.subplots(2, 1, figsize=(7.0, 6.0), sharex=True, layout="constrained")
     before, after = loop.before.pretreated.kept, loop.after.pretreated.kept
     _draw(both, before, loop.before_deg, _BEFORE, "before")
@@ -32,7 +32,8 @@ def plot_loop(path: Path, loop: Loop) -> None:
     peaks = [float(np.max(np.abs(errors))) for errors in (loop.before_deg, loop.after_deg)]
     both.set_title(f"largest error {peaks[0]:.3f} to {peaks[1]:.3f} deg; causes named: {causes}", fontsize=9)
     figure.legend(*both.get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False, fontsize=8)
-    save(figure, path)
+    plt.close(figure)
+    return figure
 
 
 def _draw(axis: object, readings: tuple[Reading, ...], errors: Array, colour: str, name: str) -> None:

@@ -9,13 +9,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from twin.errors import UserError
 
 if TYPE_CHECKING:
+    from scenarios.bench.closed_loop import Loop
     from scenarios.bench.faults import Fault, Opener
     from scenarios.bench.measure import Measured, Measurement
+    from scenarios.commands.outputs import OutputFiles
     from twin.chain import Chain
 
 DEFAULT_TWIN = "paper-encoder"
@@ -43,6 +45,7 @@ class Options:
     record: Path | None = None
     replay: Path | None = None
     restart: bool = False
+    force: bool = False
     serve: float | None = None
     interface: str = "virtual"
     channel: str | None = None
@@ -119,12 +122,24 @@ def _measurement(options: Options) -> Measurement:
     return Measurement(
         plan=plan,
         output=options.output,
+        files=_files(options),
         channels=options.channels,
         chamber=options.chamber,
         patience=Patience(timeout_s=options.timeout_s, attempts=options.attempts),
         record=options.record,
         manifest_deg=options.manifest_deg,
     )
+
+
+def _files(options: Options) -> OutputFiles:
+    from scenarios.bench.written import files_of_loop, files_of_measurement
+
+    inputs = [name for name in (options.twin, *options.effect_files) if name is not None]
+    if options.closed_loop:
+        return files_of_loop(
+            options.output, record=options.record, plot=options.plot, inputs=inputs, force=options.force
+        )
+    return files_of_measurement(options.output, record=options.record, inputs=inputs, force=options.force)
 
 
 def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> None:
@@ -136,12 +151,8 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
     from scenarios.commands.interrupt import interruptible
     from twin.extensions import effects_with
 
-    if options.plot is not None:
-        from diagnosis.report.plotting import style
-
-        style(options.plot)
-        if not options.closed_loop:
-            raise UserError("--plot draws the closed loop; give --closed-loop, or draw the sweep with halltwin report")
+    if options.plot is not None and not options.closed_loop:
+        raise UserError("--plot draws the closed loop; give --closed-loop, or draw the sweep with halltwin explain")
     job = _measurement(options)
     encoder = _encoder(options, faults)
     own_bus = with_bench_faults(open_bus, faults, options.seed)
@@ -160,6 +171,7 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
             ):
                 measured = measure(job, journal, own_bus)
             _report(job.output, measured)
+            _tell_written(job)
             return
         # Noise is drawn anew for each pose, so both measurements may share a bench and a seed.
         with _bench(options, encoder, open_bus, faults, start=0):
@@ -168,11 +180,21 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
             loop = run_loop(job, own_bus, restart=options.restart, effects=effects, seed=options.seed, say=print)
         for line in lines(loop):
             print(line)
-        if options.plot is not None:
-            from scenarios.bench.closed_loop_plot import plot_loop
+        job.files.write({options.plot: lambda: _picture(loop)})
+        _tell_written(job)
 
-            plot_loop(options.plot, loop)
-            print(f"wrote {options.plot}")
+
+def _picture(loop: Loop) -> Any:
+    from scenarios.bench.closed_loop_plot import loop_figure
+
+    return loop_figure(loop)
+
+
+def _tell_written(job: Measurement) -> None:
+    """Name the files that have not been named."""
+    for path in job.files.formats:
+        if path != job.output:
+            print(f"wrote {path}")
 
 
 def _encoder(options: Options, faults: Sequence[Fault]) -> Chain | None:
@@ -249,6 +271,7 @@ def _replay(options: Options) -> None:
         channels=options.channels,
         chamber=options.chamber,
         manifest_deg=options.manifest_deg,
+        force=options.force,
     )
     _report(options.output, found)
 

@@ -26,12 +26,14 @@ RECOVERIES = 100
 class Link:
     """One bus, one assembler. Every frame that was sent or received passes the assembler and the log, in order."""
 
-    def __init__(self, open_bus: Opener, assembler: Assembler, record: Path | None = None) -> None:
+    def __init__(
+        self, open_bus: Opener, assembler: Assembler, record: Path | None = None, *, replace: bool = False
+    ) -> None:
         self._open = open_bus
         self._bus = open_bus()
         self.assembler = assembler
         self._record = record
-        self._log: Any = None if record is None else open_log(record)
+        self._log: Any = None if record is None else open_log(record, replace=replace)
         self._sequence = 0
         # An interface may hand back what it sent itself.
         self._own = {messages().by_name[name].frame_id for name in messages().sent_by("Bench")}
@@ -115,9 +117,12 @@ class Link:
         self._bus = self._open()
 
 
-def open_log(path: Path) -> Any:
+def open_log(path: Path, *, replace: bool = False) -> Any:
     """A log of python-can that writes to this file. Raises UserError for a format that cannot hold the frames."""
     check_log_name(path)
+    if replace:
+        # Some formats would go on in a file that is there.
+        path.unlink(missing_ok=True)
     if path.exists():
         raise UserError(f"{path}: there is such a file; a log is not written over: give another name")
     return can.Logger(str(path))

@@ -12,19 +12,21 @@ from scenarios.bench.faults import Opener
 from scenarios.bench.journal import Journal
 from scenarios.bench.link import Link
 from scenarios.bench.plan import Plan, Stop
-from scenarios.bench.pretreatment import MANIFEST_DEG, Pretreated, pretreat, write_sweep
+from scenarios.bench.pretreatment import MANIFEST_DEG, Pretreated, pretreat, sweep_text
 from scenarios.bench.progress import progress
 from scenarios.bench.readings import Assembler, Reading
 from scenarios.bench.sequence import NodeGone, Patience, Sequence
+from scenarios.commands.outputs import OutputFiles
 from twin.errors import UserError
 
 
 @dataclass(frozen=True, kw_only=True)
 class Measurement:
-    """What to measure and where to put it."""
+    """What to measure and where to put it: ``files`` are all that the run may write, the output among them."""
 
     plan: Plan
     output: Path
+    files: OutputFiles
     twin: str = "a real bench"
     channels: bool = True
     chamber: bool = True
@@ -67,12 +69,12 @@ def measure(
     assembler = Assembler(channels=job.channels, chamber=job.chamber, on_event=journal.note)
     if stops:
         try:
-            with contextlib.closing(Link(open_bus, assembler, job.record)) as link:
+            with contextlib.closing(Link(open_bus, assembler, job.record, replace=job.files.force)) as link:
                 _take(job, journal, link, stops=stops, prepare=prepare)
         except NodeGone as error:
             raise UserError(f"{error}; mend it; {journal.kept()}") from None
     pretreated = pretreat(journal.readings, manifest_deg=job.manifest_deg)
-    write_sweep(job.output, pretreated.kept)
+    job.files.write({job.output: sweep_text(pretreated.kept)})
     measured = Measured(pretreated, assembler.counts, continued)
     if last:
         finish(journal, measured)

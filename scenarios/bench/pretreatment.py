@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from scenarios.bench.readings import Reading
 from twin.angles import Array, radians, wrap_deg
-from twin.sweep_file import write_columns
+from twin.sweep_file import csv_text
 
 MANIFEST_DEG = 20.0
 """Farther off the typical error than any encoder that works: a wrong reading, not a large error."""
@@ -61,8 +60,8 @@ def errors_deg(readings: Sequence[Reading]) -> Array:
     return best
 
 
-def write_sweep(path: Path, readings: Sequence[Reading]) -> None:
-    """The sweep file of readings: the columns that every reading has."""
+def sweep_text(readings: Sequence[Reading]) -> str:
+    """The text of a sweep file of readings: the columns that every reading has."""
     columns: dict[str, Sequence[float | None]] = {
         "time_s": [one.time_s for one in readings],
         "reference_deg": [one.reference_deg for one in readings],
@@ -78,4 +77,4 @@ def write_sweep(path: Path, readings: Sequence[Reading]) -> None:
     arrays = {name: np.array(values, dtype=np.float64) for name, values in recorded.items()}
     if not np.any(arrays["speed_rpm"]):
         del arrays["speed_rpm"]
-    write_columns(path, arrays)
+    return csv_text(arrays)

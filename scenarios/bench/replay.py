@@ -6,20 +6,26 @@ from pathlib import Path
 
 from scenarios.bench.link import check_log_name
 from scenarios.bench.measure import Measured
-from scenarios.bench.pretreatment import MANIFEST_DEG, pretreat, write_sweep
+from scenarios.bench.pretreatment import MANIFEST_DEG, pretreat, sweep_text
 from scenarios.bench.readings import Assembler
+from scenarios.commands.outputs import MEASURED, OutputFiles
 from twin.errors import UserError
-from twin.whole_file import check_writable
 
 
 def replay(
-    log: Path, output: Path, *, channels: bool = True, chamber: bool = True, manifest_deg: float = MANIFEST_DEG
+    log: Path,
+    output: Path,
+    *,
+    channels: bool = True,
+    chamber: bool = True,
+    manifest_deg: float = MANIFEST_DEG,
+    force: bool = False,
 ) -> Measured:
     """Write the sweep of a log in one of python-can's formats. Raises UserError."""
     import can
 
     check_log_name(log)
-    check_writable(output)
+    files = OutputFiles.checked([(output, MEASURED)], inputs=[log], force=force)
     if not log.is_file():
         raise UserError(f"{log}: no such file; give a log that --record wrote, or another of python-can's formats")
     assembler = Assembler(channels=channels, chamber=chamber)
@@ -36,5 +42,5 @@ def replay(
             "; try --no-channels or --no-chamber, where these were not on the bus"
         )
     pretreated = pretreat(assembler.readings, manifest_deg=manifest_deg)
-    write_sweep(output, pretreated.kept)
+    files.write({output: sweep_text(pretreated.kept)})
     return Measured(pretreated, assembler.counts, 0)

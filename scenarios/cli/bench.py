@@ -7,7 +7,17 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import BothDirections, EffectFiles, Points, Seed, SpeedRpm, SweepFile, Temperatures, Turns
+from scenarios.cli.options import (
+    BothDirections,
+    EffectFiles,
+    Force,
+    Points,
+    Seed,
+    SpeedRpm,
+    SweepFile,
+    Temperatures,
+    Turns,
+)
 
 
 def bench(
@@ -37,6 +47,7 @@ def bench(
     record: Annotated[Path | None, typer.Option(help="Record the bus: .asc, .blf, .csv, .db, .log or .trc.")] = None,
     replay: Annotated[Path | None, typer.Option(help="Make the sweep from such a log instead.")] = None,
     restart: Annotated[bool, typer.Option("--restart", help="Do not go on with a broken run.")] = False,
+    force: Force = False,
     timeout: Annotated[float, typer.Option(help="Time in s to wait for an answer.")] = 0.2,
     attempts: Annotated[int, typer.Option(help="How often to ask a silent node.")] = 15,
     manifest: Annotated[float, typer.Option(help="Reject readings this far off the typical error, in deg.")] = 20.0,
@@ -68,6 +79,7 @@ def bench(
             record=record,
             replay=replay,
             restart=restart,
+            force=force,
             serve=serve,
             interface=interface,
             channel=channel,

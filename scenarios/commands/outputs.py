@@ -93,7 +93,7 @@ class OutputFiles:
             else:
                 check_writable(path)
         for path in asked:
-            _check_ending(path, self.formats[path])
+            check_ending(path, self.formats[path])
             if not (self.force or path in self.unfinished or is_stream(path)):
                 _check_own(path, self.formats[path])
 
@@ -139,7 +139,8 @@ def _bytes_of(content: Any, path: Path) -> bytes:
     return figure_bytes(content, path.suffix)
 
 
-def _check_ending(path: Path, form: Format) -> None:
+def check_ending(path: Path, form: Format) -> None:
+    """Refuse a name that does not end as its format asks. Raises UserError."""
     if form is PICTURE:
         from diagnosis.report.plotting import check_format
 

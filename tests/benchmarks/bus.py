@@ -27,6 +27,7 @@ from scenarios.bench.messages import SEQUENCES, messages
 from scenarios.bench.plan import Plan
 from scenarios.bench.virtual import Setup, running
 from scenarios.bench.world import World
+from scenarios.bench.written import files_of_measurement
 from twin.errors import UserError
 
 FRAMES = 20_000
@@ -125,7 +126,9 @@ def whole_bench() -> tuple[int, int, float]:
         output = Path(folder) / "sweep.csv"
         journal = Journal(output, plan, twin="", restart=True)
         start = time.perf_counter()
-        found = measure(Measurement(plan=plan, output=output, twin=""), journal, open_bus)
+        found = measure(
+            Measurement(plan=plan, output=output, files=files_of_measurement(output), twin=""), journal, open_bus
+        )
         seconds = time.perf_counter() - start
     assert set(found.counts) == {"frames"}
     return len(found.pretreated.kept), found.counts["frames"], seconds

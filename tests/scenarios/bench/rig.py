@@ -18,6 +18,7 @@ from scenarios.bench.measure import Measured, Measurement, measure
 from scenarios.bench.plan import Plan
 from scenarios.bench.sequence import Patience
 from scenarios.bench.virtual import Setup, running
+from scenarios.bench.written import files_of_measurement
 from twin.chain import Chain
 from twin.sweep_reader import read_columns
 
@@ -49,7 +50,11 @@ def run_bench(
     parsed = [fault for text in faults for fault in parse(text)]
     open_bus = Interface().opener()
     job = Measurement(
-        plan=plan, output=output, record=record, patience=patience or Patience(timeout_s=0.03, attempts=100)
+        plan=plan,
+        output=output,
+        files=files_of_measurement(output, record=record),
+        record=record,
+        patience=patience or Patience(timeout_s=0.03, attempts=100),
     )
     setup = Setup(chain=quiet_encoder(), faults=parsed)
     with (

@@ -20,6 +20,7 @@ from scenarios.bench.measure import Measurement
 from scenarios.bench.plan import Plan
 from scenarios.bench.sequence import Patience
 from scenarios.commands.file_lock import alone
+from scenarios.commands.outputs import OutputFiles
 from tests.command_line import halltwin
 from tests.scenarios.bench.rig import PLAN, assert_same_readings, quiet_encoder, run_bench
 from twin.errors import UserError
@@ -70,7 +71,11 @@ def test_a_journal_of_another_plan_is_not_continued(tmp_path: Path) -> None:
         run_bench(sweep, record=tmp_path / "bus.log")
 
 
-HEAD = {"schema": SCHEMA, "plan": PLAN.digest(), "twin": Measurement(plan=PLAN, output=Path()).twin}
+HEAD = {
+    "schema": SCHEMA,
+    "plan": PLAN.digest(),
+    "twin": Measurement(plan=PLAN, output=Path(), files=OutputFiles({})).twin,
+}
 READING = {
     "index": 0,
     "time_s": 1.0,

@@ -1,0 +1,76 @@
+"""The files that a run on the bench leaves, and which of them may be replaced.
+
+What was measured is replaced only with ``--force``: nobody can compute it again. Where a journal lies beside it, the
+run is not finished, and what it has written so far is its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from scenarios.bench.journal import finished_path, running_path
+from scenarios.bench.link import LOG_FORMATS
+from scenarios.commands.outputs import JSON, MEASURED, PICTURE, TOML, Format, OutputFiles, check_ending
+from twin.errors import UserError
+from twin.whole_file import is_stream
+
+_LOG = Format("logs", (".jsonl",), marked=False)
+_BUS_LOG = Format("bus logs", LOG_FORMATS, marked=False)
+
+
+def part_path(output: Path, part: str, suffix: str) -> Path:
+    """The name of one of the files of a closed loop."""
+    name = output.name
+    for ending in MEASURED.endings[::-1]:
+        name = name.removesuffix(ending)
+    return output.with_name(f"{name}-{part}{suffix}")
+
+
+def record_path(record: Path, part: str) -> Path:
+    """The name of the bus log of one half of a closed loop."""
+    return record.with_name(f"{record.stem}-{part}{record.suffix}")
+
+
+def files_of_measurement(
+    output: Path, *, record: Path | None = None, inputs: Sequence[str | Path] = (), force: bool = False
+) -> OutputFiles:
+    """The sweep, its log, and the bus log. Raises UserError where one of them cannot or must not be written."""
+    if is_stream(output):
+        raise UserError(f"{output}: is no file; a measurement keeps its readings beside its sweep: give a file's name")
+    given = [*_measured(output), (record, _BUS_LOG)]
+    return OutputFiles.checked(given, inputs=inputs, force=force, unfinished=_unfinished(output, output))
+
+
+def files_of_loop(
+    output: Path,
+    *,
+    record: Path | None = None,
+    plot: Path | None = None,
+    inputs: Sequence[str | Path] = (),
+    force: bool = False,
+) -> OutputFiles:
+    """Both sweeps with their logs, twin, correction, report and picture. Raises UserError as above."""
+    check_ending(output, MEASURED)
+    before, after = (part_path(output, part, ".csv") for part in ("before", "after"))
+    given = [
+        *_measured(before),
+        (part_path(output, "twin", ".toml"), TOML),
+        (part_path(output, "correction", ".toml"), TOML),
+        *_measured(after),
+        (part_path(output, "report", ".json"), JSON),
+        (plot, PICTURE),
+    ]
+    if record is not None:
+        given += [(record_path(record, part), _BUS_LOG) for part in ("before", "after")]
+    return OutputFiles.checked(given, inputs=inputs, force=force, unfinished=_unfinished(before, before, after))
+
+
+def _measured(sweep: Path) -> Iterator[tuple[Path, Format]]:
+    yield sweep, MEASURED
+    yield finished_path(sweep), _LOG
+
+
+def _unfinished(first: Path, *sweeps: Path) -> list[Path]:
+    """What a run that broke off has written, where the journal of its first sweep is still there."""
+    return [path for sweep in sweeps for path, _ in _measured(sweep)] if running_path(first).exists() else []

@@ -105,10 +105,12 @@ def diagnose_many(
 
     from diagnosis.blas_threads import one_blas_thread
     from diagnosis.factors.findings import quantify_many
+    from diagnosis.report.provenance import Provenance
     from twin.errors import UserError
     from twin.sweep import Sweep
 
     rng = np.random.default_rng(checked_seed(seed))
+    made = Provenance.today(seed=checked_seed(seed))
     if isinstance(sweeps, str | os.PathLike | Sweep) or hasattr(sweeps, "keys"):
         raise UserError("found a single sweep where several are expected; give a list of sweeps, or call diagnose")
     wanted = list(sweeps)
@@ -118,4 +120,4 @@ def diagnose_many(
         raise UserError("found no sweep; give at least one")
     with one_blas_thread():
         found = quantify_many(read, rng=rng, robust=robust, count=count)
-    return Diagnoses(tuple(map(Diagnosis, found)))
+    return Diagnoses(tuple(Diagnosis(one, made) for one in found), made)

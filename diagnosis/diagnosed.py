@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from diagnosis.factors.air_gaps import Law
     from diagnosis.factors.findings import Findings
+    from diagnosis.report.provenance import Provenance
     from twin.chain import Chain
     from twin.sweep import Sweep
 
@@ -29,9 +30,12 @@ class Diagnosis:
     ----------
     findings : diagnosis.factors.findings.Findings
         Everything that was found: the fit with its residuals, identifiability, equivalents, raw channels.
+    made : diagnosis.report.provenance.Provenance
+        Version, day, seed and command that the answer comes from.
     """
 
     findings: Findings
+    made: Provenance
 
     def __repr__(self) -> str:
         told = ", ".join(f"{name}={estimate}" for name, estimate in self.factors.items())
@@ -112,7 +116,7 @@ class Diagnosis:
 
     @property
     def _alone(self) -> Diagnoses:
-        return Diagnoses((self,))
+        return Diagnoses((self,), self.made)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -123,9 +127,12 @@ class Diagnoses:
     ----------
     items : tuple of Diagnosis
         In the order of the sweeps.
+    made : diagnosis.report.provenance.Provenance
+        Version, day, seed and command that the answer comes from.
     """
 
     items: tuple[Diagnosis, ...]
+    made: Provenance
 
     def __len__(self) -> int:
         return len(self.items)
@@ -169,7 +176,7 @@ class Diagnoses:
         """
         from diagnosis.report.diagnose_answer import to_json
 
-        return to_json(self._findings, self.air_gaps)
+        return to_json(self._findings, self.air_gaps, self.made)
 
     def to_dataframe(self) -> pd.DataFrame:
         """The factors as a table: one row a sweep.

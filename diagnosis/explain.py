@@ -47,8 +47,9 @@ def explain(
         ``reference_deg`` and ``measured_deg``, and where recorded ``time_s``, ``direction``, ``speed_rpm``, ``turn``,
         ``temperature_c``, ``vx`` and ``vy``; one value for each reading, in the order in which they were taken.
     twin : str, os.PathLike, or Chain, optional
-        Hold the sweep against this twin as it is, instead of the paper's error model: a twin file (TOML), or a
-        :class:`twin.Chain` such as the ``extended`` one of another recording. Only its zeros are fitted.
+        Hold the sweep against this twin as it is, instead of the paper's error model: a twin file (TOML), the name of
+        a preset, or a :class:`twin.Chain` such as the ``extended`` one of another recording. Only its zeros are
+        fitted.
     effects : str, os.PathLike, Effect, or a sequence of these, optional
         Causes of your own, which are searched beside the catalogue and the installed ones: Python files that
         declare them, or :class:`twin.Effect` objects.
@@ -107,18 +108,25 @@ def explain(
     import numpy as np
 
     from diagnosis.blas_threads import one_blas_thread
+    from diagnosis.discovery.settings import DiscoverySettings
     from diagnosis.discovery.watch import Watch, stopped_by_interrupt
+    from diagnosis.report.provenance import Provenance
+    from twin.log import LOG
 
     rng = np.random.default_rng(checked_seed(seed))
+    made = Provenance.today(seed=checked_seed(seed))
     _check_settings(settings)
     _check_on_interrupt(on_interrupt)
     searched = _searched(effects, twin)
     given = _given(twin, searched)
     read = as_sweep(sweep)
+    used = vars(settings or DiscoverySettings()).items()
+    LOG.info("seed %d; settings: %s", seed, ", ".join(f"{name} {value}" for name, value in used))
     watch = Watch(progress)
     listening = stopped_by_interrupt(watch) if on_interrupt == "answer" else nullcontext()
     with one_blas_thread(), listening:
-        return Explanation(_discovery(read, given=given, effects=searched, settings=settings, rng=rng, watch=watch))
+        found = _discovery(read, given=given, effects=searched, settings=settings, rng=rng, watch=watch)
+    return Explanation(found, made)
 
 
 def _discovery(
@@ -194,12 +202,14 @@ def _given(twin: str | os.PathLike[str] | Chain | None, effects: tuple[Effect, .
 
     from twin.chain import Chain
     from twin.errors import UserError
-    from twin.files import read_twin
+    from twin.presets import read_twin_or_preset
 
     if twin is None:
         return None
     if isinstance(twin, Chain):
         return replace(twin, effects=effects)
     if not isinstance(twin, str | os.PathLike):
-        raise UserError(f"twin is of the type {type(twin).__name__}; expected the path of a twin file, or a Chain")
-    return read_twin(os.fspath(twin), effects=effects)
+        raise UserError(
+            f"twin is of the type {type(twin).__name__}; expected the path of a twin file, a preset's name, or a Chain"
+        )
+    return read_twin_or_preset(os.fspath(twin), effects=effects)

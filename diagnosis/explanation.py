@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from diagnosis.discovery.result import Discovery
+    from diagnosis.report.provenance import Provenance
     from twin.chain import Chain
     from twin.sweep import Sweep
 
@@ -119,9 +120,12 @@ class Explanation:
     ----------
     discovery : diagnosis.discovery.pipeline.Discovery
         Everything that the search found, down to residuals and Jacobians; its inner structure may change.
+    made : diagnosis.report.provenance.Provenance
+        Version, day, seed and command that the answer comes from.
     """
 
     discovery: Discovery
+    made: Provenance
 
     def __repr__(self) -> str:
         from diagnosis.report.wording import plain
@@ -176,7 +180,7 @@ class Explanation:
     def _answer(self) -> dict[str, Any]:
         from diagnosis.report.answer import to_json
 
-        return to_json(self.discovery)
+        return to_json(self.discovery, self.made)
 
     def summary(self, width: int = 80) -> str:
         """The answer as a person reads it: the text that ``halltwin explain`` prints, without colours.

@@ -14,7 +14,7 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.cli.main import main
+from scenarios.cli.main import CRASHED, main
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ class Ended:
 
 
 def halltwin(*arguments: str | Path) -> Ended:
-    """Run a command; an exception that is no exit is not caught, so that a traceback fails the test."""
+    """Run a command; one that ends in a traceback fails the test."""
     out, err = io.StringIO(), io.StringIO()
     code = 0
     with (
@@ -41,6 +41,7 @@ def halltwin(*arguments: str | Path) -> Ended:
             main()
         except SystemExit as ended:
             code = int(ended.code or 0)
+    assert code != CRASHED, err.getvalue()
     return Ended(code, out.getvalue(), err.getvalue())
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 import warnings
 
 import pytest
@@ -21,6 +22,8 @@ if "numpy" in sys.modules and "OPENBLAS_NUM_THREADS" not in os.environ:
         stacklevel=1,
     )
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Answers bear the day; a run of the tests may last beyond midnight.
+os.environ.setdefault("SOURCE_DATE_EPOCH", str(int(time.time())))
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -15,6 +15,7 @@ from diagnosis.discovery.fitting.initial_fit import senses_of_channels
 from diagnosis.discovery.pipeline import State, discover
 from diagnosis.error_model.fit import fit_baseline
 from diagnosis.explanation import Explanation
+from diagnosis.report.provenance import Provenance
 from tests.hidden.coverage import common
 from tests.hidden.generator import Hidden
 from twin.catalogue import CATALOGUE
@@ -41,7 +42,7 @@ def answer_with(name: str, hidden: Hidden) -> dict[str, Any]:
         robust=True,
     )
     state = State.of(sweep, replace(fit.chain(), effects=effects), rng=rng)
-    return Explanation(discover(state)).to_dict()
+    return Explanation(discover(state), Provenance.today(seed=0)).to_dict()
 
 
 @dataclass(frozen=True)

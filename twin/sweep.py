@@ -12,6 +12,7 @@ import numpy as np
 from twin.angles import Array, IntArray, radians, wrap_deg
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
+from twin.log import LOG
 from twin.motion import Motion
 from twin.shown_name import shown_name
 from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, PLAUSIBLE, REQUIRED, SMALLEST_AMPLITUDE
@@ -200,7 +201,10 @@ class Sweep:
         SweepError
             Where the file cannot be read or used: which line and column, what was found, expected, and to do.
         """
-        return cls.from_columns(read_columns(Path(path), max_bytes=max_bytes), name=shown_name(path))
+        found = cls.from_columns(read_columns(Path(path), max_bytes=max_bytes), name=shown_name(path))
+        columns = ", ".join(found.columns)
+        LOG.info("read %s: %d rows, %d rejected; %s", found.name, found.rows, len(found.rejected), columns)
+        return found
 
     def write(self, path: str | Path) -> None:
         """Write the used rows as CSV, whole or not at all.

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from diagnosis.progress import Listener, Progress
+from twin.log import LOG
 
 S = TypeVar("S")
 
@@ -32,6 +33,7 @@ class Watch:
         self._listener = listener
         self._began_s = time.monotonic()
         self._stage = ""
+        self._told: tuple[str, tuple[str, ...]] = ("", ())
         self._asked_to_stop = False
         self._searching = False
         self._over = False
@@ -42,6 +44,9 @@ class Watch:
 
         A listener that raises StopIteration, as a callback of scipy.optimize may, stops the search.
         """
+        if self._told != (stage, tuple(causes)):
+            self._told = stage, tuple(causes)
+            LOG.info("stage %s; held so far: %s", stage, ", ".join(causes) or "no cause")
         self._stage = stage
         if as_it_stands is not None:
             self._as_it_stands = as_it_stands

@@ -13,25 +13,35 @@ from functools import lru_cache
 
 import numpy as np
 
+from diagnosis.factors.change_point import Change, change_point
 from twin.angles import Array
 
 WEIGHT = 0.2
 """Share of the newest value in the average: best for drifts of about one standard deviation."""
+BOTH, FORWARD, BACKWARD = "both", "forward", "backward"
+"""Readings of a sweep by the direction of travel: all of them, or those of one direction."""
 _NODES = 65
 _FIRST = 2
 
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """One factor's chart over the sweeps (n,); NaN where there is nothing to hold a value against yet."""
+    """One factor's chart over the sweeps (n,); NaN where there is nothing to hold a value against yet.
+
+    ``unit`` is that of the values; ``travel`` says which readings of each sweep they come from.
+    """
 
     name: str
+    unit: str
+    travel: str
     values: Array
     deviates: Array
     averages: Array
     limit: float
     signal: int | None
     """Index of the first sweep outside the limit."""
+    change: Change | None
+    """When it began to change, by all values; None without a signal."""
 
     @property
     def direction(self) -> int:
@@ -44,7 +54,9 @@ class Chart:
         return float(np.std(np.diff(self.values)) / np.sqrt(2.0))
 
 
-def chart(name: str, values: Array, *, limit: float, weight: float = WEIGHT) -> Chart:
+def chart(
+    name: str, values: Array, *, limit: float, unit: str = "1", travel: str = BOTH, weight: float = WEIGHT
+) -> Chart:
     """The chart of one factor's values (n,), in the order in which the sweeps were taken."""
     found = deviates(values)
     averages = np.full(values.size, np.nan)
@@ -54,7 +66,17 @@ def chart(name: str, values: Array, *, limit: float, weight: float = WEIGHT) -> 
         averages[k] = state
     with np.errstate(invalid="ignore"):
         outside = np.flatnonzero(np.abs(averages) > limit)
-    return Chart(name, values, found, averages, limit, int(outside[0]) if outside.size else None)
+    return Chart(
+        name=name,
+        unit=unit,
+        travel=travel,
+        values=values,
+        deviates=found,
+        averages=averages,
+        limit=limit,
+        signal=int(outside[0]) if outside.size else None,
+        change=change_point(values) if outside.size else None,
+    )
 
 
 def deviates(values: Array) -> Array:

@@ -9,10 +9,10 @@ import numpy as np
 
 from diagnosis.error_model.fit import fit_many
 from diagnosis.error_model.result import BaselineFit
-from diagnosis.factors.control_chart import Chart, average_run_length, chart, limit_for
+from diagnosis.factors.control_chart import BACKWARD, BOTH, FORWARD, Chart, average_run_length, chart, limit_for
 from diagnosis.factors.findings import senses_from_channels
-from twin.angles import Array, radians
-from twin.baseline import FACTORS
+from twin.angles import Array, radians, wrap_deg
+from twin.baseline import FACTORS, Factor
 from twin.sweep import FEWEST_ROWS, Sweep
 
 FEWEST_SWEEPS = 5
@@ -22,11 +22,27 @@ RUN_LENGTH = 500.0
 _SMALLEST_RMS_RAD = 1e-12
 
 
+LAG = "lag_deg"
+"""Half of what lies between the zeros of the two directions: what backlash and hysteresis make."""
+RESIDUAL = "log_residual_rms"
+Angles = tuple[Array, Array]
+
+
+def _name(factor: Factor) -> str:
+    """A factor's name in a series, which is charted in the twin's units."""
+    return f"{factor.name}_percent" if factor.param.endswith("_percent") else factor.name
+
+
+UNITS = {_name(factor): factor.effect.params[factor.param].unit for factor in FACTORS} | {RESIDUAL: "1", LAG: "deg"}
+"""Every name that a chart may bear, with the unit of its values."""
+
+
 @dataclass(frozen=True, eq=False)
 class MonitoredSeries:
     """Names and fits of the sweeps in order, one chart a factor and one for the RMS of the residual.
 
-    ``run_length`` is the average number of sweeps between two false alarms of all charts together.
+    Where all sweeps go both ways the factors of each direction have charts of their own, and so has the lag between
+    them. ``run_length`` is the average number of sweeps between two false alarms of all charts together.
     """
 
     names: tuple[str, ...]
@@ -35,12 +51,15 @@ class MonitoredSeries:
     run_length: float
 
     @property
+    def signalled(self) -> tuple[Chart, ...]:
+        """The charts that signal, the earliest first; of several at one sweep, the one farthest outside its limit."""
+        found = [item for item in self.charts if item.signal is not None]
+        return tuple(sorted(found, key=lambda item: (item.signal, -abs(item.averages[item.signal or 0]))))
+
+    @property
     def first(self) -> Chart | None:
-        """The chart that signals first; of several, the one farthest outside its limit. None where none signals."""
-        signalled = [item for item in self.charts if item.signal is not None]
-        if not signalled:
-            return None
-        return min(signalled, key=lambda item: (item.signal, -abs(item.averages[item.signal or 0])))
+        """The chart that signals first. None where none signals."""
+        return self.signalled[0] if self.signalled else None
 
     @property
     def delay(self) -> float:
@@ -54,28 +73,41 @@ def monitor(sweeps: Sequence[Sweep], *, rng: np.random.Generator, run_length: fl
     The false alarms of all charts together are ``run_length`` sweeps apart on average, so each single chart is given
     a run length as many times longer as there are charts.
     """
-    angles = [(radians(sweep.reference_deg), radians(sweep.measured_deg)) for sweep in sweeps]
+    parts = _by_travel(sweeps)
     # One pair of senses for the whole series: a pair that flips would be a jump of beta and Vy.
-    senses = senses_from_channels(sweeps[0], *angles[0])
+    senses = senses_from_channels(sweeps[0], *parts[BOTH][0])
     if senses is None:
-        first = fit_many(angles[:1], rng=rng, robust=True)[0].senses
+        first = fit_many(parts[BOTH][:1], rng=rng, robust=True)[0].senses
         senses = first.sensor, first.output
-    fits = fit_many(angles, rng=rng, robust=True, senses=senses)
-    factors = factor_values(fits)
-    limit = limit_for(run_length * len(factors))
-    charts = tuple(chart(name, values, limit=limit) for name, values in factors.items())
-    return MonitoredSeries(tuple(sweep.name for sweep in sweeps), tuple(fits), charts, run_length)
+    fits = {travel: fit_many(angles, rng=rng, robust=True, senses=senses) for travel, angles in parts.items()}
+    courses = {(name, travel): c for travel, found in fits.items() for name, c in factor_values(found).items()}
+    if BACKWARD in fits:
+        zeros = [courses["zero_deg", travel] for travel in (FORWARD, BACKWARD)]
+        courses[LAG, BOTH] = 0.5 * senses[0] * wrap_deg(zeros[1] - zeros[0])
+    limit = limit_for(run_length * len(courses))
+    charts = tuple(
+        chart(name, values, limit=limit, unit=UNITS[name], travel=travel) for (name, travel), values in courses.items()
+    )
+    return MonitoredSeries(tuple(sweep.name for sweep in sweeps), tuple(fits[BOTH]), charts, run_length)
+
+
+def _by_travel(sweeps: Sequence[Sweep]) -> dict[str, list[Angles]]:
+    """Angles [rad] of each sweep's readings: of all, and of each direction where every sweep has enough of both."""
+    angles = [(radians(sweep.reference_deg), radians(sweep.measured_deg)) for sweep in sweeps]
+    ways = [sweep.motion().direction for sweep in sweeps]
+    parts = {BOTH: angles}
+    if all(min(np.count_nonzero(way > 0), np.count_nonzero(way < 0)) >= FEWEST_ROWS for way in ways):
+        for travel, sense in ((FORWARD, 1), (BACKWARD, -1)):
+            parts[travel] = [(a[way == sense], b[way == sense]) for (a, b), way in zip(angles, ways, strict=True)]
+    return parts
 
 
 def factor_values(fits: Sequence[BaselineFit]) -> dict[str, Array]:
     """Each factor of the fits in their order (sweeps,), in the unit of its name, and the log of the residual's RMS."""
     points = np.array([fit.point for fit in fits])
     points[:, -1] = np.unwrap(points[:, -1])
-    values: dict[str, Array] = {}
-    for k, factor in enumerate(FACTORS):
-        percent = "_percent" if factor.param.endswith("_percent") else ""
-        values[f"{factor.name}{percent}"] = factor.per_coordinate * points[:, k]
-    values["log_residual_rms"] = np.log([max(fit.rms_rad, _SMALLEST_RMS_RAD) for fit in fits])
+    values = {_name(factor): factor.per_coordinate * points[:, k] for k, factor in enumerate(FACTORS)}
+    values[RESIDUAL] = np.log([max(fit.rms_rad, _SMALLEST_RMS_RAD) for fit in fits])
     return values
 
 

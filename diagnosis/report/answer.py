@@ -13,6 +13,7 @@ from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.marks.row_numbers import number_in_file
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
+from diagnosis.report.provenance import Provenance
 from twin.angles import wrap_deg
 from twin.baseline import FACTORS
 from twin.catalogue import find
@@ -24,7 +25,7 @@ Deviations = dict[tuple[str, str], float]
 """Standard deviation of a parameter, by effect and parameter."""
 
 
-def to_json(found: Discovery) -> dict[str, Any]:
+def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
     """The answer, with every figure rounded to seven digits: what is beyond them is no information."""
     residual = np.degrees(raw_residual(found.baseline, found.sweep))
     extended = np.degrees(raw_residual(found.fit, found.sweep))
@@ -34,6 +35,7 @@ def to_json(found: Discovery) -> dict[str, Any]:
     answer: dict[str, Any] = _rounded(
         {
             "schema": SCHEMA,
+            **made.to_dict(),
             "sweep": _sweep(found),
             "baseline": {
                 "parameters": baseline_parameters(found.baseline),

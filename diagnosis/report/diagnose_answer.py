@@ -10,15 +10,17 @@ import numpy as np
 from diagnosis.error_model.model import NAMES
 from diagnosis.factors.air_gaps import Law
 from diagnosis.factors.findings import Findings
+from diagnosis.report.provenance import Provenance
 from twin.baseline import FACTORS
 
 SCHEMA = "halltwin.diagnose/1"
 
 
-def to_json(found: Sequence[Findings], over_gaps: Sequence[Law]) -> dict[str, Any]:
+def to_json(found: Sequence[Findings], over_gaps: Sequence[Law], made: Provenance) -> dict[str, Any]:
     """The answer to one or many sweeps, with the laws that their factors follow over the air gaps."""
     return {
         "schema": SCHEMA,
+        **made.to_dict(),
         "sweeps": [one_sweep(item) for item in found],
         "air_gaps": [dict(vars(law)) for law in over_gaps],
     }

@@ -42,6 +42,7 @@ def page(found: Discovery, answer: Mapping[str, Any]) -> str:
             _chain(answer, found),
             _parameters(answer, found),
             _invisible(answer),
+            _provenance(answer),
         ]
     )
     return (
@@ -216,6 +217,14 @@ def _invisible(answer: Mapping[str, Any]) -> str:
         return ""
     words = "<p>These causes were not searched for, because this sweep could not have shown them.</p>"
     return f"<h2>Not visible in this sweep</h2>{words}{tables.invisible(answer['not_visible'])}"
+
+
+def _provenance(answer: Mapping[str, Any]) -> str:
+    """What made the answer, and how to make it again."""
+    made = f"Made by halltwin {escape(answer['version'])} on {escape(answer['date'])} (UTC) with seed {answer['seed']}"
+    if answer["command"] is None:
+        return f"<footer><p>{made}, called from Python.</p></footer>"
+    return f"<footer><p>{made}. The same again: <code>{escape(answer['command'])}</code></p></footer>"
 
 
 def _plots(pictures: list[tuple[str, str, Plot]]) -> str:

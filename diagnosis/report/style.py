@@ -65,6 +65,7 @@ svg path { fill: none; }
 .line.c-fourth.deep { stroke: color-mix(in srgb, var(--ink) 45%, var(--fourth)); stroke-dasharray: 9 2 2 2; }
 .dashed { stroke-dasharray: 5 4; } svg .beyond { stroke: none; fill: var(--soft); }
 .scroll { overflow-x: auto; }
+footer { margin-top: 3rem; color: var(--soft); font-size: .84rem; overflow-wrap: anywhere; }
 table { border-collapse: collapse; margin: .5rem 0 1rem; font-size: .94rem; }
 th, td { text-align: left; vertical-align: top; padding: .35rem 1.1rem .35rem 0; border-bottom: 1px solid var(--rule); }
 th { font-weight: 600; color: var(--soft); font-size: .84rem; vertical-align: bottom; }

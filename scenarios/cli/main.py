@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from typing import Annotated
 
 import typer
 
@@ -12,14 +13,38 @@ from scenarios.cli.effects import causes, check_effect, new_effect
 from scenarios.cli.simulation import hardware, paper, simulate, spinning
 from scenarios.cli.studies import design, generate, recover
 from scenarios.cli.sweeps import compensate, diagnose, explain, monitor
+from scenarios.cli.verbosity import with_verbosity
 
 app = typer.Typer(
     name="halltwin",
-    help="A digital twin of a Hall angle sensor that says what its own simulation gets wrong, and why.",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
 )
+
+
+def _tell_version(asked: bool) -> None:
+    if asked:
+        from importlib import metadata
+
+        typer.echo(f"halltwin {metadata.version('halltwin')}")
+        raise typer.Exit
+
+
+@app.callback()
+def halltwin(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """A digital twin of a Hall angle sensor that says what its own simulation gets wrong, and why.
+
+    Exit code 0: answered. 1: answered, and what --fail-on names was found. 2: the input cannot be used.
+    """
+
+
+CRASHED = 70
+"""Exit code of a fault of the program's own, EX_SOFTWARE of sysexits.h: with Python's 1 it would pass for an answer."""
 
 for command in (
     explain,
@@ -38,29 +63,38 @@ for command in (
     design,
     recover,
 ):
-    app.command()(command)
+    app.command()(with_verbosity(command))
 
 
 def main() -> None:
-    """Run the command line; a mistake of the user's is one line on stderr and exit code 2."""
+    """Run the command line; a mistake of the user's is one line on stderr and exit code 2, a finding asked for is 1."""
     # The matrices here are small: a thread of their own for each core costs more than it brings.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         app()
-    except (OSError, ValueError) as error:
-        # twin loads numpy, which --help need not wait for.
-        from twin.errors import UserError
-
-        if isinstance(error, OSError) and error.filename is not None:
-            said = f"{error.filename}: {error.strerror}; give another path"
-        elif isinstance(error, UserError):
-            said = str(error)
-        else:
-            raise
+    except Exception as error:
+        code, said = _ending(error)
+        if code == CRASHED:
+            sys.excepthook(type(error), error, error.__traceback__)
         # Names of files and cells may hold line breaks and control characters; the message stays one line.
         line = " ".join(said.split())
         print(f"halltwin: {''.join(c if c.isprintable() else '?' for c in line)}", file=sys.stderr)
-        raise SystemExit(2) from None
+        raise SystemExit(code) from None
+
+
+def _ending(error: Exception) -> tuple[int, str]:
+    """Exit code and message of what ended a command."""
+    # twin loads numpy, which --help need not wait for.
+    from scenarios.commands.fail_on import FoundError
+    from twin.errors import UserError
+
+    if isinstance(error, FoundError):
+        return 1, str(error)
+    if isinstance(error, UserError):
+        return 2, str(error)
+    if isinstance(error, OSError) and error.filename is not None:
+        return 2, f"{error.filename}: {error.strerror}; give another path"
+    return CRASHED, "this is a fault of the program, not of the input; please report it with the lines above"
 
 
 if __name__ == "__main__":

@@ -7,19 +7,32 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import EffectFiles, ErrorPlot, Force, Json, Seed
+from scenarios.cli.options import OUTPUTS, EffectFiles, ErrorPlot, Force, Json, Seed, fail_on_option
+from scenarios.cli.reproduce import command_line
 
 
 def explain(
-    sweep: Annotated[Path, typer.Argument(help="Measured sweep: CSV or .csv.gz.")],
-    twin: Annotated[Path | None, typer.Option(help="Hold the sweep against this twin as it is.")] = None,
+    context: typer.Context,
+    sweep: Annotated[Path, typer.Argument(metavar="SWEEP", help="Measured sweep: .csv, .csv.gz or .parquet.")],
+    twin: Annotated[
+        str | None,
+        typer.Option(metavar="TWIN", help="Hold the sweep against this twin as it is: a TOML file or a preset."),
+    ] = None,
     json: Json = None,
-    report: Annotated[Path | None, typer.Option(help="Write a self-contained HTML report.")] = None,
-    extended: Annotated[Path | None, typer.Option(help="Write the extended twin (TOML).")] = None,
+    report: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write a self-contained HTML report.", rich_help_panel=OUTPUTS),
+    ] = None,
+    extended: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the extended twin (TOML).", rich_help_panel=OUTPUTS)
+    ] = None,
     plot: ErrorPlot = None,
     force: Force = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
+    fail_on: Annotated[
+        list[str] | None, fail_on_option("cause, the NAME of one, unexplained, or rejected (rows)")
+    ] = None,
 ) -> None:
     """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""
     from scenarios.commands.explain import Outputs, run
@@ -30,37 +43,83 @@ def explain(
         outputs=Outputs(json=json, report=report, extended=extended, plot=plot, force=force),
         effect_files=effects or (),
         seed=seed,
+        fail_on=fail_on or (),
+        command=command_line(context),
     )
 
 
 def diagnose(
-    sweeps: Annotated[list[str], typer.Argument(help="Sweep files, globs or folders.")],
+    context: typer.Context,
+    sweeps: Annotated[list[str], typer.Argument(metavar="SWEEPS...", help="Sweep files, globs or folders.")],
     json: Json = None,
-    plot: Annotated[Path | None, typer.Option(help="Draw points and fitted curve: .png, .svg or .pdf.")] = None,
-    convergence: Annotated[Path | None, typer.Option(help="Draw the swarm's convergence.")] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Draw points and fitted curve, error in deg: .png, .svg or .pdf.",
+            rich_help_panel=OUTPUTS,
+        ),
+    ] = None,
+    convergence: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Draw the swarm's convergence: .png, .svg or .pdf.", rich_help_panel=OUTPUTS),
+    ] = None,
     force: Force = False,
     seed: Seed = 0,
+    fail_on: Annotated[
+        list[str] | None, fail_on_option("undetermined (factors), gross-errors, or rejected (rows)")
+    ] = None,
 ) -> None:
     """Quantify the paper's error factors of one or many sweeps: values, intervals, what cannot be known."""
     from scenarios.commands.diagnose import run
 
-    run(sweeps, json_path=json, plot=plot, convergence=convergence, force=force, seed=seed)
+    run(
+        sweeps,
+        json_path=json,
+        plot=plot,
+        convergence=convergence,
+        force=force,
+        seed=seed,
+        fail_on=fail_on or (),
+        command=command_line(context),
+    )
 
 
 def compensate(
-    source: Annotated[Path, typer.Argument(help="Measured sweep, or twin TOML.")],
-    header: Annotated[Path | None, typer.Option(help="Write a C header with fixed-point code.")] = None,
-    table: Annotated[Path | None, typer.Option(help="Write a table as CSV.")] = None,
-    points: Annotated[int, typer.Option(help="Length of the table.")] = 64,
-    toml: Annotated[Path | None, typer.Option(help="Write the coefficients as TOML.")] = None,
+    source: Annotated[str, typer.Argument(metavar="SOURCE", help="Measured sweep, twin TOML, or preset.")],
+    header: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.h", help="Write a C header with fixed-point code.", rich_help_panel=OUTPUTS),
+    ] = None,
+    table: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write a table in deg as CSV.", rich_help_panel=OUTPUTS)
+    ] = None,
+    points: Annotated[int, typer.Option(metavar="N", help="Rows of the table.", rich_help_panel=OUTPUTS)] = 64,
+    toml: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the coefficients as TOML.", rich_help_panel=OUTPUTS)
+    ] = None,
     plot: ErrorPlot = None,
-    check: Annotated[list[str] | None, typer.Option(help="Sweep, glob or folder to test on; may be repeated.")] = None,
-    temperature: Annotated[float, typer.Option(help="Temperature in C that a twin is corrected for.")] = 25.0,
-    tolerance: Annotated[float, typer.Option(help="Largest error in deg from orders left out.")] = 1e-3,
-    prefix: Annotated[str, typer.Option(help="Prefix of the C names.")] = "halltwin",
+    check: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="SWEEPS",
+            help="Sweep, glob or folder to test the correction on; may be repeated. Exit code 1 where it makes the "
+            "error larger.",
+        ),
+    ] = None,
+    temperature: Annotated[
+        float, typer.Option(metavar="C", help="Temperature in C that a twin is corrected for.")
+    ] = 25.0,
+    tolerance: Annotated[float, typer.Option(metavar="DEG", help="Largest error in deg from orders left out.")] = 1e-3,
+    prefix: Annotated[
+        str, typer.Option(metavar="NAME", help="Prefix of the C names.", rich_help_panel=OUTPUTS)
+    ] = "halltwin",
     force: Force = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
+    fail_on: Annotated[
+        list[str] | None, fail_on_option("worse (the error is larger with the correction, on held-out readings too)")
+    ] = None,
 ) -> None:
     """Turn a sweep or a twin into a continuous correction, and measure it on readings it never saw."""
     from scenarios.commands.compensate import Outputs, run
@@ -74,18 +133,41 @@ def compensate(
         tolerance_deg=tolerance,
         effect_files=effects or (),
         seed=seed,
+        fail_on=fail_on or (),
     )
 
 
 def monitor(
-    sweeps: Annotated[list[str], typer.Argument(help="Sweep files, globs or folders in order, or one with turns.")],
-    run_length: Annotated[float, typer.Option(help="Sweeps between false alarms, on average.")] = 500.0,
-    json: Annotated[Path | None, typer.Option(help="Write the series and the charts as JSON.")] = None,
-    plot: Annotated[Path | None, typer.Option(help="Draw the charts: .png, .svg or .pdf.")] = None,
+    context: typer.Context,
+    sweeps: Annotated[
+        list[str],
+        typer.Argument(metavar="SWEEPS...", help="Sweep files, globs or folders in order, or one with turns."),
+    ],
+    run_length: Annotated[
+        float, typer.Option(metavar="SWEEPS", help="Sweeps between two false alarms, on average.")
+    ] = 500.0,
+    json: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write the series and the charts as JSON.", rich_help_panel=OUTPUTS),
+    ] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Draw the charts: .png, .svg or .pdf.", rich_help_panel=OUTPUTS),
+    ] = None,
     force: Force = False,
     seed: Seed = 0,
+    fail_on: Annotated[list[str] | None, fail_on_option("drift, or the NAME of a factor that drifts")] = None,
 ) -> None:
-    """Chart the error factors over a series of sweeps and say which one drifts, and since when."""
+    """Chart the error factors over a series of sweeps: which one drifts, since which sweep, in which direction."""
     from scenarios.commands.monitor import run
 
-    run(sweeps, run_length=run_length, json_path=json, plot=plot, force=force, seed=seed)
+    run(
+        sweeps,
+        run_length=run_length,
+        json_path=json,
+        plot=plot,
+        force=force,
+        seed=seed,
+        fail_on=fail_on or (),
+        command=command_line(context),
+    )

@@ -14,12 +14,13 @@ from diagnosis.correction.calibration import calibrate
 from diagnosis.correction.compensation import Correction, correction_of, to_dict
 from diagnosis.correction.compensation_c import header
 from diagnosis.correction.cross_validation import BeforeAfter, against, cross_validated
+from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
 from scenarios.commands.inputs import sweep_paths
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from twin.angles import TAU, Array, radians
 from twin.errors import UserError
 from twin.extensions import effects_with
-from twin.files import read_twin
+from twin.presets import is_twin, read_twin_or_preset
 from twin.shown_name import shown_name
 from twin.sweep import Sweep
 
@@ -44,7 +45,7 @@ class Outputs:
 
 
 def run(
-    source: Path,
+    source: str | Path,
     *,
     outputs: Outputs,
     check: Sequence[str] = (),
@@ -52,17 +53,22 @@ def run(
     tolerance_deg: float = 1e-3,
     effect_files: Sequence[Path] = (),
     seed: int = 0,
+    fail_on: Sequence[str] = (),
 ) -> None:
-    """Correction of a sweep or of a twin; errors on the sweeps of ``check``, or on held-out blocks of the sweep."""
+    """Correction of a sweep or of a twin; errors on the sweeps of ``check``, or on held-out blocks of the sweep.
+
+    Raises FoundError, after all is written, where the correction makes the error larger on a sweep of ``check``.
+    """
+    words = asked(fail_on, COMPENSATE)
     if not _FEWEST_POINTS <= outputs.points <= _MOST_POINTS:
         raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
     checked_on = sweep_paths(check)
-    files = _files(outputs, inputs=[source, *checked_on, *effect_files])
-    sweep = None if source.suffix == ".toml" else Sweep.read(source)
+    files = _files(outputs, inputs=[Path(source), *checked_on, *effect_files])
+    sweep = None if is_twin(source) else Sweep.read(source)
     if outputs.plot is not None and sweep is None and not check:
         raise UserError(f"{outputs.plot.name}: nothing to draw; give sweeps to --check the twin's correction on")
     if sweep is None:
-        twin = read_twin(source, effects=effects_with(effect_files))
+        twin = read_twin_or_preset(source, effects=effects_with(effect_files))
         correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)
     else:
         correction = _of_readings(tolerance_deg, seed)(*_angles(sweep))
@@ -77,6 +83,7 @@ def run(
         for line in _lines(name, found, tested, other=bool(check)):
             print(line)
     _write(files, outputs, correction, source=shown_name(source), judged=_with_own_zero(judged) if check else judged)
+    _say_where_worse(judged, fails=bool(check or words))
 
 
 def _files(outputs: Outputs, *, inputs: Sequence[Path]) -> OutputFiles:
@@ -119,6 +126,23 @@ def _lines(name: str, found: BeforeAfter, tested: Sweep, *, other: bool) -> list
     if other or np.unique(turn).size > 1:
         lines.append(_line("  each turn's own zero taken out", found.per_turn(turn)))
     return lines
+
+
+def _say_where_worse(judged: Sequence[tuple[str, BeforeAfter, Sweep]], *, fails: bool) -> None:
+    """Say on which readings the correction makes the error larger; raise FoundError there where that is a failure.
+
+    Judged with each turn's own zero taken out: a reference that was mounted anew says nothing about the correction.
+    """
+    larger = []
+    for name, found, tested in judged:
+        before, after = found.per_turn(_turns(tested)).rms_deg
+        if after > before:
+            larger.append(f"{name} ({before:.4f} -> {after:.4f} deg RMS, own zero taken out)")
+    if larger:
+        said = f"the correction makes the error larger {', '.join(larger)}; do not load it"
+        if fails:
+            raise FoundError(said)
+        print(said)
 
 
 def _turns(sweep: Sweep) -> Array:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from diagnosis import diagnose_many
+from scenarios.commands.fail_on import DIAGNOSE, asked, in_diagnoses, raise_found
 from scenarios.commands.inputs import sweep_paths
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.commands.progress import ended_by_interrupt, progress_line
@@ -19,12 +21,16 @@ def run(
     convergence: Path | None = None,
     force: bool = False,
     seed: int = 0,
+    fail_on: Sequence[str] = (),
+    command: str | None = None,
 ) -> None:
     """Diagnose what the names stand for; print the answer; write JSON and pictures where asked."""
+    words = asked(fail_on, DIAGNOSE)
     paths = sweep_paths(names)
     files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE), (convergence, PICTURE)], inputs=paths, force=force)
     with ended_by_interrupt(), progress_line() as listener:
         found = diagnose_many(paths, seed=seed, progress=listener)
+    found = replace(found, made=replace(found.made, command=command))
     print(found.summary())
     files.write(
         {
@@ -35,3 +41,4 @@ def run(
     )
     for written in files.formats:
         print(f"wrote {written}")
+    raise_found(words, in_diagnoses(found.to_dict()))

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from diagnosis import Explanation, explain
 from diagnosis.report.console import show
 from diagnosis.report.page import page
+from scenarios.commands.fail_on import EXPLAIN, asked, in_explanation, raise_found
 from scenarios.commands.outputs import HTML, JSON, PICTURE, TOML, OutputFiles, json_text
 from scenarios.commands.progress import INTERRUPTED, ended_by_interrupt, progress_line
+from twin.catalogue import unnamed
+from twin.extensions import effects_with
 from twin.files import twin_text
 
 
@@ -26,14 +29,25 @@ class Outputs:
     force: bool = False
 
 
-def run(path: Path, *, twin: Path | None, outputs: Outputs, effect_files: Sequence[Path] = (), seed: int) -> None:
+def run(
+    path: Path,
+    *,
+    twin: str | None,
+    outputs: Outputs,
+    effect_files: Sequence[Path] = (),
+    seed: int,
+    fail_on: Sequence[str] = (),
+    command: str | None = None,
+) -> None:
     """The command: print the answer, write what was asked for. Raises UserError before anything is written."""
+    words = _asked(fail_on, effect_files)
     files = OutputFiles.checked(
         [(outputs.json, JSON), (outputs.report, HTML), (outputs.extended, TOML), (outputs.plot, PICTURE)],
         inputs=[path, twin, *effect_files],
         force=outputs.force,
     )
     found = _explained(path, twin=twin, effects=effect_files, seed=seed)
+    found = replace(found, made=replace(found.made, command=command))
     answer = found.to_dict()
     try:
         show(answer)
@@ -49,6 +63,15 @@ def run(path: Path, *, twin: Path | None, outputs: Outputs, effect_files: Sequen
         )
     if answer["cut_short"] is not None:
         raise SystemExit(INTERRUPTED)
+    raise_found(words, in_explanation(answer))
+
+
+def _asked(given: Sequence[str], effect_files: Sequence[Path]) -> tuple[str, ...]:
+    """What is to be failed on: kinds of findings, and causes by name, one's own among them."""
+    if not given:
+        return ()
+    causes = [effect.name for effect in effects_with(effect_files) if not effect.baseline and not unnamed(effect.name)]
+    return asked(given, (*EXPLAIN, *causes))
 
 
 def _explained(path: Path, **given: Any) -> Explanation:

@@ -1,4 +1,4 @@
-"""halltwin monitor: the error factors over a series of sweeps, and the first sweep at which one of them drifts."""
+"""halltwin monitor: the error factors over a series of sweeps, which of them drifts, and since when."""
 
 from __future__ import annotations
 
@@ -8,9 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.factors.control_chart import WEIGHT, Chart
-from diagnosis.factors.series import FEWEST_SWEEPS, RUN_LENGTH, MonitoredSeries, monitor, turns_of
+from diagnosis.factors.control_chart import BOTH, WEIGHT, Chart
+from diagnosis.factors.series import FEWEST_SWEEPS, RUN_LENGTH, UNITS, MonitoredSeries, monitor, turns_of
+from diagnosis.report.provenance import Provenance
+from scenarios.commands.fail_on import MONITOR, asked, raise_found
 from scenarios.commands.inputs import sweep_paths
+from scenarios.commands.monitor_text import show, way
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from twin.errors import UserError
 from twin.sweep import Sweep
@@ -26,18 +29,22 @@ def run(
     plot: Path | None = None,
     force: bool = False,
     seed: int = 0,
+    fail_on: Sequence[str] = (),
+    command: str | None = None,
 ) -> None:
     """Fit every sweep of the series, chart the factors, print what was signalled."""
+    words = asked(fail_on, (*MONITOR, *UNITS))
+    made = Provenance.today(seed=seed, command=command)
     if run_length < 10.0:
         raise UserError(f"run length is {run_length:g}; expected at least 10 sweeps between false alarms")
     paths = sweep_paths(names)
     files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE)], inputs=paths, force=force)
     found = monitor(series(paths), rng=np.random.default_rng(seed), run_length=run_length)
-    for line in _report(found):
-        print(line)
-    files.write({json_path: lambda: json_text(to_dict(found)), plot: lambda: _charts(found)})
+    show(found)
+    files.write({json_path: lambda: json_text(to_dict(found, made)), plot: lambda: _charts(found)})
     for written in files.formats:
         print(f"wrote {written}")
+    raise_found(words, _drifts(found))
 
 
 def _charts(found: MonitoredSeries) -> Any:
@@ -58,23 +65,33 @@ def series(paths: Sequence[Path]) -> list[Sweep]:
     return sweeps
 
 
-def to_dict(found: MonitoredSeries) -> dict[str, Any]:
-    """The series as plain values."""
+def to_dict(found: MonitoredSeries, made: Provenance) -> dict[str, Any]:
+    """The series as plain values; what comes of one direction stands inside its factor."""
+    factors: dict[str, Any] = {}
+    for item in found.charts:
+        if item.travel == BOTH:
+            factors[item.name] = _course(found, item)
+        else:
+            factors[item.name][item.travel] = _course(found, item)
     return {
         "schema": SCHEMA,
+        **made.to_dict(),
         "sweeps": list(found.names),
         "average_run_length": found.run_length,
         "weight": WEIGHT,
         "limit": found.charts[0].limit,
         "first": None if found.first is None else _signal(found, found.first),
-        "factors": {
-            item.name: {
-                "values": [float(v) for v in item.values],
-                "averages": [None if np.isnan(v) else float(v) for v in item.averages],
-                "signal": None if item.signal is None else _signal(found, item),
-            }
-            for item in found.charts
-        },
+        "factors": factors,
+    }
+
+
+def _course(found: MonitoredSeries, item: Chart) -> dict[str, Any]:
+    return {
+        "unit": item.unit,
+        "values": [float(v) for v in item.values],
+        "averages": [None if np.isnan(v) else float(v) for v in item.averages],
+        "signal": None if item.signal is None else _signal(found, item),
+        "change": _change(found, item),
     }
 
 
@@ -82,33 +99,33 @@ def _signal(found: MonitoredSeries, item: Chart) -> dict[str, Any]:
     assert item.signal is not None
     return {
         "factor": item.name,
+        "travel": item.travel,
         "number": item.signal + 1,
         "sweep": found.names[item.signal],
         "direction": item.direction,
     }
 
 
-def _report(found: MonitoredSeries) -> list[str]:
-    lines = [
-        f"{len(found.names)} sweeps; EWMA charts of {len(found.charts)} factors, together one false alarm in "
-        f"{found.run_length:.0f} sweeps; a lasting shift by one standard deviation shows after {found.delay:.0f} on "
-        "average",
-        "",
-        f"{'factor':18} {'first':>11} {'last':>11} {'scatter':>10}   signalled at",
-    ]
-    for item in found.charts:
-        signalled = "-"
-        if item.signal is not None:
-            way = "up" if item.direction > 0 else "down"
-            signalled = f"sweep {item.signal + 1} ({found.names[item.signal]}), {way}"
-        lines.append(
-            f"{item.name:18} {item.values[0]:11.5f} {item.values[-1]:11.5f} {item.scatter:10.5f}   {signalled}"
-        )
-    drifts = found.first
-    lines.append("")
-    if drifts is None or drifts.signal is None:
-        lines.append("no drift signalled")
-    else:
-        way = "up" if drifts.direction > 0 else "down"
-        lines.append(f"drift: {drifts.name} {way}, first signalled at sweep {drifts.signal + 1} of {len(found.names)}")
-    return lines
+def _change(found: MonitoredSeries, item: Chart) -> dict[str, Any] | None:
+    """When the factor began to change; numbers of sweeps count from 1."""
+    if item.change is None:
+        return None
+    return {
+        "shape": item.change.shape,
+        "number": item.change.first + 1,
+        "low": item.change.low + 1,
+        "high": item.change.high + 1,
+        "sweep": found.names[item.change.first],
+        "size": item.change.size,
+    }
+
+
+def _drifts(found: MonitoredSeries) -> dict[str, str]:
+    """What --fail-on may ask for: that anything drifts, and each factor that does."""
+    drifts: dict[str, str] = {}
+    for item in found.signalled:
+        assert item.signal is not None
+        said = f"{way(item)}, signalled at sweep {item.signal + 1}"
+        drifts.setdefault(item.name, said)
+        drifts.setdefault("drift", f"{item.name} {said}")
+    return drifts

@@ -6,6 +6,7 @@ has doubled. A quick answer shows neither, so that scripts stay quiet.
 
 from __future__ import annotations
 
+import logging
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from diagnosis.progress import Listener, Progress
 from diagnosis.report.stage_words import progress_words
+from twin.log import LOG
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
@@ -34,6 +36,10 @@ def progress_line(
     """A listener that shows where a call stands; ``hint`` says what Ctrl-C does."""
     from rich.console import Console
 
+    if LOG.isEnabledFor(logging.INFO):
+        # --verbose says all of it already, line by line.
+        yield _nothing
+        return
     console = console or Console(file=sys.stderr, highlight=False, soft_wrap=True)
     if not console.is_terminal or console.is_dumb_terminal:
         yield _Log(console, clock).hear
@@ -43,6 +49,10 @@ def progress_line(
         yield line.hear
     finally:
         line.end()
+
+
+def _nothing(progress: Progress) -> None:
+    """Hear it and show nothing."""
 
 
 @contextmanager

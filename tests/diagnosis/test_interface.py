@@ -58,10 +58,12 @@ def test_explain_answers_as_the_command_does(tmp_path: Path, monkeypatch: pytest
     ended = halltwin("explain", BENCH, "--json", json_path, "--report", report, "--extended", twin)
     found = bench()
     assert ended.out == found.summary() + "\n"
-    assert answer_of(json_path) == found.to_dict()
+    command = "halltwin explain bench_sweep.csv --seed 0"
+    assert answer_of(json_path) == found.to_dict() | {"command": command}
     assert to_dict(read_twin(twin)) == to_dict(found.extended)
     found.write_report(str(tmp_path / "b.html"))
-    assert report.read_bytes().startswith((tmp_path / "b.html").read_bytes())
+    called = f". The same again: <code>{command}</code></p>"
+    assert report.read_text().startswith((tmp_path / "b.html").read_text().replace(", called from Python.</p>", called))
 
 
 def answer_of(path: Path) -> Any:
@@ -76,7 +78,8 @@ def test_diagnose_answers_as_the_command_does(tmp_path: Path) -> None:
         json_path = tmp_path / "a.json"
         ended = halltwin("diagnose", *files, "--json", json_path)
         assert ended.out == f"{found.summary()}\nwrote {json_path}\n"
-        assert answer_of(json_path) == found.to_dict()
+        command = f"halltwin diagnose {' '.join(path.name for path in files)} --seed 0"
+        assert answer_of(json_path) == found.to_dict() | {"command": command}
 
 
 # ---- what a result offers ----------------------------------------------------------------------------------------

@@ -99,7 +99,7 @@ FACTORS: tuple[Mutation, ...] = (
     Mutation(
         "control_charts.run_length_not_shared",
         "diagnosis/factors/series.py",
-        "limit_for(run_length * len(factors))",
+        "limit_for(run_length * len(courses))",
         "limit_for(run_length)",
         ("tests/diagnosis/factors/test_control_chart.py::test_charts_of_a_series_share_its_run_length",),
         short=True,

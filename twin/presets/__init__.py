@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from importlib import resources
 from pathlib import Path
@@ -10,6 +11,7 @@ from twin.catalogue import CATALOGUE
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.files import TwinError, from_dict, read_twin
+from twin.log import LOG
 
 
 def preset_names() -> tuple[str, ...]:
@@ -28,11 +30,23 @@ def read_preset(name: str, *, effects: tuple[Effect, ...] = CATALOGUE) -> Chain:
 
 
 def read_twin_or_preset(given: str | Path, *, effects: tuple[Effect, ...] = CATALOGUE) -> Chain:
-    """The chain of a preset's name, or of a twin file's path. Raises TwinError."""
-    if str(given) in preset_names():
-        return read_preset(str(given), effects=effects)
-    if not Path(given).suffix:
+    """The chain of a preset's name, or of a twin file's path.
+
+    A file of a preset's very name is neither taken for the preset nor the preset for it. Raises TwinError.
+    """
+    name = str(given)
+    LOG.info("twin %s", name)
+    if name in preset_names():
+        if Path(name).is_file():
+            raise TwinError(f"{name}: is a preset and also a file here; give the file as .{os.sep}{name}, or rename it")
+        return read_preset(name, effects=effects)
+    if not Path(name).suffix and not Path(name).exists():
         raise TwinError(
-            f"{given}: is no preset ({', '.join(preset_names())}); give one of them or a path ending in .toml"
+            f"{name}: is no preset ({', '.join(preset_names())}); give one of them or a path ending in .toml"
         )
     return read_twin(given, effects=effects)
+
+
+def is_twin(given: str | Path) -> bool:
+    """Whether a name stands for a twin rather than for a sweep: a preset's, or a path that ends in .toml."""
+    return str(given) in preset_names() or Path(given).suffix == ".toml"

@@ -1,0 +1,81 @@
+"""``--fail-on``: what a script asks about, and whether an answer holds it.
+
+Every command answers with exit code 0, whatever it found, and with 2 where it cannot answer. What is named by
+``--fail-on`` turns the first into 1, after everything was written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from twin.errors import UserError
+
+
+class FoundError(Exception):
+    """What was asked about was found: the command has answered, and ends with exit code 1."""
+
+
+def asked(given: Sequence[str], known: Iterable[str]) -> tuple[str, ...]:
+    """The words of the option, which may hold several with commas between. Raises UserError for an unknown one."""
+    words = tuple(dict.fromkeys(word.strip() for text in given for word in text.split(",")))
+    listed = list(dict.fromkeys(known))
+    for word in words:
+        if word not in listed:
+            raise UserError(f"--fail-on is {word!r}; expected among {', '.join(listed)}")
+    return words
+
+
+def raise_found(words: Iterable[str], found: Mapping[str, str]) -> None:
+    """Raise FoundError where one of the words was found; ``found`` says in words what."""
+    hits = [f"{word} ({found[word]})" if found[word] != word else word for word in words if word in found]
+    if hits:
+        raise FoundError(f"found {', '.join(hits)}, as --fail-on asks")
+
+
+# ---- what the answers hold --------------------------------------------------------------------------------------
+
+EXPLAIN = ("cause", "unexplained", "rejected")
+"""Beside these the name of any cause."""
+DIAGNOSE = ("undetermined", "gross-errors", "rejected")
+MONITOR = ("drift",)
+"""Beside it the name of any factor."""
+COMPENSATE = ("worse",)
+
+
+def in_explanation(answer: Mapping[str, Any]) -> dict[str, str]:
+    """What an answer of ``explain`` holds; a cause also where the sweep cannot tell it from one that was named."""
+    named = [cause for cause in answer["causes"] if cause["name"] != "unnamed"]
+    found = {cause["name"]: cause["name"] for cause in named}
+    for cause in named:
+        for rival in cause["indistinguishable_from"]:
+            found.setdefault(rival, f"cannot be told from {cause['name']}")
+    if named:
+        found["cause"] = ", ".join(cause["name"] for cause in named)
+    if len(named) < len(answer["causes"]):
+        found["unexplained"] = "structure without a name"
+    return found | _rejected(answer["sweep"]["name"], answer["sweep"]["rejected"])
+
+
+def in_diagnoses(answer: Mapping[str, Any]) -> dict[str, str]:
+    """What an answer of ``diagnose`` holds; of many sweeps the first one with it is told."""
+    found: dict[str, str] = {}
+    for sweep in reversed(answer["sweeps"]):
+        name = sweep["sweep"]
+        weak = [factor for factor, told in sweep["parameters"].items() if _undetermined(told)]
+        if weak:
+            found["undetermined"] = f"{', '.join(weak)} of {name}"
+        if sweep["glitch_rows"]:
+            found["gross-errors"] = f"{len(sweep['glitch_rows'])} in {name}"
+        found |= _rejected(name, sweep["rejected"])
+    return found
+
+
+def _undetermined(parameter: Mapping[str, Any]) -> bool:
+    """Whether the readings leave a factor open: at the model's limit, or without a bound on one side."""
+    ends = (parameter["low"], parameter["high"], *parameter.get("profile", ()))
+    return bool(parameter["at_bound"]) or None in ends
+
+
+def _rejected(name: str, rows: int) -> dict[str, str]:
+    return {"rejected": f"{rows} {'row' if rows == 1 else 'rows'} of {name}"} if rows else {}

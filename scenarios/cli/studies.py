@@ -9,6 +9,7 @@ import typer
 
 from scenarios.cli.options import (
     BothDirections,
+    Force,
     Points,
     Scheduler,
     Seed,
@@ -88,13 +89,14 @@ def design(
     best: Annotated[int, typer.Option(help="How many designs to list.")] = 10,
     output: StudyFolder = Path("design"),
     plot: Annotated[bool, typer.Option(help="Draw the map.")] = True,
+    force: Force = False,
     workers: Workers = None,
     scheduler: Scheduler = None,
     seed: Seed = 0,
 ) -> None:
     """Find magnets and distances that keep an error over temperature and mounting tolerances, and map them."""
     from scenarios.studies.design.options import demand_of, space_of
-    from scenarios.studies.design.run import run
+    from scenarios.studies.design.run import Results, run
     from scenarios.studies.machines import Machines
 
     axes = {
@@ -128,8 +130,7 @@ def design(
             mountings=mountings,
             min_yield=min_yield,
         ),
-        best=best,
-        plot=plot,
+        results=Results(best=best, plot=plot, force=force),
         machines=Machines(workers=workers, scheduler=scheduler),
         seed=seed,
     )
@@ -145,6 +146,7 @@ def recover(
     fits: Annotated[int, typer.Option(help="Sweeps of a baseline cell.")] = 200,
     sweeps: Annotated[int, typer.Option(help="Sweeps of every other cell: each is a search of seconds.")] = 5,
     plot: Annotated[bool, typer.Option(help="Draw the maps.")] = True,
+    force: Force = False,
     workers: Workers = None,
     scheduler: Scheduler = None,
     seed: Seed = 0,
@@ -165,4 +167,4 @@ def recover(
         sweeps=sweeps,
         seed=seed,
     )
-    run(grid, output, plot=plot, machines=Machines(workers=workers, scheduler=scheduler))
+    run(grid, output, plot=plot, force=force, machines=Machines(workers=workers, scheduler=scheduler))

@@ -11,7 +11,7 @@ import pytest
 
 from scenarios.studies.design.check import check_design, magpylib_mT
 from scenarios.studies.design.options import demand_of, space_of
-from scenarios.studies.design.run import explore, folder_of, run, study_of
+from scenarios.studies.design.run import Results, explore, folder_of, run, study_of
 from scenarios.studies.design.space import AXES
 from scenarios.studies.design.study import Demand, DesignStudy, ranking
 from scenarios.studies.machines import Machines
@@ -150,22 +150,22 @@ def test_the_study_gives_the_same_bytes_with_one_and_two_workers(tmp_path: Path)
 
 def test_the_command_lists_draws_and_checks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     chosen = study(diameter_mm="6,8", air_gap_mm="2,2.5")
-    machines = Machines(workers=1)
-    run(
-        "imc-14bit",
-        tmp_path / "s",
-        space=chosen.space,
-        demand=chosen.demand,
-        best=3,
-        plot=True,
-        machines=machines,
-        seed=0,
-    )
+    asked = {"space": chosen.space, "demand": chosen.demand, "machines": Machines(workers=1), "seed": 0}
+    run("imc-14bit", tmp_path / "s", results=Results(best=3), **asked)
     out = capsys.readouterr().out
     assert "of 4 designs keep 0.5 deg" in " ".join(out.split())
     assert "magpylib has" in " ".join(out.split())
     for name in ("map.png", "designs.csv", "best.json", "best.toml"):
         assert (tmp_path / "s" / name).stat().st_size > 0
+    # What was edited since is not replaced unasked.
+    twin = tmp_path / "s" / "best.toml"
+    written = twin.read_bytes()
+    twin.write_bytes(written + b"# chosen\n")
+    with pytest.raises(UserError, match="--force"):
+        run("imc-14bit", tmp_path / "s", results=Results(), **asked)
+    assert twin.read_bytes() == written + b"# chosen\n"
+    run("imc-14bit", tmp_path / "s", results=Results(force=True, plot=False), **asked)
+    assert twin.read_bytes() == written
 
 
 def test_what_cannot_be_is_refused() -> None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from diagnosis.report.plotting import save, style
+from diagnosis.report.plotting import style
 from scenarios.studies.design.study import DesignStudy, feasible, ranking
 from twin.angles import Array, IntArray
 from twin.effect import BoolArray
@@ -16,9 +15,9 @@ from twin.effect import BoolArray
 _DIAMETER, _GAP = 0, 3
 
 
-def draw_map(path: Path, found: Mapping[str, Array], study: DesignStudy) -> None:
+def map_figure(found: Mapping[str, Array], study: DesignStudy) -> Any:
     """Two panels over diameter and air gap: error at 95 % of the mountings, and field at the sensor at 25 C."""
-    plt = style(path)
+    plt = style()
     figure, panels = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained", sharex=True, sharey=True)
     shown = (
         (panels[0], "error_p95_deg", "error kept by 95 % of the mountings (deg)", "viridis_r"),
@@ -36,7 +35,8 @@ def draw_map(path: Path, found: Mapping[str, Array], study: DesignStudy) -> None
         f"{100 * study.demand.min_yield:g} % of the mountings, "
         f"{study.demand.temperature_c[0]:g} to {study.demand.temperature_c[1]:g} °C. Star: best."
     )
-    save(figure, path)
+    plt.close(figure)
+    return figure
 
 
 def _panel(

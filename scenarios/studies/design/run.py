@@ -5,14 +5,14 @@ from __future__ import annotations
 import contextlib
 import csv
 import io
-import json
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from scenarios.commands.outputs import JSON, PICTURE, TABLE, TOML, OutputFiles, json_text
 from scenarios.studies.design.check import Check, check_design, design_twin
 from scenarios.studies.design.space import AXES, Space, require_mountable
 from scenarios.studies.design.study import Demand, DesignStudy, feasible, ranking
@@ -22,11 +22,10 @@ from scenarios.studies.study_folder import StudyFolder
 from twin.angles import Array, IntArray
 from twin.errors import UserError
 from twin.extensions import effects_with
-from twin.files import to_dict, write_twin
+from twin.files import to_dict, twin_text
 from twin.limits import require_within
 from twin.magnet.magnet import LARGEST_T
 from twin.presets import read_twin_or_preset
-from twin.whole_file import write_beside
 
 Figures = dict[str, np.ndarray[Any, Any]]
 MOST_DESIGNS = 10_000_000
@@ -76,39 +75,57 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, tuple | list) else value
 
 
+@dataclass(frozen=True, kw_only=True)
+class Results:
+    """What a study leaves for its reader: how many of the best designs, whether their map.
+
+    ``force``: also in place of files that the program did not write, or that were changed since.
+    """
+
+    best: int = 10
+    plot: bool = True
+    force: bool = False
+
+
 def run(
     twin: str,
     output: Path,
     *,
     space: Space,
     demand: Demand,
-    best: int,
-    plot: bool,
+    results: Results,
     machines: Machines,
     seed: int,
 ) -> None:
     """The command: explore, list the best, check the winner, draw the map."""
     from scenarios.studies.design.table import show
 
-    if plot:
-        from diagnosis.report.plotting import style
-
-        style(Path("map.png"))
-    require_within("best", best, 1, MOST_DESIGNS, whole=True)
+    require_within("best", results.best, 1, MOST_DESIGNS, whole=True)
     study = study_of(twin, space, demand, seed=seed)
+    table, answer, best, picture = (output / name for name in ("designs.csv", "best.json", "best.toml", "map.png"))
+    files = OutputFiles.checked(
+        [(table, TABLE), (answer, JSON), (best, TOML), (picture if results.plot else None, PICTURE)],
+        inputs=[twin],
+        force=results.force,
+        folders=True,
+    )
     with folder_of(study, output) as folder:
         found = explore(study, folder, machines)
         order = ranking(found, demand)
         winner = int(order[0])
         check = check_design(study, found["design"][winner], found["grade"][winner])
-        show(found, order[:best], study, check)
-        _write_csv(output / "designs.csv", found, space)
-        _write_json(output / "best.json", found, order[:best], study, check)
-        write_twin(output / "best.toml", design_twin(study, found["design"][winner], found["grade"][winner]))
-        if plot:
-            from scenarios.studies.design.plot import draw_map
+        listed = order[: results.best]
+        show(found, listed, study, check)
+        contents: dict[Path | None, Any] = {
+            table: _table(found, space),
+            answer: json_text(_answer(found, listed, study, check)),
+            best: twin_text(design_twin(study, found["design"][winner], found["grade"][winner])),
+        }
+        if results.plot:
+            from scenarios.studies.design.plot import map_figure
 
-            draw_map(output / "map.png", found, study)
+            contents[picture] = map_figure(found, study)
+        files.write(contents)
 
 
 def record(found: Mapping[str, Array], row: int, space: Space) -> dict[str, Any]:
@@ -121,7 +138,8 @@ def record(found: Mapping[str, Array], row: int, space: Space) -> dict[str, Any]
     return values
 
 
-def _write_csv(path: Path, found: Mapping[str, Array], space: Space) -> None:
+def _table(found: Mapping[str, Array], space: Space) -> str:
+    """All designs as CSV."""
     out = io.StringIO()
     records = [record(found, row, space) for row in range(len(found["grade"]))]
     names = list(dict.fromkeys(name for entry in records for name in entry))
@@ -131,11 +149,12 @@ def _write_csv(path: Path, found: Mapping[str, Array], space: Space) -> None:
         {name: f"{value:.6g}" if isinstance(value, float) else value for name, value in entry.items()}
         for entry in records
     )
-    write_beside(path, out.getvalue().encode())
+    return out.getvalue()
 
 
-def _write_json(path: Path, found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: Check) -> None:
-    answer = {
+def _answer(found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: Check) -> dict[str, Any]:
+    """The best designs as plain values."""
+    return {
         "schema": "halltwin.design/1",
         "demand": _plain(asdict(study.demand)),
         "designs": study.space.designs,
@@ -143,4 +162,3 @@ def _write_json(path: Path, found: Mapping[str, Array], rows: IntArray, study: D
         "best": [record(found, int(row), study.space) for row in rows],
         "check_of_best": asdict(check),
     }
-    write_beside(path, (json.dumps(answer, indent=1, allow_nan=False) + "\n").encode())

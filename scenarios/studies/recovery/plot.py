@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from diagnosis.report.plotting import save, style
+from diagnosis.report.plotting import style
 from scenarios.studies.recovery.cells import BASELINE, CLEAN
 from twin.angles import Array
 
 Entry = dict[str, Any]
 
 
-def draw_maps(folder: Path, found: list[Entry]) -> None:
-    """``baseline.png`` and ``causes.png``, where the study holds cells for them; averages over what else is varied."""
+def map_figures(found: list[Entry]) -> dict[str, Any]:
+    """The maps ``baseline`` and ``causes``, where the study holds cells for them; averages over what else is varied."""
+    maps = {}
     baseline = [entry for entry in found if entry["cause"] == BASELINE]
     if baseline:
         shown: list[tuple[str, list[Entry], Callable[[Entry], float], tuple[float, float], str]] = [
             ("RMS over the Cramér–Rao bound, six parameters", baseline, _ratio, (0.8, 1.2), "coolwarm"),
             ("share of 95 % intervals that hold the truth", baseline, _coverage, (0.85, 1.0), "viridis"),
         ]
-        _draw(folder / "baseline.png", shown, "Error factors recovered", 2)
+        maps["baseline"] = _figure(shown, "Error factors recovered", 2)
     causes = list(dict.fromkeys(entry["cause"] for entry in found if entry["cause"] not in (BASELINE, CLEAN)))
     clean = [entry for entry in found if entry["cause"] == CLEAN]
     shown = [
@@ -39,7 +39,8 @@ def draw_maps(folder: Path, found: list[Entry]) -> None:
     if clean:
         shown.append(("nothing hidden: false alarms", clean, lambda entry: entry["false_alarms"], (0.0, 1.0), "Reds"))
     if shown:
-        _draw(folder / "causes.png", shown, "Share of sweeps whose hidden cause is named", 4)
+        maps["causes"] = _figure(shown, "Share of sweeps whose hidden cause is named", 4)
+    return maps
 
 
 def _ratio(entry: Entry) -> float:
@@ -50,8 +51,8 @@ def _coverage(entry: Entry) -> float:
     return float(np.mean([p["coverage"] for p in entry["parameters"].values()]))
 
 
-def _draw(path: Path, shown: list[Any], title: str, across: int) -> None:
-    plt = style(path)
+def _figure(shown: list[Any], title: str, across: int) -> Any:
+    plt = style()
     columns = min(across, len(shown))
     rows = -(-len(shown) // columns)
     figure, panels = plt.subplots(
@@ -75,7 +76,8 @@ def _draw(path: Path, shown: list[Any], title: str, across: int) -> None:
     figure.supxlabel("readings a turn", fontsize=9)
     figure.supylabel("noise (deg RMS)", fontsize=9)
     figure.suptitle(title, fontsize=10)
-    save(figure, path)
+    plt.close(figure)
+    return figure
 
 
 def _cell(entries: list[Entry], noise: float, points: int, value: Callable[[Entry], float]) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
 from scenarios.studies.recovery.cells import BASELINE, CLEAN, PARAMETERS, Cell, Grid
@@ -20,7 +20,6 @@ from twin.angles import Array
 from twin.catalogue import find
 from twin.errors import UserError
 from twin.limits import require_within
-from twin.whole_file import write_beside
 
 Summary = list[dict[str, Any]]
 
@@ -89,20 +88,20 @@ def _mean(values: Any) -> float | None:
     return float(np.mean(values)) if np.size(values) else None
 
 
-def run(grid: Grid, output: Path, *, plot: bool, machines: Machines) -> None:
+def run(grid: Grid, output: Path, *, plot: bool, machines: Machines, force: bool = False) -> None:
     """The command."""
     from scenarios.studies.recovery.table import show
 
-    if plot:
-        from diagnosis.report.plotting import style
-
-        style(Path("map.png"))
+    answer = output / "recovery.json"
+    pictures = {name: output / f"{name}.png" for name in ("baseline", "causes")} if plot else {}
+    given = [(answer, JSON), *((path, PICTURE) for path in pictures.values())]
+    files = OutputFiles.checked(given, force=force, folders=True)
     with folder_of(grid, output) as folder:
         found = recover(grid, folder, machines)
         show(found)
-        answer = {"schema": "halltwin.recovery/1", "cells": found}
-        write_beside(output / "recovery.json", (json.dumps(answer, indent=1, allow_nan=False) + "\n").encode())
+        contents: dict[Path | None, Any] = {answer: json_text({"schema": "halltwin.recovery/1", "cells": found})}
         if plot:
-            from scenarios.studies.recovery.plot import draw_maps
+            from scenarios.studies.recovery.plot import map_figures
 
-            draw_maps(output, found)
+            contents |= {pictures[name]: figure for name, figure in map_figures(found).items()}
+        files.write(contents)

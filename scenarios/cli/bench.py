@@ -17,44 +17,69 @@ from scenarios.cli.options import (
     SweepFile,
     Temperatures,
     Turns,
+    running,
+    written,
 )
 
 
 def bench(
     output: SweepFile = Path("bench.csv"),
     closed_loop: Annotated[
-        bool, typer.Option("--closed-loop", help="Measure, explain, compensate, measure again.")
+        bool,
+        typer.Option(
+            "--closed-loop", help="Measure, explain, compensate, measure again; files are named after the sweep."
+        ),
     ] = False,
-    plot: Annotated[Path | None, typer.Option(help="Draw the closed loop: .png, .svg or .pdf.")] = None,
-    twin: Annotated[str | None, typer.Option(help="Encoder on the virtual bench: twin TOML or preset.")] = None,
+    plot: Annotated[Path | None, written("Draw the closed loop: .png, .svg or .pdf.")] = None,
+    twin: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TWIN", help="Encoder on the virtual bench: twin TOML or preset; without it paper-encoder."
+        ),
+    ] = None,
     hide: Annotated[
-        list[str] | None, typer.Option(help="Effect to hide in it, EFFECT:PARAMETER=VALUE[,...]; may be repeated.")
+        list[str] | None,
+        typer.Option(
+            metavar="EFFECT",
+            help="Effect to hide in it, EFFECT:PARAMETER=VALUE[,...], e.g. saturation:k_percent=2; may be repeated.",
+        ),
     ] = None,
     points: Points = 360,
     turns: Turns = 1,
     both_directions: BothDirections = False,
     speed_rpm: SpeedRpm = None,
     temperatures: Temperatures = "",
-    settle: Annotated[float, typer.Option(help="Time in s from the last step to a reading.")] = 0.3,
+    settle: Annotated[float, typer.Option(metavar="s", help="Time in s from the last step to a reading.")] = 0.3,
     channels: Annotated[bool, typer.Option(help="The encoder sends vx and vy as well.")] = True,
     chamber: Annotated[bool, typer.Option(help="A climate chamber on the bus tells the temperature.")] = True,
-    interface: Annotated[str, typer.Option(help="Interface of python-can.")] = "virtual",
-    channel: Annotated[str | None, typer.Option(help="Its channel, e.g. can0.")] = None,
+    interface: Annotated[str, typer.Option(metavar="NAME", help="Interface of python-can.")] = "virtual",
+    channel: Annotated[str | None, typer.Option(metavar="NAME", help="Its channel, e.g. can0.")] = None,
     bus_option: Annotated[
-        list[str] | None, typer.Option(help="Further option of the interface, KEY=VALUE; may be repeated.")
+        list[str] | None, typer.Option(metavar="KEY=VALUE", help="Further option of the interface; may be repeated.")
     ] = None,
-    serve: Annotated[float | None, typer.Option(help="Be the virtual bench for other processes for so many s.")] = None,
-    record: Annotated[Path | None, typer.Option(help="Record the bus: .asc, .blf, .csv, .db, .log or .trc.")] = None,
-    replay: Annotated[Path | None, typer.Option(help="Make the sweep from such a log instead.")] = None,
-    restart: Annotated[bool, typer.Option("--restart", help="Do not go on with a broken run.")] = False,
+    serve: Annotated[
+        float | None,
+        typer.Option(metavar="s", help="Be the virtual bench for other processes for so many s; 0: until Ctrl-C."),
+    ] = None,
+    record: Annotated[Path | None, written("Record the bus: .asc, .blf, .csv, .db, .log or .trc.")] = None,
+    replay: Annotated[
+        Path | None, typer.Option(metavar="LOG", help="Make the sweep from such a log instead of measuring.")
+    ] = None,
+    restart: Annotated[bool, running("Begin anew, do not go on with a broken run.", "--restart")] = False,
     force: Force = False,
-    timeout: Annotated[float, typer.Option(help="Time in s to wait for an answer.")] = 0.2,
-    attempts: Annotated[int, typer.Option(help="How often to ask a silent node.")] = 15,
-    manifest: Annotated[float, typer.Option(help="Reject readings this far off the typical error, in deg.")] = 20.0,
+    timeout: Annotated[float, typer.Option(metavar="s", help="Time in s to wait for an answer.")] = 0.2,
+    attempts: Annotated[int, typer.Option(metavar="N", help="How often to ask a silent node.")] = 15,
+    manifest: Annotated[
+        float, typer.Option(metavar="deg", help="Reject readings this far off the typical error, in deg.")
+    ] = 20.0,
     fault: Annotated[
-        list[str] | None, typer.Option(help="Fault on the bus, KIND[:NODE][=VALUE], e.g. lost=0.02, silent:hall.")
+        list[str] | None,
+        typer.Option(
+            metavar="FAULT",
+            help="Fault on the bus, KIND[:NODE][=VALUE], e.g. lost=0.02, silent:hall; may be repeated.",
+        ),
     ] = None,
-    real_time: Annotated[bool, typer.Option("--real-time", help="Motions take the time they would take.")] = False,
+    real_time: Annotated[bool, running("Motions take the time they would take.", "--real-time")] = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
 ) -> None:

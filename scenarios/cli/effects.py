@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import EffectFiles, Force
+from scenarios.cli.options import EffectFiles, Force, written
 
 
 def causes(
-    markdown: Annotated[bool, typer.Option("--markdown", help="As the tables of the guide.")] = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="Print the tables of the guide, as Markdown.")] = False,
     effects: EffectFiles = None,
 ) -> None:
     """List the causes that the twin can simulate and the search can name."""
@@ -21,13 +21,15 @@ def causes(
 
 
 def new_effect(
-    name: Annotated[str, typer.Argument(help="Name of the effect, e.g. gear_mesh.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the effect, e.g. gear_mesh.")],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Python file to write; without it NAME.py.")
+        Path | None, written("Python file to write; without it NAME.py.", "-o", "--output", metavar="FILE.py")
     ] = None,
     answer: Annotated[
         Path | None,
-        typer.Option("--from", help="Answer of explain (--json) whose unnamed structure it is shaped after."),
+        typer.Option(
+            "--from", metavar="ANSWER", help="Answer of explain (--json) whose unnamed structure it is shaped after."
+        ),
     ] = None,
     force: Force = False,
 ) -> None:
@@ -38,7 +40,7 @@ def new_effect(
 
 
 def check_effect(
-    file: Annotated[Path, typer.Argument(help="Python file that declares effects.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE.py", help="Python file that declares effects.")],
 ) -> None:
     """Check what an effect of your own promises: null, shapes, batches, seeds, documentation."""
     from scenarios.commands.new_effect import check_run

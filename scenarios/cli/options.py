@@ -22,6 +22,16 @@ def fail_on_option(words: str) -> Any:
     )
 
 
+def written(help_text: str, *names: str, metavar: str | None = "FILE") -> Any:
+    """An option that names what is written."""
+    return typer.Option(*names, metavar=metavar, help=help_text, rich_help_panel=OUTPUTS)
+
+
+def running(help_text: str, *names: str, metavar: str | None = None) -> Any:
+    """An option that says how the work is done and leaves the answer as it is."""
+    return typer.Option(*names, metavar=metavar, help=help_text, rich_help_panel=RUNNING)
+
+
 Seed = Annotated[
     int, typer.Option(min=0, metavar="N", help="Seed of everything random; the same seed gives the same bytes.")
 ]
@@ -36,52 +46,23 @@ Points = Annotated[int, typer.Option(metavar="N", help="Readings a turn.")]
 BothDirections = Annotated[bool, typer.Option("--both-directions", help="And back over the same angles.")]
 SpeedRpm = Annotated[
     list[float] | None,
-    typer.Option(metavar="RPM", help="Speed in rpm; may be repeated. 0, the default: stop and measure."),
+    typer.Option(metavar="rpm", help="Speed in rpm; may be repeated. 0, the default: stop and measure."),
 ]
 Temperatures = Annotated[
     str, typer.Option(metavar="C,C,...", help="Temperatures in C, e.g. 25,60,85. Without: not recorded.")
 ]
 
 # What is written.
-Json = Annotated[Path | None, typer.Option(metavar="FILE", help="Write the answer as JSON.", rich_help_panel=OUTPUTS)]
-ErrorPlot = Annotated[
-    Path | None,
-    typer.Option(
-        metavar="FILE", help="Draw the error in deg before and after: .png, .svg or .pdf.", rich_help_panel=OUTPUTS
-    ),
-]
-SweepFile = Annotated[
-    Path,
-    typer.Option("-o", "--output", metavar="FILE", help="Sweep to write: .csv or .csv.gz.", rich_help_panel=OUTPUTS),
-]
-PictureFolder = Annotated[
-    Path,
-    typer.Option(
-        "-o", "--output", metavar="FOLDER", help="Folder for the picture and its data.", rich_help_panel=OUTPUTS
-    ),
-]
-StudyFolder = Annotated[
-    Path,
-    typer.Option(
-        "-o", "--output", metavar="FOLDER", help="Folder of the study; run again to go on.", rich_help_panel=OUTPUTS
-    ),
-]
-
-Force = Annotated[
-    bool,
-    typer.Option("--force", help="Replace files that are there, whoever wrote them.", rich_help_panel=OUTPUTS),
-]
+Json = Annotated[Path | None, written("Write the answer as JSON.")]
+ErrorPlot = Annotated[Path | None, written("Draw the error in deg before and after: .png, .svg or .pdf.")]
+SweepFile = Annotated[Path, written("Sweep to write: .csv or .csv.gz.", "-o", "--output")]
+PictureFolder = Annotated[Path, written("Folder for the picture and its data.", "-o", "--output", metavar="FOLDER")]
+StudyFolder = Annotated[Path, written("Folder of the study; run again to go on.", "-o", "--output", metavar="FOLDER")]
+Force = Annotated[bool, written("Replace files that are there, whoever wrote them.", "--force", metavar=None)]
 
 # How it is run.
-Workers = Annotated[
-    int | None,
-    typer.Option(metavar="N", help="Worker processes; without it one for each core.", rich_help_panel=RUNNING),
-]
+Workers = Annotated[int | None, running("Worker processes; without it one for each core.", metavar="N")]
 Scheduler = Annotated[
     str | None,
-    typer.Option(
-        metavar="ADDRESS",
-        help="Hand the work to a Dask cluster: its address, or 'local' to start one.",
-        rich_help_panel=RUNNING,
-    ),
+    running("Hand the work to a Dask cluster: its address, or 'local' to start one.", metavar="ADDRESS"),
 ]

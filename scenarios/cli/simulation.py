@@ -18,22 +18,29 @@ from scenarios.cli.options import (
     SweepFile,
     Temperatures,
     Turns,
+    written,
 )
 
 
 def simulate(
-    twin: Annotated[str, typer.Argument(help="Twin TOML, or the name of a preset.")] = "imc-14bit",
+    twin: Annotated[str, typer.Argument(metavar="TWIN", help="Twin TOML or preset.")] = "imc-14bit",
     output: SweepFile = Path("sweep.csv"),
-    motion: Annotated[Path | None, typer.Option(help="Simulate on the motion of this recorded sweep.")] = None,
+    motion: Annotated[
+        Path | None,
+        typer.Option(metavar="SWEEP", help="Simulate on the motion of this recorded sweep, in place of the protocol."),
+    ] = None,
     turns: Turns = 1,
     points: Points = 360,
     both_directions: BothDirections = False,
     speed_rpm: SpeedRpm = None,
     temperatures: Temperatures = "",
     channels: Annotated[bool, typer.Option(help="Record vx and vy as well.")] = True,
-    reference_lines: Annotated[int | None, typer.Option(help="Lines of the reference encoder (4 counts each).")] = None,
-    trace: Annotated[Path | None, typer.Option(help="Write every intermediate signal as CSV.")] = None,
-    plot: Annotated[Path | None, typer.Option(help="Draw the trace: .png, .svg or .pdf.")] = None,
+    reference_lines: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Lines of the reference encoder (4 counts each). Without: as the twin says."),
+    ] = None,
+    trace: Annotated[Path | None, written("Write every intermediate signal with its unit as CSV.")] = None,
+    plot: Annotated[Path | None, written("Draw the trace: .png, .svg or .pdf.")] = None,
     force: Force = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
@@ -63,7 +70,9 @@ def simulate(
 
 def hardware(
     output: PictureFolder,
-    twin: Annotated[str, typer.Argument(help="Twin TOML or preset, for its magnet.")] = "imc-14bit",
+    twin: Annotated[
+        str, typer.Argument(metavar="TWIN", help="Twin TOML or preset, for its magnet, disk and plates.")
+    ] = "imc-14bit",
     force: Force = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
@@ -86,7 +95,7 @@ def spinning(
 
 
 def paper(
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for table and figures.")],
+    output: Annotated[Path, written("Folder for table and figures.", "-o", "--output", metavar="FOLDER")],
     force: Force = False,
 ) -> None:
     """Regenerate Table 1 and Figures 3 to 9 of the paper from the twin."""

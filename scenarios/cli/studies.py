@@ -18,24 +18,35 @@ from scenarios.cli.options import (
     Temperatures,
     Turns,
     Workers,
+    written,
 )
 
 
 def generate(
     output: StudyFolder,
-    sweeps: Annotated[int, typer.Option("-n", "--sweeps", help="How many sweeps.")] = 10_000,
-    twin: Annotated[str, typer.Option(help="Twin TOML or preset that sweeps are drawn around.")] = "paper-encoder",
-    cause: Annotated[list[str] | None, typer.Option(help="Draw only this cause; may be repeated.")] = None,
-    most_causes: Annotated[int, typer.Option(help="Most causes in a sweep; none is as likely as any number.")] = 3,
-    strength: Annotated[str, typer.Option(help="Strengths in deg, log-uniform.")] = "0.02:0.3",
-    noise: Annotated[str, typer.Option(help="RMS noise in deg, log-uniform.")] = "0.003:0.05",
+    sweeps: Annotated[int, typer.Option("-n", "--sweeps", metavar="N", help="How many sweeps.")] = 10_000,
+    twin: Annotated[
+        str, typer.Option(metavar="TWIN", help="Twin TOML or preset that sweeps are drawn around.")
+    ] = "paper-encoder",
+    cause: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Draw only this cause; may be repeated.")
+    ] = None,
+    most_causes: Annotated[
+        int, typer.Option(metavar="N", help="Most causes in a sweep; none is as likely as any number.")
+    ] = 3,
+    strength: Annotated[
+        str, typer.Option(metavar="deg:deg", help="Strengths in deg, low:high, log-uniform.")
+    ] = "0.02:0.3",
+    noise: Annotated[
+        str, typer.Option(metavar="deg:deg", help="RMS noise in deg, low:high, log-uniform.")
+    ] = "0.003:0.05",
     turns: Turns = 1,
     points: Points = 360,
     both_directions: BothDirections = False,
     speed_rpm: SpeedRpm = None,
     temperatures: Temperatures = "",
     channels: Annotated[bool, typer.Option("--channels", help="Store the two channels as well.")] = False,
-    chunk: Annotated[int, typer.Option(help="Sweeps a chunk.")] = 1000,
+    chunk: Annotated[int, typer.Option(metavar="N", help="Sweeps that are computed and stored at a time.")] = 1000,
     workers: Workers = None,
     scheduler: Scheduler = None,
     seed: Seed = 0,
@@ -63,32 +74,53 @@ def generate(
 
 
 def design(
-    max_error: Annotated[float, typer.Option(help="Largest angle error in deg.")] = 0.5,
+    max_error: Annotated[float, typer.Option(metavar="deg", help="Largest angle error in deg.")] = 0.5,
     tolerance: Annotated[
-        str, typer.Option(help="Mounting tolerances: off_axis, tilt, magnet_off_axis, magnet_tilt, air_gap, stray.")
+        str,
+        typer.Option(
+            metavar="LIST",
+            help="Mounting tolerances, NAME=VALUE with commas: off_axis, magnet_off_axis, air_gap in mm, tilt, "
+            "magnet_tilt in deg, stray in mT.",
+        ),
     ] = "off_axis=0.3mm, tilt=1deg",
-    temperature: Annotated[str, typer.Option(help="Temperatures in C.")] = "-40:125",
-    window: Annotated[str, typer.Option(help="Field that the sensor works in, in mT.")] = "30:90",
-    twin: Annotated[str, typer.Option(help="Twin TOML or preset of the sensor, with a magnet.")] = "imc-14bit",
-    shape: Annotated[str, typer.Option(help="cylinder, ring or block.")] = "cylinder",
-    grade: Annotated[list[str] | None, typer.Option(help="Grade of the magnet; may be repeated.")] = None,
-    diameter: Annotated[str, typer.Option(help="mm: low:high:step, or numbers with commas.")] = "3:10:0.5",
-    height: Annotated[str, typer.Option(help="mm.")] = "2.5",
-    remanence: Annotated[str, typer.Option(help="T, in place of the grade's; 0: the grade's.")] = "0",
-    bore: Annotated[float, typer.Option(help="Inner diameter of a ring in mm.")] = 2.0,
-    air_gap: Annotated[str, typer.Option(help="mm.")] = "0.5:4:0.25",
-    off_axis: Annotated[str, typer.Option(help="Sensor off the shaft's axis, mm.")] = "0",
-    tilt: Annotated[str, typer.Option(help="Sensor's tilt, deg.")] = "0",
-    magnet_off_axis: Annotated[str, typer.Option(help="Magnet off the shaft's axis, mm.")] = "0",
-    magnet_tilt: Annotated[str, typer.Option(help="Magnet's tilt, deg.")] = "0",
-    stray: Annotated[str, typer.Option(help="Stray field, mT.")] = "0",
-    sampling: Annotated[str, typer.Option(help="grid of all values, or lhs or sobol between them.")] = "grid",
-    count: Annotated[int, typer.Option(help="Designs of lhs or sobol.")] = 256,
-    mountings: Annotated[int, typer.Option(help="Mountings drawn for each design.")] = 200,
-    min_yield: Annotated[float, typer.Option(help="Share of mountings that must keep error and window.")] = 0.99,
-    best: Annotated[int, typer.Option(help="How many designs to list.")] = 10,
+    temperature: Annotated[str, typer.Option(metavar="C:C", help="Temperatures in C, low:high.")] = "-40:125",
+    window: Annotated[
+        str, typer.Option(metavar="mT:mT", help="Field that the sensor works in, in mT, low:high.")
+    ] = "30:90",
+    twin: Annotated[
+        str, typer.Option(metavar="TWIN", help="Twin TOML or preset of the sensor, with a magnet.")
+    ] = "imc-14bit",
+    shape: Annotated[
+        str, typer.Option(metavar="SHAPE", help="Shape of the magnet: cylinder, ring or block.")
+    ] = "cylinder",
+    grade: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Grade of the magnet; may be repeated. Without: N35H.")
+    ] = None,
+    diameter: Annotated[
+        str, typer.Option(metavar="mm", help="Diameter in mm: low:high:step, or numbers with commas.")
+    ] = "3:10:0.5",
+    height: Annotated[str, typer.Option(metavar="mm", help="Height in mm, likewise.")] = "2.5",
+    remanence: Annotated[str, typer.Option(metavar="T", help="Remanence in T, likewise; 0: the grade's.")] = "0",
+    bore: Annotated[float, typer.Option(metavar="mm", help="Inner diameter of a ring in mm.")] = 2.0,
+    air_gap: Annotated[str, typer.Option(metavar="mm", help="Air gap in mm, likewise.")] = "0.5:4:0.25",
+    off_axis: Annotated[str, typer.Option(metavar="mm", help="Sensor off the shaft's axis in mm, likewise.")] = "0",
+    tilt: Annotated[str, typer.Option(metavar="deg", help="Sensor's tilt in deg, likewise.")] = "0",
+    magnet_off_axis: Annotated[
+        str, typer.Option(metavar="mm", help="Magnet off the shaft's axis in mm, likewise.")
+    ] = "0",
+    magnet_tilt: Annotated[str, typer.Option(metavar="deg", help="Magnet's tilt in deg, likewise.")] = "0",
+    stray: Annotated[str, typer.Option(metavar="mT", help="Stray field in mT, likewise.")] = "0",
+    sampling: Annotated[
+        str, typer.Option(metavar="WORD", help="Designs: grid of all values, or lhs or sobol between them.")
+    ] = "grid",
+    count: Annotated[int, typer.Option(metavar="N", help="Designs of lhs or sobol.")] = 256,
+    mountings: Annotated[int, typer.Option(metavar="N", help="Mountings drawn for each design.")] = 200,
+    min_yield: Annotated[
+        float, typer.Option(metavar="SHARE", help="Share of mountings, 0 to 1, that must keep error and window.")
+    ] = 0.99,
+    best: Annotated[int, typer.Option(metavar="N", help="How many designs to list.")] = 10,
     output: StudyFolder = Path("design"),
-    plot: Annotated[bool, typer.Option(help="Draw the map.")] = True,
+    plot: Annotated[bool, written("Draw the map.", metavar=None)] = True,
     force: Force = False,
     workers: Workers = None,
     scheduler: Scheduler = None,
@@ -138,14 +170,7 @@ def design(
 
 def recover(
     output: StudyFolder,
-    cause: Annotated[list[str] | None, typer.Option(help="baseline, clean, or a cause; may be repeated.")] = None,
-    noise: Annotated[str, typer.Option(help="RMS noise in deg.")] = "0.01,0.03,0.1",
-    points: Annotated[str, typer.Option(help="Readings a turn.")] = "36,90,360",
-    turns: Annotated[str, typer.Option(help="Turns in each direction.")] = "2",
-    amplitude: Annotated[str, typer.Option(help="Amplitudes of the hidden cause in deg.")] = "0.05",
-    fits: Annotated[int, typer.Option(help="Sweeps of a baseline cell.")] = 200,
-    sweeps: Annotated[int, typer.Option(help="Sweeps of every other cell: each is a search of seconds.")] = 5,
-    plot: Annotated[bool, typer.Option(help="Draw the maps.")] = True,
+    plot: Annotated[bool, written("Draw the maps.", metavar=None)] = True,
     force: Force = False,
     workers: Workers = None,
     scheduler: Scheduler = None,

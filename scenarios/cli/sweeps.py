@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import OUTPUTS, EffectFiles, ErrorPlot, Force, Json, Seed, fail_on_option
+from scenarios.cli.options import EffectFiles, ErrorPlot, Force, Json, Seed, fail_on_option, written
 from scenarios.cli.reproduce import command_line
 
 
@@ -21,11 +21,9 @@ def explain(
     json: Json = None,
     report: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Write a self-contained HTML report.", rich_help_panel=OUTPUTS),
+        written("Write a self-contained HTML report."),
     ] = None,
-    extended: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the extended twin (TOML).", rich_help_panel=OUTPUTS)
-    ] = None,
+    extended: Annotated[Path | None, written("Write the extended twin (TOML).")] = None,
     plot: ErrorPlot = None,
     force: Force = False,
     effects: EffectFiles = None,
@@ -54,15 +52,11 @@ def diagnose(
     json: Json = None,
     plot: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Draw points and fitted curve, error in deg: .png, .svg or .pdf.",
-            rich_help_panel=OUTPUTS,
-        ),
+        written("Draw points and fitted curve, error in deg: .png, .svg or .pdf."),
     ] = None,
     convergence: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Draw the swarm's convergence: .png, .svg or .pdf.", rich_help_panel=OUTPUTS),
+        written("Draw the swarm's convergence: .png, .svg or .pdf."),
     ] = None,
     force: Force = False,
     seed: Seed = 0,
@@ -89,15 +83,11 @@ def compensate(
     source: Annotated[str, typer.Argument(metavar="SOURCE", help="Measured sweep, twin TOML, or preset.")],
     header: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.h", help="Write a C header with fixed-point code.", rich_help_panel=OUTPUTS),
+        written("Write a C header with fixed-point code.", metavar="FILE.h"),
     ] = None,
-    table: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write a table in deg as CSV.", rich_help_panel=OUTPUTS)
-    ] = None,
-    points: Annotated[int, typer.Option(metavar="N", help="Rows of the table.", rich_help_panel=OUTPUTS)] = 64,
-    toml: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the coefficients as TOML.", rich_help_panel=OUTPUTS)
-    ] = None,
+    table: Annotated[Path | None, written("Write a table in deg as CSV.")] = None,
+    points: Annotated[int, written("Rows of the table.", metavar="N")] = 64,
+    toml: Annotated[Path | None, written("Write the coefficients as TOML.")] = None,
     plot: ErrorPlot = None,
     check: Annotated[
         list[str] | None,
@@ -110,10 +100,8 @@ def compensate(
     temperature: Annotated[
         float, typer.Option(metavar="C", help="Temperature in C that a twin is corrected for.")
     ] = 25.0,
-    tolerance: Annotated[float, typer.Option(metavar="DEG", help="Largest error in deg from orders left out.")] = 1e-3,
-    prefix: Annotated[
-        str, typer.Option(metavar="NAME", help="Prefix of the C names.", rich_help_panel=OUTPUTS)
-    ] = "halltwin",
+    tolerance: Annotated[float, typer.Option(metavar="deg", help="Largest error in deg from orders left out.")] = 1e-3,
+    prefix: Annotated[str, written("Prefix of the C names.", metavar="NAME")] = "halltwin",
     force: Force = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
@@ -148,11 +136,11 @@ def monitor(
     ] = 500.0,
     json: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Write the series and the charts as JSON.", rich_help_panel=OUTPUTS),
+        written("Write the series and the charts as JSON."),
     ] = None,
     plot: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Draw the charts: .png, .svg or .pdf.", rich_help_panel=OUTPUTS),
+        written("Draw the charts: .png, .svg or .pdf."),
     ] = None,
     force: Force = False,
     seed: Seed = 0,

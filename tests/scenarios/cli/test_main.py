@@ -33,3 +33,18 @@ def test_every_command_and_every_option_says_what_it_is(command: str) -> None:
     assert found.help
     assert [option.name for option in found.params if not option.help] == []
     assert halltwin(command, "--help").code == 0
+
+
+UNITS = {"deg": "deg", "mm": "mm", "mT": "mT", "s": "s", "C": "C", "rpm": "rpm", "T": "T"}
+"""Unit by the placeholder that stands for a value in the help."""
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_value_has_a_placeholder_and_a_unit_is_said_in_words_too(command: str) -> None:
+    """A number's unit stands in the placeholder and in the sentence, so that neither has to be guessed."""
+    for option in get_command(app).commands[command].params:
+        placeholder = str(option.metavar or "")
+        assert placeholder or getattr(option, "is_flag", False) or option.param_type_name == "argument", option.name
+        for part in placeholder.split(":")[0].split(",")[:1]:
+            if part in UNITS:
+                assert f" {UNITS[part]}" in str(option.help), f"{command} {option.name}"

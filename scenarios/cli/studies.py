@@ -170,6 +170,19 @@ def design(
 
 def recover(
     output: StudyFolder,
+    cause: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="baseline, clean, or a cause; may be repeated.")
+    ] = None,
+    noise: Annotated[str, typer.Option(metavar="deg,deg,...", help="RMS noise in deg.")] = "0.01,0.03,0.1",
+    points: Annotated[str, typer.Option(metavar="N,N,...", help="Readings a turn.")] = "36,90,360",
+    turns: Annotated[str, typer.Option(metavar="N,N,...", help="Turns in each direction.")] = "2",
+    amplitude: Annotated[
+        str, typer.Option(metavar="deg,deg,...", help="Amplitudes of the hidden cause in deg.")
+    ] = "0.05",
+    fits: Annotated[int, typer.Option(metavar="N", help="Sweeps of a baseline cell.")] = 200,
+    sweeps: Annotated[
+        int, typer.Option(metavar="N", help="Sweeps of every other cell: each is a search of seconds.")
+    ] = 5,
     plot: Annotated[bool, written("Draw the maps.", metavar=None)] = True,
     force: Force = False,
     workers: Workers = None,

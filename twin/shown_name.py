@@ -7,5 +7,6 @@ from pathlib import Path
 
 
 def shown_name(path: str | Path) -> str:
-    """The last part of a path; bytes in it that are no UTF-8, as old disks have them, become the replacement mark."""
-    return os.fsencode(Path(path).name).decode("utf-8", errors="replace")
+    """The last part of a path; what is no UTF-8 or cannot be printed, such as a line break, becomes U+FFFD."""
+    name = os.fsencode(Path(path).name).decode("utf-8", errors="replace")
+    return "".join(letter if letter.isprintable() else "\ufffd" for letter in name)

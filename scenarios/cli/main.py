@@ -39,7 +39,8 @@ def halltwin(
 ) -> None:
     """A digital twin of a Hall angle sensor that says what its own simulation gets wrong, and why.
 
-    Exit code 0: answered. 1: answered, and what --fail-on names was found. 2: the input cannot be used.
+    Exit code 0: answered. 1: answered, and what --fail-on names was found, or some of the files could not be used.
+    2: the input cannot be used.
     """
 
 

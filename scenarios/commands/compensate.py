@@ -15,7 +15,7 @@ from diagnosis.correction.compensation import Correction, correction_of, to_dict
 from diagnosis.correction.compensation_c import header
 from diagnosis.correction.cross_validation import BeforeAfter, against, cross_validated
 from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
-from scenarios.commands.inputs import sweep_paths
+from scenarios.commands.inputs import SweepsRead, read_sweeps, sweep_paths
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from twin.angles import TAU, Array, radians
 from twin.errors import UserError
@@ -64,6 +64,7 @@ def run(
         raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
     checked_on = sweep_paths(check)
     files = _files(outputs, inputs=[Path(source), *checked_on, *effect_files])
+    others = read_sweeps(checked_on)
     sweep = None if is_twin(source) else Sweep.read(source)
     if outputs.plot is not None and sweep is None and not check:
         raise UserError(f"{outputs.plot.name}: nothing to draw; give sweeps to --check the twin's correction on")
@@ -78,12 +79,15 @@ def run(
     )
     for name in correction.left_out:
         print(f"- {name}: not in the correction; a single angle reading cannot tell it")
-    judged = _judge(correction, sweep, checked_on, tolerance_deg, seed)
+    judged = _judge(correction, sweep, others, tolerance_deg, seed)
     for name, found, tested in judged:
         for line in _lines(name, found, tested, other=bool(check)):
             print(line)
+    for line in others.lines:
+        print(line)
     _write(files, outputs, correction, source=shown_name(source), judged=_with_own_zero(judged) if check else judged)
     _say_where_worse(judged, fails=bool(check or words))
+    others.raise_unusable()
 
 
 def _files(outputs: Outputs, *, inputs: Sequence[Path]) -> OutputFiles:
@@ -107,11 +111,10 @@ def _of_readings(tolerance_deg: float, seed: int) -> Callable[[Array, Array], Co
 
 
 def _judge(
-    correction: Correction, sweep: Sweep | None, check: Sequence[Path], tolerance_deg: float, seed: int
+    correction: Correction, sweep: Sweep | None, others: SweepsRead, tolerance_deg: float, seed: int
 ) -> list[tuple[str, BeforeAfter, Sweep]]:
-    if check:
-        sweeps = [Sweep.read(path) for path in check]
-        return [(f"on {other.name}", against(*_angles(other), correction.shaft), other) for other in sweeps]
+    if others.sweeps:
+        return [(f"on {one.name}", against(*_angles(one), correction.shaft), one) for one in others.sweeps]
     if sweep is None:
         return []
     build = _of_readings(tolerance_deg, seed)

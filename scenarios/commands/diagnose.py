@@ -8,7 +8,7 @@ from pathlib import Path
 
 from diagnosis import diagnose_many
 from scenarios.commands.fail_on import DIAGNOSE, asked, in_diagnoses, raise_found
-from scenarios.commands.inputs import sweep_paths
+from scenarios.commands.inputs import read_sweeps, sweep_paths
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.commands.progress import ended_by_interrupt, progress_line
 
@@ -28,17 +28,17 @@ def run(
     words = asked(fail_on, DIAGNOSE)
     paths = sweep_paths(names)
     files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE), (convergence, PICTURE)], inputs=paths, force=force)
+    read = read_sweeps(paths)
     with ended_by_interrupt(), progress_line() as listener:
-        found = diagnose_many(paths, seed=seed, progress=listener)
+        found = diagnose_many(read.sweeps, seed=seed, progress=listener)
     found = replace(found, made=replace(found.made, command=command))
-    print(found.summary())
-    files.write(
-        {
-            json_path: lambda: json_text(found.to_dict()),
-            plot: found.plot,
-            convergence: found.plot_convergence,
-        }
-    )
+    answer = {**found.to_dict(), "unusable": read.listed()}
+    try:
+        for line in (found.summary(), *read.lines):
+            print(line)
+    finally:
+        files.write({json_path: lambda: json_text(answer), plot: found.plot, convergence: found.plot_convergence})
     for written in files.formats:
         print(f"wrote {written}")
-    raise_found(words, in_diagnoses(found.to_dict()))
+    raise_found(words, in_diagnoses(answer))
+    read.raise_unusable()

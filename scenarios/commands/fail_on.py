@@ -13,7 +13,7 @@ from twin.errors import UserError
 
 
 class FoundError(Exception):
-    """What was asked about was found: the command has answered, and ends with exit code 1."""
+    """The command has answered, and ends with exit code 1: what was asked about was found, or a file was left out."""
 
 
 def asked(given: Sequence[str], known: Iterable[str]) -> tuple[str, ...]:

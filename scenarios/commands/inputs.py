@@ -1,12 +1,16 @@
-"""Sweep files as people name them: single files, globs, folders."""
+"""Sweep files as people name them: single files, globs, folders; of several, those that can be used."""
 
 from __future__ import annotations
 
 import glob
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-from twin.errors import UserError
+from scenarios.commands.fail_on import FoundError
+from twin.errors import SweepError, UserError
+from twin.shown_name import shown_name
+from twin.sweep import Sweep
 
 ENDINGS = (".csv", ".csv.gz", ".parquet")
 
@@ -32,3 +36,51 @@ def sweep_paths(names: Sequence[str]) -> list[Path]:
                 raise UserError(f"{name}: no such file, folder or pattern with a match")
             found += matched
     return found
+
+
+@dataclass(frozen=True)
+class Unusable:
+    """A file that is no sweep, and why not."""
+
+    file: str
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class SweepsRead:
+    """The sweeps of several files in their order, and the files that were left out."""
+
+    sweeps: tuple[Sweep, ...]
+    unusable: tuple[Unusable, ...] = ()
+
+    @property
+    def lines(self) -> list[str]:
+        """The files that were left out, as a person reads it."""
+        return [f"not used: {one.file}: {one.reason}" for one in self.unusable]
+
+    def listed(self) -> list[dict[str, str]]:
+        """The files that were left out, for the JSON."""
+        return [{"file": one.file, "reason": one.reason} for one in self.unusable]
+
+    def raise_unusable(self) -> None:
+        """Raise FoundError where a file was left out: the command has answered without it."""
+        if self.unusable:
+            count = len(self.unusable)
+            raise FoundError(f"{count} of {count + len(self.sweeps)} files could not be used; they are listed above")
+
+
+def read_sweeps(paths: Sequence[Path]) -> SweepsRead:
+    """Read these files; one that is no sweep is left out and listed. Raises SweepError where none can be used."""
+    sweeps, unusable = [], []
+    first: SweepError | None = None
+    for path in paths:
+        try:
+            sweeps.append(Sweep.read(path))
+        except SweepError as error:
+            first = first or error
+            name = shown_name(path)
+            unusable.append(Unusable(name, str(error).removeprefix(f"{path}: ").removeprefix(f"{name}: ")))
+    if first is not None and not sweeps:
+        more = f" (and none of the other {len(paths) - 1} files can be used)" if len(paths) > 1 else ""
+        raise SweepError(f"{first}{more}")
+    return SweepsRead(tuple(sweeps), tuple(unusable))

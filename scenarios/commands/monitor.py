@@ -12,7 +12,7 @@ from diagnosis.factors.control_chart import BOTH, WEIGHT, Chart
 from diagnosis.factors.series import FEWEST_SWEEPS, RUN_LENGTH, UNITS, MonitoredSeries, monitor, turns_of
 from diagnosis.report.provenance import Provenance
 from scenarios.commands.fail_on import MONITOR, asked, raise_found
-from scenarios.commands.inputs import sweep_paths
+from scenarios.commands.inputs import read_sweeps, sweep_paths
 from scenarios.commands.monitor_text import show, way
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from twin.errors import UserError
@@ -39,12 +39,19 @@ def run(
         raise UserError(f"run length is {run_length:g}; expected at least 10 sweeps between false alarms")
     paths = sweep_paths(names)
     files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE)], inputs=paths, force=force)
-    found = monitor(series(paths), rng=np.random.default_rng(seed), run_length=run_length)
-    show(found)
-    files.write({json_path: lambda: json_text(to_dict(found, made)), plot: lambda: _charts(found)})
+    read = read_sweeps(paths)
+    found = monitor(series(read.sweeps), rng=np.random.default_rng(seed), run_length=run_length)
+    answer = {**to_dict(found, made), "unusable": read.listed()}
+    try:
+        show(found)
+        for line in read.lines:
+            print(line)
+    finally:
+        files.write({json_path: lambda: json_text(answer), plot: lambda: _charts(found)})
     for written in files.formats:
         print(f"wrote {written}")
     raise_found(words, _drifts(found))
+    read.raise_unusable()
 
 
 def _charts(found: MonitoredSeries) -> Any:
@@ -53,9 +60,9 @@ def _charts(found: MonitoredSeries) -> Any:
     return charts_figure(found)
 
 
-def series(paths: Sequence[Path]) -> list[Sweep]:
-    """The sweeps in order: the files as given, or the turns of a single file. Raises UserError for too few."""
-    sweeps = [Sweep.read(path) for path in paths]
+def series(read: Sequence[Sweep]) -> list[Sweep]:
+    """The sweeps in order: those given, or the turns of a single one. Raises UserError for too few."""
+    sweeps = list(read)
     if len(sweeps) == 1 and sweeps[0].turn is not None:
         sweeps = turns_of(sweeps[0])
     if len(sweeps) < FEWEST_SWEEPS:

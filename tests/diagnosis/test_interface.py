@@ -79,7 +79,7 @@ def test_diagnose_answers_as_the_command_does(tmp_path: Path) -> None:
         ended = halltwin("diagnose", *files, "--json", json_path)
         assert ended.out == f"{found.summary()}\nwrote {json_path}\n"
         command = f"halltwin diagnose {' '.join(path.name for path in files)} --seed 0"
-        assert answer_of(json_path) == found.to_dict() | {"command": command}
+        assert answer_of(json_path) == found.to_dict() | {"command": command, "unusable": []}
 
 
 # ---- what a result offers ----------------------------------------------------------------------------------------

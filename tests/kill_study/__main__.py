@@ -1,0 +1,86 @@
+"""The command: ``python -m tests.kill_study``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from tests.kill_study.disks import can_mount, fill
+from tests.kill_study.kills import kill
+from tests.kill_study.pairs import pair
+from tests.kill_study.trials import COMMANDS, TWIN, Command, Trial
+from twin.files import write_twin
+from twin.presets import read_preset
+
+KINDS = {"kill": "kill -9", "disk": "full disk", "pair": "two at once"}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Try what is asked for; 0 where all is as promised, 1 where not."""
+    names = [command.name for command in COMMANDS]
+    parser = argparse.ArgumentParser(prog="python -m tests.kill_study", description="Is anything lost or ruined?")
+    parser.add_argument("--only", action="append", choices=names, help="this command alone; may be given repeatedly")
+    parser.add_argument("--kills", type=int, default=25, help="kills of each command (25)")
+    parser.add_argument("--disks", type=int, default=10, help="fill levels of the disk (10)")
+    parser.add_argument("--pairs", type=int, default=10, help="how often two are started in one folder (10)")
+    parser.add_argument("-o", "--output", type=Path, metavar="JSON", help="write the trials to this file")
+    asked = parser.parse_args(arguments)
+    chosen = [command for command in COMMANDS if asked.only is None or command.name in asked.only]
+    disks = asked.disks
+    if disks and not can_mount():
+        print("full disks are not tried: this user may not mount one (unshare -rm, tmpfs)", file=sys.stderr)
+        disks = 0
+    trials: list[Trial] = []
+
+    def tell(trial: Trial) -> None:
+        trials.append(trial)
+        word = "ok " if trial.good else "BAD"
+        print(f"{word} {trial.command:8} {KINDS[trial.kind]:11} {trial.done}: {trial.outcome}", flush=True)
+
+    with tempfile.TemporaryDirectory(prefix="kill-study-") as folder:
+        work = Path(folder)
+        # Without noise, since a bench that goes on draws other noise.
+        write_twin(work / TWIN, read_preset("paper-encoder").without("noise"))
+        for command in chosen:
+            calm = work / f"{command.name}-calm"
+            start = time.monotonic()
+            first = command.run(calm)
+            seconds = time.monotonic() - start
+            if first.code != 0:
+                print(f"{command.name} fails undisturbed: {first.last_line}", file=sys.stderr)
+                return 1
+            print(f"    {command.name} takes {seconds:.1f} s undisturbed", flush=True)
+            for number in range(asked.kills):
+                kill(command, work, calm, number=number, seconds=seconds, tell=tell)
+            if disks:
+                fill(command, calm, levels=disks, tell=tell)
+            for number in range(asked.pairs):
+                pair(command, work, calm, number=number, tell=tell)
+    if asked.output is not None:
+        asked.output.write_text(json.dumps([asdict(trial) for trial in trials], indent=1) + "\n", encoding="utf-8")
+    print(table(chosen, trials))
+    return 0 if all(trial.good for trial in trials) else 1
+
+
+def table(commands: Sequence[Command], trials: Sequence[Trial]) -> str:
+    """How many trials of each kind went as promised, and how."""
+    lines = [f"{'':10} {'':11} {'tried':>5} {'equal':>6} {'refused':>8} {'bad':>4}"]
+    for command in commands:
+        for kind, words in KINDS.items():
+            of = [trial for trial in trials if trial.command == command.name and trial.kind == kind]
+            refused = sum(trial.outcome.startswith("refused") for trial in of if trial.good)
+            bad = sum(not trial.good for trial in of)
+            if of:
+                equal = len(of) - refused - bad
+                lines.append(f"{command.name:10} {words:11} {len(of):5} {equal:6} {refused:8} {bad:4}")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,147 @@
+"""What is tried: commands of some seconds, how they are started, and whether they left what an undisturbed run does."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from twin.sweep_reader import read_columns
+
+ROOT = Path(__file__).parents[2]
+LONGEST_S = 300.0
+"""No run takes so long, be the machine ever so busy: one that does is taken to hang."""
+STUDY, SWEEP, TWIN = "study", "sweep.csv", "encoder.toml"
+GENERATE = ("generate", "-n", "1500", "--chunk", "50")
+RECOVER = (
+    *("recover", "--cause", "baseline", "--cause", "clean", "--noise", "0.02,0.05"),
+    *("--points", "36,60,72", "--turns", "1", "--fits", "40", "--sweeps", "1"),
+)
+DESIGN = ("design", "--diameter", "4:9:0.5", "--height", "2.5,3", "--air-gap", "1:3:0.5", "--mountings", "60")
+BENCH = ("bench", "--points", "480", "--both-directions")
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command of halltwin that works in a folder of a trial: a study on two processes, or a bench."""
+
+    name: str
+    given: tuple[str, ...]
+    study: bool = True
+
+    def arguments(self, place: Path) -> list[str]:
+        """The whole command line."""
+        where = (
+            ("--workers", "2", "-o", str(place / STUDY))
+            if self.study
+            else ("--twin", str(place.parent / TWIN), "-o", str(place / SWEEP))
+        )
+        return [sys.executable, "-m", "scenarios.cli.main", *self.given, *where]
+
+    def start(self, place: Path) -> subprocess.Popen[str]:
+        """Start it in a process group of its own."""
+        place.mkdir(parents=True, exist_ok=True)
+        return subprocess.Popen(
+            self.arguments(place),
+            cwd=ROOT,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+
+    def run(self, place: Path) -> Ended:
+        """Run it to its end."""
+        return ended(self.start(place))
+
+    def begun(self, place: Path) -> bool:
+        """Whether it has begun to write."""
+        return (place / STUDY if self.study else place / f"{SWEEP}.journal.jsonl").exists()
+
+    def complete(self, place: Path) -> int:
+        """Chunks or readings that are complete."""
+        if self.study:
+            return sum(mark.name.isdigit() for mark in (place / STUDY / "done").glob("*"))
+        journal = place / f"{SWEEP}.journal.jsonl"
+        return journal.read_bytes().count(b'"reading"') if journal.exists() else 0
+
+    def difference(self, found: Path, calm: Path) -> str:
+        """What a trial left that differs from an undisturbed run, empty where nothing does.
+
+        Studies are equal byte for byte. A bench that went on has another time; its log says what happened.
+        """
+        here, there = (files(place) for place in (found, calm))
+        if odd := sorted(here.keys() ^ there.keys()):
+            return f"{odd[0]} {'is there' if odd[0] in here else 'is missing'}"
+        if self.study:
+            return next((f"{name} differs" for name in sorted(here) if here[name] != there[name]), "")
+        one, other = (read_columns(place / SWEEP) for place in (found, calm))
+        wrong = [name for name in other if name != "time_s" and not np.array_equal(one[name], other[name])]
+        return f"column {wrong[0]} differs" if wrong else ""
+
+
+COMMANDS = (
+    Command("generate", GENERATE),
+    Command("recover", RECOVER),
+    Command("design", DESIGN),
+    Command("bench", BENCH, study=False),
+)
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a run ended."""
+
+    code: int
+    said: str
+
+    @property
+    def refused(self) -> bool:
+        """Whether it was refused as it should be: exit code 2, one line."""
+        lines = [line for line in self.said.splitlines() if line.startswith("halltwin: ")]
+        return self.code == 2 and len(lines) == 1 and "Traceback" not in self.said
+
+    @property
+    def last_line(self) -> str:
+        """What it said last."""
+        return (self.said.strip().splitlines() or ["nothing"])[-1]
+
+
+def ended(process: subprocess.Popen[str]) -> Ended:
+    """Wait for a run."""
+    _, said = process.communicate(timeout=LONGEST_S)
+    return Ended(process.returncode, said)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One thing tried: what was done, what came of it, and whether that is as promised."""
+
+    command: str
+    kind: str
+    done: str
+    outcome: str
+    good: bool
+
+
+Tell = Callable[[Trial], None]
+
+
+def resumed(command: Command, place: Path, calm: Path) -> tuple[str, bool]:
+    """Run the command again after what was done to it, and hold what it left against an undisturbed run."""
+    again = command.run(place)
+    if again.refused:
+        return f"refused: {again.last_line}", True
+    if again.code != 0:
+        return f"exit {again.code}: {again.last_line}", False
+    difference = command.difference(place, calm)
+    return difference or "resumed, equal", not difference
+
+
+def files(place: Path) -> dict[str, bytes]:
+    """Every file below a folder."""
+    return {str(item.relative_to(place)): item.read_bytes() for item in sorted(place.rglob("*")) if item.is_file()}

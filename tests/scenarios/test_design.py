@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 
 from scenarios.studies.design.check import check_design, magpylib_mT
 from scenarios.studies.design.options import demand_of, space_of
+from scenarios.studies.design.plot import map_figure
 from scenarios.studies.design.run import Results, explore, folder_of, run, study_of
 from scenarios.studies.design.space import AXES
 from scenarios.studies.design.study import Demand, DesignStudy, ranking
@@ -166,6 +168,21 @@ def test_the_command_lists_draws_and_checks(tmp_path: Path, capsys: pytest.Captu
     assert twin.read_bytes() == written + b"# chosen\n"
     run("imc-14bit", tmp_path / "s", results=Results(force=True, plot=False), **asked)
     assert twin.read_bytes() == written
+
+
+@pytest.mark.parametrize(
+    ("limit", "words"), [(0.5, ("keeps error", "best: N35H, 8 mm")), (1e-3, ("nowhere:", "closest:"))]
+)
+def test_the_map_names_the_design_that_it_marks(tmp_path: Path, limit: float, words: tuple[str, str]) -> None:
+    pytest.importorskip("matplotlib")
+    chosen = study(diameter_mm="6,8", air_gap_mm="2,2.5", height_mm="2,2.5")
+    chosen = replace(chosen, demand=replace(chosen.demand, max_error_deg=limit))
+    with folder_of(chosen, tmp_path / "s") as folder:
+        figure = map_figure(explore(chosen, folder, Machines(workers=1)), chosen)
+    said = [text.get_text() for text in figure.legends[0].get_texts()]
+    for line, word in zip(said, words, strict=True):
+        assert line.startswith(word)
+    assert figure.get_suptitle() == "Each place shows the best over height"
 
 
 def test_what_cannot_be_is_refused() -> None:

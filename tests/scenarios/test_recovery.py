@@ -11,6 +11,7 @@ import pytest
 from diagnosis.error_model.model import Readings
 from scenarios.studies.machines import Machines
 from scenarios.studies.recovery.cells import BASELINE, SLOTS, Cell, Grid, bounds, simulate
+from scenarios.studies.recovery.plot import map_figures
 from scenarios.studies.recovery.run import check, folder_of, recover, run
 from tests.diagnosis.cases import point_of
 from tests.scenarios.study_jobs import content
@@ -76,3 +77,22 @@ def test_the_command_asks_about_causes_too(tmp_path: Path, capsys: pytest.Captur
 def test_a_cause_that_cannot_show_is_refused() -> None:
     with pytest.raises(UserError, match="'gain_drift' does not show at 45 points"):
         check(replace(GRID, causes=("gain_drift",)))
+
+
+def test_maps_have_a_colour_bar_and_the_number_of_sweeps() -> None:
+    pytest.importorskip("matplotlib")
+    cells = [
+        {
+            **{"cause": cause, "noise_deg": noise, "points": 45, "turns": turns, "amplitude_deg": 0.05, "repeats": 5},
+            **{"named": 0.4, "false_alarms": 0.0},
+        }
+        for cause in ("saturation", "hysteresis")
+        for noise in (0.01, 0.02)
+        for turns in (1, 2)
+    ]
+    figure = map_figures(cells)["causes"]
+    maps = [axes for axes in figure.axes if axes.images]
+    bars = [axes.get_ylabel() for axes in figure.axes if not axes.images]
+    assert bars == ["share in which it is named"] * len(maps) == ["share in which it is named"] * 2
+    for panel, cause in zip(maps, ("saturation", "hysteresis"), strict=True):
+        assert panel.get_title() == f"{cause}\n10 sweeps a cell, 1 and 2 turns each way\namplitude 0.05 deg"

@@ -8,35 +8,70 @@ from typing import Any
 import numpy as np
 
 from diagnosis.report.plotting import style
-from scenarios.studies.design.study import DesignStudy, feasible, ranking
+from scenarios.studies.design.space import AXES
+from scenarios.studies.design.study import Demand, DesignStudy, feasible, ranking
 from twin.angles import Array, IntArray
 from twin.effect import BoolArray
 
-_DIAMETER, _GAP = 0, 3
+_DIAMETER, _HEIGHT, _GAP = 0, 1, 3
+_KEEPS = "crimson"
 
 
 def map_figure(found: Mapping[str, Array], study: DesignStudy) -> Any:
     """Two panels over diameter and air gap: error at 95 % of the mountings, and field at the sensor at 25 C."""
     plt = style()
-    figure, panels = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained", sharex=True, sharey=True)
+    figure, panels = plt.subplots(1, 2, figsize=(9.6, 4.6), layout="constrained", sharex=True, sharey=True)
     shown = (
         (panels[0], "error_p95_deg", "error kept by 95 % of the mountings (deg)", "viridis_r"),
         (panels[1], "field_mT", "field at the sensor at 25 °C (mT)", "cividis"),
     )
-    best = found["design"][ranking(found, study.demand)[0]]
+    winner = int(ranking(found, study.demand)[0])
+    best = found["design"][winner]
     for panel, name, label, colours in shown:
         _panel(figure, panel, found, study, name=name, label=label, colours=colours)
-        panel.plot(best[_DIAMETER], best[_GAP], "*", ms=13, mfc="white", mec="black", label="best")
+        panel.plot(best[_DIAMETER], best[_GAP], "*", ms=13, mfc="white", mec="black", clip_on=False, zorder=5)
         panel.set_xlabel("diameter of the magnet (mm)")
     panels[0].set_ylabel("air gap (mm)")
-    low, high = study.demand.window_mT
-    figure.suptitle(
-        f"Outlined: error ≤ {study.demand.max_error_deg:g}° and {low:g}–{high:g} mT in "
-        f"{100 * study.demand.min_yield:g} % of the mountings, "
-        f"{study.demand.temperature_c[0]:g} to {study.demand.temperature_c[1]:g} °C. Star: best."
-    )
+    handles = [
+        plt.Line2D([], [], color=_KEEPS, lw=2.2, label=_demand_in_words(found, study.demand)),
+        plt.Line2D(
+            [], [], ls="", marker="*", ms=13, mfc="white", mec="black", label=_in_words(best, winner, found, study)
+        ),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=1, frameon=False)
+    if study.space.sampling == "grid" and (besides := _besides(study)):
+        figure.suptitle(f"Each place shows the best over {besides}", fontsize=9)
     plt.close(figure)
     return figure
+
+
+def _besides(study: DesignStudy) -> str:
+    """What else is varied, in words."""
+    axes = study.space.axes
+    varied = [name for column, name in enumerate(AXES) if column not in (_DIAMETER, _GAP) and len(axes[name]) > 1]
+    grades = ["grade"] if len(study.space.grades) > 1 else []
+    return ", ".join([*grades, *(name.rpartition("_")[0].replace("_", " ") for name in varied)])
+
+
+def _demand_in_words(found: Mapping[str, Array], demand: Demand) -> str:
+    """What the outline stands for."""
+    low, high = demand.window_mT
+    cold, warm = demand.temperature_c
+    keeps = "keeps" if feasible(found, demand).any() else "nowhere:"
+    return (
+        f"{keeps} error ≤ {demand.max_error_deg:g}° and {low:g} to {high:g} mT in {100 * demand.min_yield:g} % of the "
+        f"mountings, {cold:g} to {warm:g} °C"
+    )
+
+
+def _in_words(design: Array, row: int, found: Mapping[str, Array], study: DesignStudy) -> str:
+    """The design that the star stands for."""
+    chosen = "best" if feasible(found, study.demand)[row] else "closest"
+    return (
+        f"{chosen}: {study.space.grades[int(found['grade'][row])]}, {design[_DIAMETER]:.3g} mm across, "
+        f"{design[_HEIGHT]:.3g} mm high, air gap {design[_GAP]:.3g} mm; error {found['error_p95_deg'][row]:.2g}°, "
+        f"{found['field_mT'][row]:.0f} mT, yield {100 * found['yield'][row]:.3g} %"
+    )
 
 
 def _panel(
@@ -55,7 +90,7 @@ def _panel(
     across, along = np.unique(diameter), np.unique(gap)
     if study.space.sampling != "grid" or across.size < 2 or along.size < 2:
         drawn = panel.scatter(diameter, gap, c=found[name], cmap=colours, s=22)
-        panel.scatter(diameter[keeps], gap[keeps], s=46, facecolors="none", edgecolors="crimson", label="keeps")
+        panel.scatter(diameter[keeps], gap[keeps], s=46, facecolors="none", edgecolors=_KEEPS)
         figure.colorbar(drawn, ax=panel, label=label)
         return
     # Where height, grade or placement are varied too, a cell shows the best of them.
@@ -80,9 +115,9 @@ def _outline(panel: Any, across: Array, along: Array, inside: BoolArray) -> None
     x, y = _edges(across), _edges(along)
     padded = np.pad(inside, 1)
     for row, column in np.argwhere(padded[1:, 1:-1] != padded[:-1, 1:-1]):
-        panel.plot(x[column : column + 2], [y[row]] * 2, color="crimson", lw=2.2, clip_on=False)
+        panel.plot(x[column : column + 2], [y[row]] * 2, color=_KEEPS, lw=2.2, clip_on=False)
     for row, column in np.argwhere(padded[1:-1, 1:] != padded[1:-1, :-1]):
-        panel.plot([x[column]] * 2, y[row : row + 2], color="crimson", lw=2.2, clip_on=False)
+        panel.plot([x[column]] * 2, y[row : row + 2], color=_KEEPS, lw=2.2, clip_on=False)
 
 
 def _edges(centres: Array) -> Array:

@@ -15,6 +15,7 @@ import pytest
 from tests.command_line import halltwin
 from tests.pages import GUIDE, ROOT
 from twin.adc.converter import Converter
+from twin.baseline import FACTORS
 from twin.catalogue import CATALOGUE
 from twin.concentrator.disk import Disk
 from twin.hall.spinning_current import Plate
@@ -76,6 +77,11 @@ def test_columns_of_a_sweep_are_listed_with_their_unit() -> None:
     assert set(listed) == set(COLUMNS)
     for name in COLUMNS:
         assert name in bare_names() or unit_of(name) == listed[name], name
+
+
+def test_factors_are_listed_by_the_name_that_people_read() -> None:
+    listed = [(row[0], row[2], row[4], row[5].split()[0]) for row in table("Factors of the error model")]
+    assert listed == [(f.label, f"`{f.name}`", f"`{f.key}.{f.param}`", f.shown_unit or "1") for f in FACTORS]
 
 
 def leaves(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:

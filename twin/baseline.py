@@ -17,10 +17,11 @@ from twin.mechanics.zero import ZERO
 class Factor:
     """One of the six: its name and unit in answers, the effect and parameter that carry it in a chain.
 
-    The answer's figure is ``scale`` times the parameter.
+    The answer's figure is ``scale`` times the parameter; ``label`` is what people read, whatever the key.
     """
 
     name: str
+    label: str
     effect: Effect
     param: str
     scale: float = 1.0
@@ -37,17 +38,23 @@ class Factor:
         return degrees(1.0) if self.unit == "deg" else 1.0 / self.scale
 
     @property
+    def shown_unit(self) -> str:
+        """The unit in which people read it, which is that of the parameter; nothing for a plain ratio."""
+        unit = self.effect.params[self.param].unit
+        return "" if unit == "1" else unit
+
+    @property
     def null(self) -> float:
         """The parameter of an ideal sensor."""
         return self.effect.params[self.param].null
 
 
 FACTORS = (
-    Factor(name="Vx_over_Ax", effect=OFFSET, param="x_percent", scale=0.01),
-    Factor(name="Vy_over_Ay", effect=OFFSET, param="y_percent", scale=0.01),
-    Factor(name="gain_ratio", effect=GAIN_MISMATCH, param="ratio"),
-    Factor(name="beta_deg", effect=PHASE, param="beta_deg", unit="deg"),
-    Factor(name="quad", effect=QUADRATIC_NONLINEARITY, param="q_percent", scale=0.01),
-    Factor(name="zero_deg", effect=ZERO, param="zero_deg", unit="deg"),
+    Factor(name="Vx_over_Ax", label="offset x", effect=OFFSET, param="x_percent", scale=0.01),
+    Factor(name="Vy_over_Ay", label="offset y", effect=OFFSET, param="y_percent", scale=0.01),
+    Factor(name="gain_ratio", label="gain ratio", effect=GAIN_MISMATCH, param="ratio"),
+    Factor(name="beta_deg", label="phase", effect=PHASE, param="beta_deg", unit="deg"),
+    Factor(name="quad", label="quadratic", effect=QUADRATIC_NONLINEARITY, param="q_percent", scale=0.01),
+    Factor(name="zero_deg", label="zero", effect=ZERO, param="zero_deg", unit="deg"),
 )
 """In the order of the model's points."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,13 +14,17 @@ from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.marks.row_numbers import number_in_file
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
+from diagnosis.report.fitted_rows import fitted, of_baseline, rms_deg
 from diagnosis.report.provenance import Provenance
+from diagnosis.report.senses import senses
 from twin.angles import wrap_deg
 from twin.baseline import FACTORS
 from twin.catalogue import find
 from twin.files import to_dict
 
 SCHEMA = "halltwin.explain/1"
+MOST_LISTED = 100
+"""Rows that are listed by their number; how many more there are is said beside the list."""
 _T95 = 1.959964
 Deviations = dict[tuple[str, str], float]
 """Standard deviation of a parameter, by effect and parameter."""
@@ -32,16 +37,18 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
     kept = ~found.masked if found.masked.any() and not found.masked.all() else np.ones_like(found.masked)
     gain = found.baseline_held_deg / max(found.extended_held_deg, 1e-12)
     unnamed = [key for cause in found.causes if cause.name == "unnamed" for key in cause.keys]
+    parameters_before, parameters_after = (baseline_parameters(fit) for fit in (found.baseline, found.fit))
     answer: dict[str, Any] = _rounded(
         {
             "schema": SCHEMA,
             **made.to_dict(),
             "sweep": _sweep(found),
             "baseline": {
-                "parameters": baseline_parameters(found.baseline),
+                "parameters": parameters_before,
                 "rms_deg": _rms(residual[kept]),
                 "rms_all_rows_deg": _rms(residual),
                 "heldout_rms_deg": found.baseline_held_deg,
+                **of_baseline(found),
             },
             "noise_floor_deg": found.noise_floor_deg,
             "noise": found.fit.weighting.family.labels[found.fit.weighting.member],
@@ -52,13 +59,17 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
                 "structure": [_structure(found, key) for key in unnamed],
             },
             "extended": {
+                "parameters": parameters_after,
+                "moved": moved(parameters_before, parameters_after),
                 "rms_deg": _rms(extended[kept]),
+                "fitted_rms_deg": rms_deg(found, found.fit),
                 "heldout_rms_deg": found.extended_held_deg,
                 "gain": gain,
                 "likeness_p": None if found.likeness is None else found.likeness.p,
                 "likeness_worst": None if found.likeness is None else found.likeness.worst,
             },
             "not_visible": {name: list(missing) for name, missing in sorted(found.invisible.items())},
+            "senses": senses(found),
             "searched": found.looked_at,
             "cut_short": _cut_short(found),
             "twin": to_dict(found.fit.chain),
@@ -90,13 +101,16 @@ def _sweep(found: Discovery) -> dict[str, Any]:
         "used": len(sweep),
         "set_aside": sweep.set_aside,
         "rejected": len(sweep.rejected),
-        "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:100]},
+        "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:MOST_LISTED]},
+        "rejected_rows_left_out": max(len(sweep.rejected) - MOST_LISTED, 0),
+        "fitted": int(np.count_nonzero(fitted(found))),
         "turns": found.fit.observations.motion.turns,
         "columns": list(sweep.columns),
         **facts(found),
         "output_bits": found.bits,
         "wild": len(wild),
-        "wild_rows": wild[:100],
+        "wild_rows": wild[:MOST_LISTED],
+        "wild_rows_left_out": max(len(wild) - MOST_LISTED, 0),
     }
 
 
@@ -112,6 +126,17 @@ def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:
         at_bound = value <= declared.lower or value >= declared.upper
         answer[factor.name] = {**_figure(middle, low, high, factor.unit), "at_bound": bool(at_bound)}
     return answer
+
+
+def moved(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[str]:
+    """Factors that stand elsewhere once the causes are known: outside of the 95 % interval that they had before."""
+    return [
+        name
+        for name, known in before.items()
+        if known["low"] is not None
+        and known["high"] is not None
+        and not known["low"] <= after[name]["value"] <= known["high"]
+    ]
 
 
 def standard_deviations(fit: Fit) -> Deviations:

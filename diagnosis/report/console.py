@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from rich.console import Console, Group, RenderableType
@@ -11,27 +11,26 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from diagnosis.report.wording import (
-    BASELINE_LABELS,
-    chance,
-    explained_percent,
-    instances,
-    not_visible,
-    parameter_line,
-    plain,
-    rejected_words,
-    structure_words,
-    verdict_words,
-    with_unit,
-)
+from diagnosis.report import statements
+from diagnosis.report.statements import FactorRow
+from diagnosis.report.wording import chance
 
 _VERDICT_STYLE = {"adequate": "green", "explained": "green", "partly explained": "yellow", "unnamed": "yellow"}
+_WIDE = 120
+"""Characters of a terminal on which three factors stand beside each other; no column moves further apart beyond."""
 
 
 def show(answer: Mapping[str, Any], console: Console | None = None) -> None:
     """Print an answer: sweep, baseline, causes, verdict, and what this sweep cannot show."""
     console = console or Console(highlight=False)
-    parts = [_sweep(answer["sweep"]), _baseline(answer), _causes(answer), _verdict(answer), _not_visible(answer)]
+    wide = console.width >= _WIDE
+    parts = [
+        _sweep(answer["sweep"]),
+        _baseline(answer, wide=wide),
+        _causes(answer, width=min(console.width, _WIDE)),
+        _verdict(answer),
+        _invisible(answer),
+    ]
     for number, part in enumerate(part for part in parts if part is not None):
         if number:
             console.print()
@@ -46,60 +45,63 @@ def text(answer: Mapping[str, Any], *, width: int) -> str:
 
 
 def _sweep(sweep: Mapping[str, Any]) -> RenderableType:
-    turns = sweep["turns"]
-    said = [
-        f"{sweep['rows']} readings",
-        f"{plain(turns, 2 if turns < 10 else 3)} {'turn' if turns < 1.05 else 'turns'}",
-    ]
-    if "directions" in sweep:
-        said.append("both directions" if sweep["directions"] == 2 else "one direction")
-    if "points_per_turn" in sweep:
-        said.append(f"{plain(360.0 / sweep['points_per_turn'], 2)} deg apart")
-    if sweep["output_bits"] is not None:
-        said.append(f"output on a {sweep['output_bits']}-bit grid")
-    wild = f"; {sweep['wild']} stand alone and were not fitted" if sweep.get("wild") else ""
-    return Text.assemble((sweep["name"], "bold"), "   ", ", ".join(said), f"; {rejected_words(sweep)}{wild}")
+    said = f"{', '.join(statements.sweep_facts(sweep))}; {statements.rows_words(sweep)}"
+    return Text.assemble((sweep["name"], "bold"), "   ", said)
 
 
-def _baseline(answer: Mapping[str, Any]) -> RenderableType:
-    baseline = answer["baseline"]
-    before = answer["sweep"].get("error_rms_deg")
-    after = baseline["rms_deg"]
-    model = "The given twin" if answer["sweep"].get("held_against") == "given twin" else "The paper's error model"
-    head = f"{model} leaves {plain(after)} deg RMS"
-    if before is not None:
-        share = f"{explained_percent(before, after):.0f} % of the error"
-        head = f"{model} explains {share}: {plain(before)} -> {plain(after)} deg RMS"
-    floor = Text(f"noise floor {plain(answer['noise_floor_deg'])} deg RMS")
+def _baseline(answer: Mapping[str, Any], *, wide: bool) -> RenderableType:
+    rows = statements.factor_rows(answer)
+    table = _extended(rows) if answer["causes"] else _plain(rows, beside=3 if wide else 2)
+    said = filter(None, (statements.moved_words(answer), statements.senses_words(answer)))
+    return Group(
+        Text(statements.baseline_words(answer), "bold"),
+        _indented(statements.floor_words(answer)),
+        Padding(table, (0, 0, 0, 2)),
+        *map(_indented, said),
+    )
+
+
+def _indented(words: str) -> RenderableType:
+    return Padding(Text(words), (0, 0, 0, 2))
+
+
+def _plain(rows: Iterable[FactorRow], *, beside: int) -> Table:
+    """The factors, several beside each other."""
     table = Table.grid(padding=(0, 2, 0, 0))
-    cells = []
-    for name, (label, unit, scale) in BASELINE_LABELS.items():
-        parameter = baseline["parameters"][name]
-        flag = " (at its bound)" if parameter["at_bound"] else ""
-        cells.append((label, with_unit(parameter, unit, scale) + flag))
-    for left, right in zip(cells[::2], cells[1::2], strict=True):
-        table.add_row(left[0], left[1], "", right[0], right[1])
-    return Group(Text(head, "bold"), Padding(floor, (0, 0, 0, 2)), Padding(table, (0, 0, 0, 2)))
+    cells = [(row.label, f"{row.before} ({row.flag})" if row.flag else row.before) for row in rows]
+    for start in range(0, len(cells), beside):
+        table.add_row(*(cell for pair in cells[start : start + beside] for cell in (*pair, "")))
+    return table
 
 
-def _causes(answer: Mapping[str, Any]) -> RenderableType | None:
+def _extended(rows: Iterable[FactorRow]) -> Table:
+    """The factors before the causes and with them."""
+    table = Table.grid(padding=(0, 2, 0, 0))
+    table.add_row("", Text("before", "dim"), Text("with the causes", "dim"), "")
+    for row in rows:
+        table.add_row(row.label, row.before, row.after, row.flag)
+    return table
+
+
+def _causes(answer: Mapping[str, Any], *, width: int) -> RenderableType | None:
     if not answer["causes"]:
         return None
-    head = _columns()
+    head = _columns(width)
     head.add_row("", Text("What the simulation gets wrong", "bold"), "held-out RMS, deg", "false alarm")
     parts: list[RenderableType] = [head]
     for number, cause in enumerate(answer["causes"], 1):
-        row = _columns()
-        held = f"{plain(cause['heldout_rms_deg_before'])} -> {plain(cause['heldout_rms_deg_after'])}"
+        row = _columns(width)
+        held = statements.held_words(cause)
         row.add_row(str(number), Text(cause["name"], "bold"), held, chance(cause["false_alarm_probability"]))
         parts.append(row)
         parts.extend(Padding(Text(line), (0, 0, 0, 5)) for line in _details(answer, cause))
     return Group(*parts)
 
 
-def _columns() -> Table:
+def _columns(width: int) -> Table:
     """Number, name, held-out RMS, chance: the same widths for every cause, so that they stand in columns."""
-    table = Table.grid(expand=True, padding=(0, 2, 0, 0))
+    table = Table.grid(padding=(0, 2, 0, 0))
+    table.width = width
     table.add_column(justify="right", width=3)
     table.add_column(ratio=1)
     table.add_column(width=18, no_wrap=True)
@@ -109,31 +111,16 @@ def _columns() -> Table:
 
 def _details(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list[str]:
     """A cause's parameters and what else it might be; structure without a name in words."""
-    if cause["name"] == "unnamed":
-        return [structure_words(structure) for structure in answer["unexplained"]["structure"]]
-    lines = [line for line in map(parameter_line, instances(cause["parameters"])) if line]
-    rows = cause.get("rows", [])
-    if rows:
-        lines.append(f"{'row' if len(rows) == 1 else 'rows'} {', '.join(map(str, rows[:8]))}{' ...' * (len(rows) > 8)}")
-    rivals = cause["indistinguishable_from"]
-    if rivals:
-        part = f". To tell them apart: {cause['to_tell_apart']}" if cause["to_tell_apart"] else ""
-        lines.append(f"cannot be told from: {', '.join(rivals)}{part}")
-    else:
-        lines.append("cannot be told from: nothing else that was searched")
-    return lines
+    lines = statements.parameter_lines(answer, cause)
+    return [*lines, *filter(None, (statements.single_rows_words(cause), statements.rivals_words(cause)))]
 
 
 def _verdict(answer: Mapping[str, Any]) -> RenderableType:
     verdict = answer["verdict"]
-    return Text.assemble(
-        ("Verdict: ", "bold"), (verdict, f"bold {_VERDICT_STYLE[verdict]}"), f". {verdict_words(answer)}"
-    )
+    said = f". {statements.verdict_words(answer)}"
+    return Text.assemble(("Verdict: ", "bold"), (verdict, f"bold {_VERDICT_STYLE[verdict]}"), said)
 
 
-def _not_visible(answer: Mapping[str, Any]) -> RenderableType | None:
-    groups = not_visible(answer["not_visible"])
-    if not groups:
-        return None
-    said = "; ".join(f"{', '.join(names)} ({missing})" for names, missing, _ in groups)
-    return Text(f"Not visible in this sweep: {said}", "dim")
+def _invisible(answer: Mapping[str, Any]) -> RenderableType | None:
+    said = statements.invisible_words(answer)
+    return Text(f"Not visible in this sweep: {said}", "dim") if said else None

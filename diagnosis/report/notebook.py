@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from html import escape
 from typing import Any
 
+from diagnosis.report.statements import parameter_lines, verdict_words
 from diagnosis.report.tables import number, table
-from diagnosis.report.wording import chance, instances, parameter_line, structure_words, verdict_words
+from diagnosis.report.wording import chance
 
 _HEADS = ("cause", "parameters", "held-out RMS before / deg", "after / deg", "chance of a false alarm")
 
@@ -21,7 +22,7 @@ def notebook_html(answer: Mapping[str, Any]) -> str:
     rows = [
         [
             escape(cause["name"]),
-            "<br>".join(map(escape, _lines(answer, cause))),
+            "<br>".join(map(escape, parameter_lines(answer, cause))),
             number(cause["heldout_rms_deg_before"]),
             number(cause["heldout_rms_deg_after"]),
             number(cause["false_alarm_probability"], chance(cause["false_alarm_probability"])),
@@ -29,10 +30,3 @@ def notebook_html(answer: Mapping[str, Any]) -> str:
         for cause in answer["causes"]
     ]
     return said + table(_HEADS, rows, numbers=(2, 3, 4), stacked=False)
-
-
-def _lines(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list[str]:
-    """A cause's parameters, one line an instance; structure without a name in words."""
-    if cause["name"] == "unnamed":
-        return [structure_words(structure) for structure in answer["unexplained"]["structure"]]
-    return [line for line in map(parameter_line, instances(cause["parameters"])) if line]

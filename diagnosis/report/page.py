@@ -11,13 +11,13 @@ from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.result import Discovery
 from diagnosis.report import causes as cause_pictures
 from diagnosis.report import pictures as drawn
-from diagnosis.report import tables
+from diagnosis.report import statements, tables
 from diagnosis.report.data import Readings, readings, two_ways
 from diagnosis.report.facts import facts
 from diagnosis.report.style import CSS
 from diagnosis.report.svg import Plot
 from diagnosis.report.tables import number
-from diagnosis.report.wording import explained_percent, minus, plain, rejected_words, verdict_words
+from diagnosis.report.wording import minus, plain
 from twin.catalogue import find
 from twin.whole_file import write_beside
 
@@ -37,10 +37,10 @@ def page(found: Discovery, answer: Mapping[str, Any]) -> str:
             f"<h1>What the simulation gets wrong about {name}</h1>",
             _headline(answer),
             _measured(answer, said, read),
-            _baseline(answer, said, read, found),
+            _baseline(answer, read, found),
             *_causes(answer, found, read),
             _chain(answer, found),
-            _parameters(answer, found),
+            _parameters(answer),
             _invisible(answer),
             _provenance(answer),
         ]
@@ -62,7 +62,7 @@ def _headline(answer: Mapping[str, Any]) -> str:
         ("noise floor", number(answer["noise_floor_deg"]), "deg"),
     ]
     verdict = f"Verdict: {answer['verdict']}{told}."
-    return f'<p class="verdict">{escape(verdict)}</p><p>{escape(verdict_words(answer))}</p>{_cards(cards)}'
+    return f'<p class="verdict">{escape(verdict)}</p><p>{escape(statements.verdict_words(answer))}</p>{_cards(cards)}'
 
 
 def _cards(cards: list[tuple[str, str, str]]) -> str:
@@ -77,9 +77,9 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
     sweep = answer["sweep"]
     cards = [
         ("readings used", number(sweep["used"]), f"of {sweep['rows']}"),
-        ("turns travelled", number(sweep["turns"]), ""),
+        ("turns travelled", number(sweep["turns"], statements.turns_shown(sweep["turns"])), ""),
         ("directions", str(said["directions"]), ""),
-        ("between readings", plain(360.0 / said["points_per_turn"], 2), "deg"),
+        ("between readings", statements.step_shown(sweep), "deg"),
     ]
     for key, unit in (("speed_rpm", "rpm"), ("temperature_c", "°C")):
         if key in said:
@@ -88,19 +88,19 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
     if sweep["output_bits"] is not None:
         cards.append(("grid of the output", number(sweep["output_bits"]), "bits"))
     columns = ", ".join(f"<code>{escape(column)}</code>" for column in sweep["columns"])
-    rejected = f" Rows: {escape(rejected_words(sweep))}." if sweep["rejected"] else " No row was rejected."
-    words = f"<p>Columns: {columns}.{rejected} The noise is best described as {escape(answer['noise'])}.</p>"
+    facts_said = f"{', '.join(statements.sweep_facts(sweep))}; {statements.rows_words(sweep)}"
+    words = (
+        f"<p>{escape(facts_said)}.</p>"
+        f"<p>Columns: {columns}. The noise is best described as {escape(answer['noise'])}.</p>"
+    )
     plots = _plots([("The shaft at each reading", "", drawn.protocol(read))])
     return f'<h2>What was measured</h2><div class="beside"><div>{_cards(cards)}{words}</div>{plots}</div>'
 
 
-def _baseline(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings, found: Discovery) -> str:
-    before, after = said["error_rms_deg"], answer["baseline"]["rms_deg"]
-    model = "The given twin" if found.given is not None else "The paper's error model"
+def _baseline(answer: Mapping[str, Any], read: Readings, found: Discovery) -> str:
     words = (
-        f"<p>{model} takes the error from {plain(before)} to {number(after)} deg RMS: "
-        f"{explained_percent(before, after):.0f} % of its power. The noise floor is "
-        f"{number(answer['noise_floor_deg'])} deg; what stands above it, the simulation gets wrong.</p>"
+        f"<p>{escape(statements.baseline_words(answer))}. The share is one of the error's power. What stands above the "
+        f"{escape(statements.floor_words(answer))}, the simulation gets wrong.</p>"
     )
     limits = drawn.residual_limits(read)
     pictures = [
@@ -160,11 +160,9 @@ def _cause(
     else:
         words = f"<p>Stage: {escape(effect.stage)}. Signature in the error: {escape(minus(effect.signature))}.</p>"
     gain = (
-        f"<p>RMS on held-out readings: {number(cause['heldout_rms_deg_before'])} deg without it, "
-        f"{number(cause['heldout_rms_deg_after'])} deg with it.</p>"
+        f"<p>RMS on held-out readings, without it and with it: {escape(statements.held_words(cause))} deg. "
+        f"{statements.sentence(escape(statements.single_rows_words(cause)))}</p>"
     )
-    rows = cause.get("rows", [])
-    listed = f"<p>Rows: {', '.join(map(str, rows[:40]))}{' …' if len(rows) > 40 else ''}.</p>" if rows else ""
     pictures = [
         (f"Isolated: {effect_name}", caption, plot)
         for effect_name, (caption, plot) in zip(
@@ -172,7 +170,7 @@ def _cause(
         )
     ]
     return (
-        f'<section>{head}<div class="beside"><div>{words}{gain}{_rivals(cause)}{listed}'
+        f'<section>{head}<div class="beside"><div>{words}{gain}{_rivals(cause)}'
         f"{tables.parameters(cause, effect)}</div>{_plots(pictures)}</div></section>"
     )
 
@@ -202,20 +200,25 @@ def _chain(answer: Mapping[str, Any], found: Discovery) -> str:
     return f"<h2>The extended twin</h2>{words}{tables.chain(keys, new, found.fit.chain.effects)}"
 
 
-def _parameters(answer: Mapping[str, Any], found: Discovery) -> str:
-    sense = found.baseline.chain.sensor_sense * found.baseline.chain.output_sense
+def _parameters(answer: Mapping[str, Any]) -> str:
+    sense = answer["senses"]["sensor"] * answer["senses"]["output"]
     counting = "the same way as" if sense > 0 else "the other way round than"
+    said = (statements.moved_words(answer), statements.senses_words(answer))
     words = (
         "<p>Offsets in percent of their channel's amplitude; only the ratio of the amplitudes is visible in an angle. "
-        f"The sensor counts {counting} the reference.</p>"
+        f"The sensor counts {counting} the reference. "
+        f"{' '.join(statements.sentence(escape(words)) for words in said)}</p>"
     )
-    return f"<h2>Parameters of the baseline</h2>{words}{tables.baseline(answer['baseline']['parameters'])}"
+    return f"<h2>The factors of the error model</h2>{words}{tables.factors(answer)}"
 
 
 def _invisible(answer: Mapping[str, Any]) -> str:
     if not answer["not_visible"]:
         return ""
-    words = "<p>These causes were not searched for, because this sweep could not have shown them.</p>"
+    words = (
+        "<p>These causes were not searched for, because this sweep could not have shown them: "
+        f"{escape(statements.invisible_words(answer))}.</p>"
+    )
     return f"<h2>Not visible in this sweep</h2>{words}{tables.invisible(answer['not_visible'])}"
 
 

@@ -6,14 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from typing import Any
 
+from diagnosis.report.factor_names import LABELS, SCALES, UNITS
+from diagnosis.report.statements import factor_rows, not_visible
 from diagnosis.report.wording import (
-    BASELINE_LABELS,
     chance,
     figure,
     instances,
     label,
     minus,
-    not_visible,
     plain,
     structure_words,
     unit_shown,
@@ -25,7 +25,7 @@ from twin.effect import Effect
 def number(value: float | None, text: str | None = None) -> str:
     """A number of the answer: what is read, and behind it what the JSON says."""
     if value is None:
-        return "unknown"
+        return "not determined"
     shown = plain(value) if text is None else text
     return f'<data value="{value!r}">{escape(minus(shown))}</data>'
 
@@ -56,19 +56,30 @@ def _interval(parameter: Mapping[str, Any], scale: float = 1.0) -> str:
         return "not determined"
     if low == high:
         return "exact"
-    decimals = len(figure(parameter, scale)[0].partition(".")[2])
+    text = figure(parameter, scale)[0]
+    if "e" in text:
+        return " … ".join(number(end, f"{end * scale:.2e}") for end in (low, high))
+    decimals = len(text.partition(".")[2])
     return " … ".join(number(end, f"{end * scale:.{decimals}f}") for end in (low, high))
 
 
-def baseline(parameters: Mapping[str, Any]) -> str:
-    """The baseline's parameters with their intervals."""
+def factors(answer: Mapping[str, Any]) -> str:
+    """The factors of the error model with their intervals, before the causes and, where there are any, with them."""
+    several = [answer["baseline"]["parameters"]]
+    if answer["causes"]:
+        several.append(answer["extended"]["parameters"])
+    flags = {row.key: row.flag for row in factor_rows(answer)}
     rows = []
-    for name, (text, unit, scale) in BASELINE_LABELS.items():
-        parameter = parameters[name]
-        flag = "at the bound of its range" if parameter["at_bound"] else ""
-        value = number(parameter["value"], figure(parameter, scale)[0])
-        rows.append([escape(text), value, _interval(parameter, scale), escape(unit), flag])
-    return table(["parameter", "value", "95 % interval", "unit", ""], rows, numbers=(1, 2), stacked=False)
+    for key, text in LABELS.items():
+        cells = [cell for parameters in several for cell in _with_interval(parameters[key], SCALES[key])]
+        rows.append([escape(text), *cells, escape(UNITS[key]), escape(flags[key])])
+    heads = ["factor", "before", "95 % interval", "with the causes", "95 % interval"][: 1 + 2 * len(several)]
+    return table([*heads, "unit", ""], rows, numbers=range(1, len(heads)))
+
+
+def _with_interval(parameter: Mapping[str, Any], scale: float) -> tuple[str, str]:
+    """The cells of a parameter's value and of its interval."""
+    return number(parameter["value"], figure(parameter, scale)[0]), _interval(parameter, scale)
 
 
 def summary(causes: Sequence[Mapping[str, Any]]) -> str:
@@ -96,10 +107,10 @@ def parameters(cause: Mapping[str, Any], effect: Effect) -> str:
             declared = effect.params.get(name)
             prefix = f"{place}: " if len(several) > 1 else ""
             unit = unit_shown(parameter["unit"])
-            value = number(parameter["value"], figure(parameter)[0])
+            value, interval = _with_interval(parameter, 1.0)
             # The instances of unnamed structure are of different kinds, and described in words beside the table.
             meaning = "" if declared is None or cause["name"] == "unnamed" else declared.doc
-            rows.append([escape(prefix + label(name)), value, _interval(parameter), escape(unit), escape(meaning)])
+            rows.append([escape(prefix + label(name)), value, interval, escape(unit), escape(meaning)])
     if not rows:
         return ""
     heads = ["parameter", "value", "95 % interval", "unit", "meaning"]

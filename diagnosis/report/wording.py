@@ -1,48 +1,17 @@
-"""Numbers and findings of an answer in words: what terminal and report have in common."""
+"""Numbers, parameters and structures of an answer as text."""
 
 from __future__ import annotations
 
 import math
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from twin.catalogue import CATALOGUE
 
-BASELINE_LABELS = {
-    "Vx_over_Ax": ("offset x", "%", 100.0),
-    "Vy_over_Ay": ("offset y", "%", 100.0),
-    "gain_ratio": ("gain ratio y/x", "", 1.0),
-    "beta_deg": ("phase", "deg", 1.0),
-    "quad": ("quadratic", "%", 100.0),
-    "zero_deg": ("zero", "deg", 1.0),
-}
-"""Parameter of the JSON -> label, unit shown, and what the JSON's value is multiplied by for that unit."""
-
-_LACKS = {
-    "both directions": ("one direction", "turn in both directions"),
-    "moving shaft": ("the shaft stood still at each reading", "record while the shaft moves, with time_s or speed_rpm"),
-    "one turn": ("less than a turn", "cover a whole turn"),
-    "several turns": ("less than two turns", "record several turns"),
-    "temperature_c": ("no temperature_c", "record temperature_c"),
-    "time_s": ("no time_s", "record time_s"),
-    "turn": ("no turn column", "number the sweeps in a turn column"),
-    "two air gaps": ("one air gap", "measure at a second air gap"),
-    "two speeds": ("one speed", "measure at a second speed"),
-    "two speeds|both directions": ("one speed, one direction", "measure at a second speed or in both directions"),
-    "two temperatures": ("one temperature", "measure at a second temperature"),
-    "two turns": ("one turn", "record several turns"),
-    "vx": ("no vx, vy", "record vx and vy"),
-}
-"""What a sweep lacks for a cause to be visible: in words, and what to do about it."""
-
-_ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two speeds|both directions": "moving shaft"}
-"""A want that goes without saying where the second one is wanted too."""
-
-_NO_GAIN = 1.05
-_UNLIKE = 0.01
+_MOST_DECIMALS = 7
 _ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT|mm|Hz|s)$")
 _NUMBERED = re.compile(r"^(?P<name>.*?)(?:_(?P<number>\d+))?$")
 
@@ -53,7 +22,7 @@ _NUMBERED = re.compile(r"^(?P<name>.*?)(?:_(?P<number>\d+))?$")
 def plain(value: float | None, digits: int = 3) -> str:
     """A figure to so many significant digits; whole numbers in full."""
     if value is None or not math.isfinite(value):
-        return "unknown"
+        return "not determined"
     if value == int(value) and abs(value) < 1e9:
         return str(int(value))
     text = f"{value:.{digits}g}"
@@ -83,15 +52,20 @@ def figure(parameter: Mapping[str, Any], scale: float = 1.0) -> tuple[str, str]:
     """Value and half width ("" where the value is exact) of a parameter, to two digits of the half width."""
     value, half = parameter["value"], half_width(parameter)
     if value is None or math.isnan(value):
-        return "unknown", ""
+        return "not determined", ""
     if half is None:
-        return plain(value * scale, 4), "±unknown"
+        return plain(value * scale, 4), "±∞"
     value, half = value * scale, half * scale
     if half <= 0.0:
         return plain(value, 4), ""
     # Rounded first: 0.0999999 is to count as 0.1.
-    decimals = min(max(0, 1 - math.floor(math.log10(float(f"{half:.1e}")))), 9)
-    return f"{value:.{decimals}f}", f"±{half:.{decimals}f}"
+    decimals = max(0, 1 - math.floor(math.log10(float(f"{half:.1e}"))))
+    if decimals <= _MOST_DECIMALS:
+        return f"{value:.{decimals}f}", f"±{half:.{decimals}f}"
+    # A row of zeros says nothing: both with the power of ten of the larger one.
+    power = math.floor(math.log10(max(abs(value), half)))
+    value, half, decimals = value / 10.0**power, half / 10.0**power, max(decimals + power, 0)
+    return f"{value:.{decimals}f}e{power}", f"±{half:.{decimals}f}e{power}"
 
 
 def with_unit(parameter: Mapping[str, Any], unit: str | None = None, scale: float = 1.0) -> str:
@@ -108,7 +82,7 @@ def unit_shown(unit: str) -> str:
 def chance(probability: float | None) -> str:
     """The chance of a false alarm."""
     if probability is None:
-        return "unknown"
+        return "not determined"
     return "< 1e-6" if probability < 1e-6 else f"{probability:.1g}"
 
 
@@ -165,80 +139,3 @@ class _Figure:
 def _largest(structure: Mapping[str, Any]) -> float:
     sizes = (value for name, value in structure.items() if name.endswith("_deg"))
     return max((abs(value) for value in sizes if value is not None), default=0.0)
-
-
-def verdict_words(answer: Mapping[str, Any]) -> str:
-    """The verdict and what follows from it, in one or two sentences."""
-    like = likeness_words(answer["extended"])
-    names = {cause["name"] for cause in answer["causes"]}
-    rest = " Part of that is structure without a name." if len(names) > 1 and "unnamed" in names else ""
-    return f"{_gain_words(answer)}{f'; {like}' if like else ''}.{rest}{cut_words(answer)}"
-
-
-def cut_words(answer: Mapping[str, Any]) -> str:
-    """That the search was stopped, and what that leaves open; empty where it came to its own end."""
-    cut = answer.get("cut_short")
-    return f" The search was stopped before its end, which leaves open {cut['left_open']}." if cut else ""
-
-
-def likeness_words(extended: Mapping[str, Any]) -> str:
-    """Whether sweeps simulated from the extended twin match the measured one; empty where that was not asked."""
-    p = extended.get("likeness_p")
-    if p is None:
-        return ""
-    if p < _UNLIKE:
-        return f"simulated sweeps do not match (p < {_UNLIKE:g}: {extended['likeness_worst']})"
-    return f"simulated sweeps match (p = {plain(p, 2)})"
-
-
-def _gain_words(answer: Mapping[str, Any]) -> str:
-    verdict = answer["verdict"]
-    if verdict == "adequate":
-        return "The baseline is adequate: nothing else stands out of the noise"
-    if not answer["causes"]:
-        return "No cause was found"
-    gain = answer["extended"]["gain"]
-    if gain < _NO_GAIN:
-        # Single readings and scatter are no part of what a twin predicts for the mean.
-        return "It lies in single readings or in their scatter, so that their mean is predicted no better"
-    closer = f"The extended twin is {plain(gain, 2)} times closer on readings it never saw"
-    if verdict == "unnamed":
-        return f"Structure is there that no cause of the catalogue explains. {closer}"
-    return closer
-
-
-def explained_percent(before: float, after: float) -> float:
-    """How much of a mean square is gone [%]."""
-    return 100.0 * (1.0 - (after / before) ** 2) if before > 0.0 else 0.0
-
-
-def rejected_words(sweep: Mapping[str, Any], most: int = 5) -> str:
-    """How many rows were rejected, which, and why."""
-    if not sweep["rejected"]:
-        return "none rejected"
-    rows_by_reason: dict[str, list[str]] = {}
-    for row, why in sweep["rejected_rows"].items():
-        rows_by_reason.setdefault(why, []).append(row)
-    listed = [
-        f"{'row' if len(rows) == 1 else 'rows'} {', '.join(rows[:most])}{' ...' if len(rows) > most else ''}: {why}"
-        for why, rows in rows_by_reason.items()
-    ]
-    return f"{sweep['rejected']} rejected ({'; '.join(listed)})"
-
-
-def not_visible(missing: Mapping[str, Iterable[str]]) -> list[tuple[list[str], str, str]]:
-    """Causes that a sweep cannot show, grouped: (names, what is missing, what to do); the largest group first."""
-    groups: dict[tuple[str, ...], list[str]] = {}
-    for name, needs in missing.items():
-        wanted = set(needs)
-        told = tuple(sorted(need for need in wanted if _ALSO_SAYS.get(need) not in wanted))
-        groups.setdefault(told, []).append(name)
-    ranked = sorted(groups.items(), key=lambda item: (-len(item[1]), item[1]))
-    return [
-        (
-            names,
-            "; ".join(_LACKS.get(need, (f"no {need}", ""))[0] for need in needs),
-            "; ".join(_LACKS.get(need, ("", f"provide {need}"))[1] for need in needs),
-        )
-        for needs, names in ranked
-    ]

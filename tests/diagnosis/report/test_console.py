@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import io
+import re
 from typing import Any
 
 import pytest
 from rich.console import Console
 
 from diagnosis.report.console import show
-from diagnosis.report.wording import (
-    chance,
-    figure,
-    instances,
-    label,
+from diagnosis.report.statements import (
+    baseline_words,
+    held_words,
     not_visible,
-    plain,
+    percent_shown,
     rejected_words,
-    structure_words,
+    rows_words,
+    senses_words,
+    single_rows_words,
+    verdict_words,
 )
+from diagnosis.report.wording import chance, figure, instances, label, plain, structure_words
 from scenarios.commands.causes import as_markdown, groups
 from twin.catalogue import CATALOGUE
 
@@ -42,7 +45,7 @@ def an_answer(**changes: Any) -> dict[str, Any]:
         "stage": "concentrator",
         "parameters": {"lag_deg": parameter(0.118, 0.002, "deg"), "memory_deg": parameter(8.4, 0.6, "deg")},
         "false_alarm_probability": 1e-30,
-        "heldout_rms_deg_before": 0.124,
+        "heldout_rms_deg_before": 0.125,
         "heldout_rms_deg_after": 0.031,
         "indistinguishable_from": ["backlash"],
         "to_tell_apart": "sample every 0.5 deg for 20 deg after a reversal",
@@ -53,6 +56,8 @@ def an_answer(**changes: Any) -> dict[str, Any]:
         "stage": "empirical",
         "parameters": {"order": parameter(13.0, 0.01, "1/turn"), "amplitude_deg": parameter(0.05, 0.001, "deg")},
         "false_alarm_probability": 3e-4,
+        "heldout_rms_deg_before": 0.031,
+        "heldout_rms_deg_after": 0.0212,
         "indistinguishable_from": [],
         "to_tell_apart": "",
     }
@@ -61,13 +66,21 @@ def an_answer(**changes: Any) -> dict[str, Any]:
             "name": "bench.csv",
             "rows": 2880,
             "used": 2878,
+            "fitted": 2878,
             "rejected": 2,
             "rejected_rows": {"411": "time_s missing or not finite", "1207": "time_s missing or not finite"},
             "turns": 8.0,
             "columns": ["reference_deg", "measured_deg"],
             "output_bits": 14,
         },
-        "baseline": {"parameters": baseline, "rms_deg": 0.124, "heldout_rms_deg": 0.125},
+        "baseline": {
+            "parameters": baseline,
+            "rms_deg": 0.124,
+            "heldout_rms_deg": 0.125,
+            "fitted_error_rms_deg": 0.412,
+            "fitted_rms_deg": 0.124,
+            "explained_percent": 90.9416,
+        },
         "noise_floor_deg": 0.021,
         "verdict": "partly explained",
         "causes": [hysteresis, unnamed],
@@ -76,6 +89,8 @@ def an_answer(**changes: Any) -> dict[str, Any]:
             "structure": [{"kind": "order", "order": 13.0, "amplitude_deg": 0.05, "phase_deg": 1.0}],
         },
         "extended": {
+            "parameters": {**baseline, "quad": parameter(0.0025, 0.0001, "1")},
+            "moved": ["quad"],
             "rms_deg": 0.021,
             "heldout_rms_deg": 0.0212,
             "gain": 5.9,
@@ -92,8 +107,9 @@ def an_answer(**changes: Any) -> dict[str, Any]:
 
 
 def test_a_twin_that_is_told_from_the_sweep_is_said_to_be() -> None:
-    unlike = {"rms_deg": 0.021, "heldout_rms_deg": 0.0212, "gain": 5.9, "likeness_p": 0.005}
-    text = shown(an_answer(extended={**unlike, "likeness_worst": "the scatter depends on the angle"}), 120)
+    answer = an_answer()
+    answer["extended"] |= {"likeness_p": 0.005, "likeness_worst": "the scatter depends on the angle"}
+    text = shown(answer, 120)
     assert "simulated sweeps do not match (p < 0.01: the scatter depends on the angle)" in " ".join(text.split())
 
 
@@ -109,15 +125,17 @@ def test_everything_is_said_at_any_width(width: int) -> None:
     assert max(map(len, text.splitlines())) <= width
     words = " ".join(text.split())
     for part in (
-        "bench.csv 2880 readings, 8 turns",
+        "bench.csv 2880 readings, 8 turns travelled",
         "14-bit grid",
         "2 rejected (rows 411, 1207: time_s missing or not finite)",
-        "0.124 deg RMS",
-        "1.00980 ±0.00010",
-        "1 hysteresis 0.124 -> 0.0310 < 1e-6",
+        "The paper's error model explains 91 % of the error: 0.412 -> 0.124 deg RMS",
+        "gain ratio 1.00980 ±0.00010 1.00980 ±0.00010",
+        "quadratic 0.190 ±0.010 % 0.250 ±0.010 % moved",
+        "With the causes known, quadratic lies outside of the interval before",
+        "1 hysteresis 0.125 -> 0.0310 < 1e-6",
         "lag 0.1180 ±0.0020 deg, memory 8.40 ±0.60 deg",
         "cannot be told from: backlash. To tell them apart: sample every 0.5 deg for 20 deg after a reversal",
-        "2 unnamed 0.124 -> 0.0310 0.0003",
+        "2 unnamed 0.0310 -> 0.0212 0.0003",
         "order 13 in the shaft angle",
         "Verdict: partly explained. The extended twin is 5.9 times closer on readings it never saw; "
         "simulated sweeps match (p = 0.43). Part of that is structure without a name.",
@@ -137,20 +155,110 @@ def test_an_adequate_baseline_is_said_and_no_table_drawn() -> None:
     assert "What the simulation gets wrong" not in text
 
 
-def test_the_share_explained_is_of_the_power() -> None:
+def test_a_share_is_never_negative_never_rounded_to_all_and_of_the_fitted_rows() -> None:
     answer = an_answer()
-    answer["sweep"]["error_rms_deg"] = 0.412
-    assert "explains 91 % of the error" in shown(answer, 100)
-    answer["sweep"]["held_against"] = "given twin"
-    assert "The given twin explains 91 %" in shown(answer, 100)
+    baseline, sweep = answer["baseline"], answer["sweep"]
+    assert baseline_words(answer) == "The paper's error model explains 91 % of the error: 0.412 -> 0.124 deg RMS"
+    sweep |= {"held_against": "given twin", "fitted": 2818}
+    over = "over the 2818 readings that were fitted"
+    assert baseline_words(answer) == f"The given twin explains 91 % of the error: 0.412 -> 0.124 deg RMS, {over}"
+    baseline |= {"explained_percent": -39.0, "fitted_rms_deg": 0.486}
+    assert baseline_words(answer) == f"The given twin makes the error larger: 0.412 -> 0.486 deg RMS, {over}"
+    baseline |= {"explained_percent": None, "fitted_error_rms_deg": 0.0, "fitted_rms_deg": 0.0}
+    assert baseline_words(answer) == f"The given twin leaves 0 deg RMS, {over}"
+    shares = (0.0, 1e-6, 0.3, 50.4, 99.93, 99.996, 99.99999, 100.0)
+    assert [percent_shown(s) for s in shares] == ["0", "< 0.01", "0.3", "50", "99.9", "> 99.99", "> 99.99", "100"]
+
+
+def test_rows_that_no_fit_is_made_of_are_listed_and_a_cut_list_says_so() -> None:
+    sweep = an_answer()["sweep"]
+    assert rows_words(sweep) == "2 rejected (rows 411, 1207: time_s missing or not finite)"
+    sweep |= {"rejected": 0, "rejected_rows": {}, "wild": 113, "wild_rows": list(range(1, 101))}
+    assert rows_words(sweep) == "none rejected; 113 stand alone and not fitted (rows 1, 2, 3, 4, 5 and 108 more)"
+    sweep |= {"wild": 1, "wild_rows": [17]}
+    assert rows_words(sweep) == "none rejected; 1 stands alone and not fitted (row 17)"
+    sweep |= {"wild": 0, "rejected": 130, "rejected_rows_left_out": 30}
+    sweep["rejected_rows"] = {str(row): "vx missing" for row in range(1, 101)}
+    assert rows_words(sweep) == "130 rejected (rows 1, 2, 3, 4, 5 and 95 more: vx missing; and 30 more)"
+
+
+def test_a_part_of_a_long_record_is_said_to_be_one() -> None:
+    answer = an_answer()
+    answer["sweep"] |= {"rows": 180_000, "used": 24_000, "set_aside": 156_000}
+    assert "180000 readings, of these 24000 were searched, in stretches spread over the record, 8 turns" in " ".join(
+        shown(answer, 100).split()
+    )
+
+
+def test_what_cannot_be_held_out_is_said_in_words() -> None:
+    answer = an_answer()
+    answer["extended"] |= {"gain": None, "heldout_rms_deg": None}
+    for cause in answer["causes"]:
+        cause |= {"heldout_rms_deg_before": None, "heldout_rms_deg_after": None}
+    assert held_words(answer["causes"][0]) == "not held out"
+    answer["causes"][0]["heldout_rms_deg_before"] = 0.1
+    assert held_words(answer["causes"][0]) == "not held out"
+    assert "Too few readings to hold any out: how much closer the extended twin is cannot be told" in verdict_words(
+        answer
+    )
+    answer["extended"]["gain"] = 0.98
+    assert "The extended twin is no closer on readings it never saw" in verdict_words(answer)
+    answer["extended"]["gain"] = 1.03
+    assert "The extended twin is 1.03 times closer" in verdict_words(answer)
+
+
+def test_a_mirrored_description_is_said_to_fit_as_well() -> None:
+    answer = an_answer()
+    assert senses_words(answer) == ""
+    mirrored = {"Vy_over_Ay": 0.00712, "beta_deg": -0.1691}
+    answer["senses"] = {"sensor": 1, "output": 1, "decided": False, "log_odds": 0.3, "mirrored": mirrored}
+    said = "Seen mirrored (s = -1, h = -1), which fits as well, there are offset y 0.712 % and phase -0.1691 deg"
+    assert senses_words(answer) == said
+    assert said in " ".join(shown(answer, 160).split())
+    answer["senses"] |= {"decided": True, "mirrored": None}
+    assert senses_words(answer) == ""
+
+
+def test_single_readings_say_how_far_off_they_are() -> None:
+    off = "off by 22.5 deg RMS, which no held-out figure counts"
+    assert single_rows_words({"rows": [41, 201], "rows_rms_deg": 22.5}) == f"rows 41, 201: {off}"
+    assert single_rows_words({"rows_rms_deg": 22.5}) == f"the readings that it touched are {off}"
+    assert single_rows_words({"rows": list(range(1, 13))}) == "rows 1, 2, 3, 4, 5, 6, 7, 8 and 4 more"
+    assert single_rows_words({}) == ""
+
+
+def leaves(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """The places of all figures that may be missing in an answer: rows, lists of them and flags are always known."""
+    if isinstance(value, dict):
+        return [place for key, item in value.items() for place in leaves(item, (*path, key))]
+    if isinstance(value, list):
+        return [place for key, item in enumerate(value) for place in leaves(item, (*path, key))]
+    return [path] if isinstance(value, float) and path[0] != "sweep" else []
+
+
+@pytest.mark.parametrize("place", leaves(an_answer()), ids=lambda place: ".".join(map(str, place)))
+def test_a_figure_that_is_missing_reaches_no_text(place: tuple[Any, ...]) -> None:
+    answer = an_answer()
+    holder: Any = answer
+    for key in place[:-1]:
+        holder = holder[key]
+    holder[place[-1]] = None
+    if place == ("baseline", "fitted_error_rms_deg"):
+        answer["baseline"]["explained_percent"] = None
+    assert not re.search(r"\b(nan|none(?! rejected)|inf|unknown)\b", shown(answer, 100).lower())
 
 
 def test_numbers_have_the_digits_that_are_known() -> None:
     assert figure(parameter(0.112799, 0.00101, "deg")) == ("0.1128", "±0.0010")
     assert figure(parameter(50.0, 0.0, "1/turn")) == ("50", "")
-    assert figure({"value": 1.5, "low": None, "high": None, "unit": "deg"}) == ("1.500", "±unknown")
+    assert figure({"value": 1.5, "low": None, "high": None, "unit": "deg"}) == ("1.500", "±∞")
     assert plain(0.019) == "0.0190"
-    assert plain(None) == "unknown"
+    assert plain(None) == "not determined"
+    # A row of zeros says nothing.
+    assert figure(parameter(1.2345e-11, 3.2e-13, "1")) == ("1.235e-11", "±0.032e-11")
+    assert figure(parameter(0.0, 3.2e-13, "1")) == ("0.0e-13", "±3.2e-13")
+    assert figure(parameter(2.5e-5, 1.1e-6, "1")) == ("0.0000250", "±0.0000011")
+    assert figure(parameter(12345.6, 321.0, "deg")) == ("12346", "±321")
     assert plain(123456.7) == "123457"
     assert chance(2e-9) == "< 1e-6"
     assert chance(0.004) == "0.004"
@@ -194,5 +302,7 @@ def test_the_catalogue_is_listed_whole_with_a_source_each() -> None:
 
 
 def test_a_cause_without_gain_on_the_mean_is_not_sold_as_one() -> None:
-    answer = an_answer(verdict="explained", extended={"rms_deg": 0.02, "heldout_rms_deg": 0.02, "gain": 1.0})
+    answer = an_answer(verdict="explained")
+    answer["causes"] = [{**answer["causes"][0], "heldout_rms_deg_before": 0.02, "heldout_rms_deg_after": 0.02}]
+    answer["extended"] |= {"heldout_rms_deg": 0.02, "gain": 1.0}
     assert "in single readings or in their scatter" in " ".join(shown(answer, 80).split())

@@ -1,0 +1,329 @@
+"""What an answer states, in words: the sentences and lists that terminal, report and notebook have in common.
+
+Each takes the answer (the content of the JSON) and nothing else, so that all three say what it says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from diagnosis.report.factor_names import LABELS, SCALES, UNITS
+from diagnosis.report.wording import figure, instances, parameter_line, plain, structure_words, with_unit
+
+_LACKS = {
+    "both directions": ("one direction", "turn in both directions"),
+    "moving shaft": ("the shaft stood still at each reading", "record while the shaft moves, with time_s or speed_rpm"),
+    "one turn": ("less than a turn", "cover a whole turn"),
+    "several turns": ("less than two turns one way", "record several turns one way"),
+    "temperature_c": ("no temperature_c", "record temperature_c"),
+    "time_s": ("no time_s", "record time_s"),
+    "turn": ("no turn column", "number the sweeps in a turn column"),
+    "two air gaps": ("one air gap", "measure at a second air gap"),
+    "two speeds": ("one speed", "measure at a second speed"),
+    "two speeds|both directions": ("one speed, one direction", "measure at a second speed or in both directions"),
+    "two temperatures": ("one temperature", "measure at a second temperature"),
+    "two turns": ("one turn in the turn column", "record several turns"),
+    "vx": ("no vx, vy", "record vx and vy"),
+}
+"""What a sweep lacks for a cause to be visible: in words, and what to do about it."""
+
+_ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two speeds|both directions": "moving shaft"}
+"""A want that goes without saying where the second one is wanted too."""
+
+_UNLIKE = 0.01
+_SEARCHED = "of these {used} were searched, in stretches spread over the record"
+
+
+# ---- the sweep --------------------------------------------------------------------------------------------------
+
+
+def sweep_facts(sweep: Mapping[str, Any]) -> list[str]:
+    """What was measured, fact by fact."""
+    turns = sweep["turns"]
+    said = [f"{sweep['rows']} readings"]
+    if sweep.get("set_aside"):
+        said.append(_SEARCHED.format(used=sweep["used"]))
+    said.append(f"{turns_shown(turns)} {'turn' if turns < 1.05 else 'turns'} travelled")
+    if "directions" in sweep:
+        said.append("both directions" if sweep["directions"] == 2 else "one direction")
+    if "points_per_turn" in sweep:
+        said.append(f"{step_shown(sweep)} deg apart")
+    if sweep["output_bits"] is not None:
+        said.append(f"output on a {sweep['output_bits']}-bit grid")
+    return said
+
+
+def turns_shown(turns: float) -> str:
+    """Turns travelled, to the digits that mean something."""
+    return plain(turns, 2 if turns < 10 else 3)
+
+
+def step_shown(sweep: Mapping[str, Any]) -> str:
+    """Degrees between readings."""
+    return plain(360.0 / sweep["points_per_turn"], 2)
+
+
+def rows_words(sweep: Mapping[str, Any]) -> str:
+    """Which rows the fits are not made of: unusable ones, and readings that stand alone."""
+    wild = sweep.get("wild")
+    if not wild:
+        return rejected_words(sweep)
+    listed = _listed(sweep["wild_rows"], wild)
+    return f"{rejected_words(sweep)}; {wild} {'stands' if wild == 1 else 'stand'} alone and not fitted ({listed})"
+
+
+def rejected_words(sweep: Mapping[str, Any]) -> str:
+    """How many rows were rejected, which, and why."""
+    if not sweep["rejected"]:
+        return "none rejected"
+    rows_by_reason: dict[str, list[str]] = {}
+    for row, why in sweep["rejected_rows"].items():
+        rows_by_reason.setdefault(why, []).append(row)
+    listed = [f"{_listed(rows, len(rows))}: {why}" for why, rows in rows_by_reason.items()]
+    more = sweep.get("rejected_rows_left_out", 0)
+    if more:
+        listed.append(f"and {more} more")
+    return f"{sweep['rejected']} rejected ({'; '.join(listed)})"
+
+
+def _listed(rows: Sequence[object], count: int, most: int = 5) -> str:
+    """The first few of so many rows, and how many more there are."""
+    more = count - min(len(rows), most)
+    told = ", ".join(str(row) for row in rows[:most])
+    return f"{'row' if count == 1 else 'rows'} {told}{f' and {more} more' if more else ''}"
+
+
+# ---- the baseline -----------------------------------------------------------------------------------------------
+
+
+def baseline_words(answer: Mapping[str, Any]) -> str:
+    """What the baseline makes of the error, over the readings that it was fitted to."""
+    baseline, sweep = answer["baseline"], answer["sweep"]
+    model = "The given twin" if sweep.get("held_against") == "given twin" else "The paper's error model"
+    before, after = baseline["fitted_error_rms_deg"], baseline["fitted_rms_deg"]
+    aside = sweep["used"] - sweep["fitted"]
+    over = f", over the {sweep['fitted']} readings that were fitted" if aside else ""
+    steps = f"{plain(before)} -> {plain(after)} deg RMS{over}"
+    share = baseline["explained_percent"]
+    if share is None:
+        return f"{model} leaves {plain(after)} deg RMS{over}"
+    if share < 0.0:
+        return f"{model} makes the error larger: {steps}"
+    return f"{model} explains {percent_shown(share)} % of the error: {steps}"
+
+
+def percent_shown(share: float) -> str:
+    """A share in whole percent; near the whole, or near nothing, with the digits that tell it from that."""
+    for decimals in (0, 1, 2):
+        text = f"{share:.{decimals}f}"
+        if 0.0 < float(text) < 100.0 or share in (0.0, 100.0):
+            return text
+    return "> 99.99" if share > 50.0 else "< 0.01"
+
+
+def floor_words(answer: Mapping[str, Any]) -> str:
+    """The noise floor."""
+    floor = answer["noise_floor_deg"]
+    return "noise floor not measured" if floor is None else f"noise floor {plain(floor)} deg RMS"
+
+
+class FactorRow(NamedTuple):
+    """A factor of the paper's error model as people read it: before the causes, and where there are any, with them.
+
+    ``flag`` says whether it stands at its bound, or elsewhere once the causes are known.
+    """
+
+    key: str
+    label: str
+    before: str
+    after: str
+    unit: str
+    flag: str
+
+
+def factor_rows(answer: Mapping[str, Any]) -> list[FactorRow]:
+    """The factors, in the order of the paper; ``after`` is empty where no cause was found."""
+    before, extended = answer["baseline"]["parameters"], answer["extended"]
+    return [
+        FactorRow(
+            key,
+            label,
+            _value(before[key], key),
+            _value(extended["parameters"][key], key) if answer["causes"] else "",
+            UNITS[key],
+            _flag(answer, key),
+        )
+        for key, label in LABELS.items()
+    ]
+
+
+def _value(parameter: Mapping[str, Any], key: str) -> str:
+    return with_unit(parameter, UNITS[key], SCALES[key])
+
+
+def _flag(answer: Mapping[str, Any], key: str) -> str:
+    """What else is to be said of a factor."""
+    last = answer["extended"] if answer["causes"] else answer["baseline"]
+    if last["parameters"][key]["at_bound"]:
+        return "at its bound"
+    return "moved" if answer["causes"] and key in answer["extended"]["moved"] else ""
+
+
+def moved_words(answer: Mapping[str, Any]) -> str:
+    """Which factors stand elsewhere once the causes are known; empty where there is no cause."""
+    if not answer["causes"]:
+        return ""
+    names = [LABELS[key] for key in answer["extended"]["moved"]]
+    if not names:
+        return "With the causes known, every factor stays within its interval"
+    return f"With the causes known, {_and(names)} {'lies' if len(names) == 1 else 'lie'} outside of the interval before"
+
+
+def senses_words(answer: Mapping[str, Any]) -> str:
+    """That sensor and output may as well count the other way; empty where the readings tell."""
+    senses = answer.get("senses")
+    if senses is None or senses["decided"] or not senses["mirrored"]:
+        return ""
+    mirrored = senses["mirrored"]
+    parameters = (answer["extended"] if answer["causes"] else answer["baseline"])["parameters"]
+    there = []
+    for key in ("Vy_over_Ay", "beta_deg"):
+        # As many digits as the interval of the one that is shown.
+        text, _ = figure({**parameters[key], **_around(parameters[key], mirrored[key])}, SCALES[key])
+        there.append(f"{LABELS[key]} {text} {UNITS[key]}")
+    pair = f"s = {-senses['sensor']:+d}, h = {-senses['output']:+d}"
+    return f"Seen mirrored ({pair}), which fits as well, there are {' and '.join(there)}"
+
+
+def _around(parameter: Mapping[str, Any], value: float) -> dict[str, Any]:
+    """Another value with the width of a parameter's interval."""
+    if parameter["low"] is None or parameter["high"] is None:
+        return {"value": value}
+    half = 0.5 * (parameter["high"] - parameter["low"])
+    return {"value": value, "low": value - half, "high": value + half}
+
+
+def sentence(words: str) -> str:
+    """Words as a sentence that ends in a full stop; nothing where there are none."""
+    return f"{words[:1].upper()}{words[1:]}." if words else ""
+
+
+def _and(names: Sequence[str]) -> str:
+    return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
+
+
+# ---- the causes -------------------------------------------------------------------------------------------------
+
+
+def held_words(cause: Mapping[str, Any]) -> str:
+    """The held-out RMS before and after a cause."""
+    before, after = cause["heldout_rms_deg_before"], cause["heldout_rms_deg_after"]
+    return "not held out" if before is None or after is None else f"{plain(before)} -> {plain(after)}"
+
+
+def parameter_lines(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list[str]:
+    """A cause's parameters, one line an instance; structure without a name in words."""
+    if cause["name"] == "unnamed":
+        return [structure_words(structure) for structure in answer["unexplained"]["structure"]]
+    return [line for line in map(parameter_line, instances(cause["parameters"])) if line]
+
+
+def single_rows_words(cause: Mapping[str, Any], most: int = 8) -> str:
+    """Which single readings a cause has touched and how far off they are; empty for other causes."""
+    size = cause.get("rows_rms_deg")
+    rows = cause.get("rows", [])
+    off = "" if size is None else f"off by {plain(size)} deg RMS, which no held-out figure counts"
+    if not rows:
+        return f"the readings that it touched are {off}" if off else ""
+    listed = _listed(rows, len(rows), most)
+    return f"{listed}: {off}" if off else listed
+
+
+def rivals_words(cause: Mapping[str, Any]) -> str:
+    """What a cause cannot be told from, and what would part them; empty for structure without a name."""
+    if cause["name"] == "unnamed":
+        return ""
+    rivals = cause["indistinguishable_from"]
+    if not rivals:
+        return "cannot be told from: nothing else that was searched"
+    part = f". To tell them apart: {cause['to_tell_apart']}" if cause["to_tell_apart"] else ""
+    return f"cannot be told from: {', '.join(rivals)}{part}"
+
+
+# ---- the verdict ------------------------------------------------------------------------------------------------
+
+
+def verdict_words(answer: Mapping[str, Any]) -> str:
+    """The verdict and what follows from it, in one or two sentences."""
+    like = likeness_words(answer["extended"])
+    names = {cause["name"] for cause in answer["causes"]}
+    rest = " Part of that is structure without a name." if len(names) > 1 and "unnamed" in names else ""
+    return f"{_gain_words(answer)}{f'; {like}' if like else ''}.{rest}{cut_words(answer)}"
+
+
+def cut_words(answer: Mapping[str, Any]) -> str:
+    """That the search was stopped, and what that leaves open; empty where it came to its own end."""
+    cut = answer.get("cut_short")
+    return f" The search was stopped before its end, which leaves open {cut['left_open']}." if cut else ""
+
+
+def likeness_words(extended: Mapping[str, Any]) -> str:
+    """Whether sweeps simulated from the extended twin match the measured one; empty where that was not asked."""
+    p = extended.get("likeness_p")
+    if p is None:
+        return ""
+    if p < _UNLIKE:
+        return f"simulated sweeps do not match (p < {_UNLIKE:g}: {extended['likeness_worst']})"
+    return f"simulated sweeps match (p = {plain(p, 2)})"
+
+
+def _gain_words(answer: Mapping[str, Any]) -> str:
+    if answer["verdict"] == "adequate":
+        return "The baseline is adequate: nothing else stands out of the noise"
+    if not answer["causes"]:
+        return "No cause was found"
+    closer = closer_words(answer)
+    if answer["verdict"] == "unnamed":
+        return f"Structure is there that no cause of the catalogue explains. {closer}"
+    return closer
+
+
+def closer_words(answer: Mapping[str, Any]) -> str:
+    """How much closer the extended twin is, or why that is no figure."""
+    if all(cause["heldout_rms_deg_before"] == cause["heldout_rms_deg_after"] for cause in answer["causes"]):
+        # Single readings and scatter are no part of what a twin predicts for the mean.
+        return "It lies in single readings or in their scatter, so that their mean is predicted no better"
+    gain = answer["extended"]["gain"]
+    if gain is None:
+        return "Too few readings to hold any out: how much closer the extended twin is cannot be told"
+    if gain < 1.0:
+        return "The extended twin is no closer on readings it never saw"
+    return f"The extended twin is {plain(gain, 2 if gain >= 1.1 else 3)} times closer on readings it never saw"
+
+
+# ---- what the sweep cannot show ---------------------------------------------------------------------------------
+
+
+def invisible_words(answer: Mapping[str, Any]) -> str:
+    """Causes that were not searched for, and what the sweep lacks for each; empty where there are none."""
+    groups = not_visible(answer["not_visible"])
+    return "; ".join(f"{', '.join(names)} ({missing})" for names, missing, _ in groups)
+
+
+def not_visible(missing: Mapping[str, Iterable[str]]) -> list[tuple[list[str], str, str]]:
+    """Causes that a sweep cannot show, grouped: (names, what is missing, what to do); the largest group first."""
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for name, needs in missing.items():
+        wanted = set(needs)
+        told = tuple(sorted(need for need in wanted if _ALSO_SAYS.get(need) not in wanted))
+        groups.setdefault(told, []).append(name)
+    ranked = sorted(groups.items(), key=lambda item: (-len(item[1]), item[1]))
+    return [
+        (
+            names,
+            "; ".join(_LACKS.get(need, (f"no {need}", ""))[0] for need in needs),
+            "; ".join(_LACKS.get(need, ("", f"provide {need}"))[1] for need in needs),
+        )
+        for needs, names in ranked
+    ]

@@ -70,6 +70,8 @@ def figure(parameter: Mapping[str, Any], scale: float = 1.0) -> tuple[str, str]:
 
 def with_unit(parameter: Mapping[str, Any], unit: str | None = None, scale: float = 1.0) -> str:
     """Value, half width and unit of a parameter."""
+    if parameter["value"] is None or math.isnan(parameter["value"]):
+        return figure(parameter)[0]
     shown = unit_shown(parameter["unit"]) if unit is None else unit
     return " ".join(part for part in (*figure(parameter, scale), shown) if part)
 

@@ -14,9 +14,7 @@ from pathlib import Path
 from tests.kill_study.disks import can_mount, fill
 from tests.kill_study.kills import kill
 from tests.kill_study.pairs import pair
-from tests.kill_study.trials import COMMANDS, TWIN, Command, Trial
-from twin.files import write_twin
-from twin.presets import read_preset
+from tests.kill_study.trials import COMMANDS, Command, Trial, write_encoder
 
 KINDS = {"kill": "kill -9", "disk": "full disk", "pair": "two at once"}
 
@@ -45,8 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     with tempfile.TemporaryDirectory(prefix="kill-study-") as folder:
         work = Path(folder)
-        # Without noise, since a bench that goes on draws other noise.
-        write_twin(work / TWIN, read_preset("paper-encoder").without("noise"))
+        write_encoder(work)
         for command in chosen:
             calm = work / f"{command.name}-calm"
             start = time.monotonic()

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from twin.files import write_twin
+from twin.presets import read_preset
 from twin.sweep_reader import read_columns
 
 ROOT = Path(__file__).parents[2]
@@ -27,16 +29,17 @@ BENCH = ("bench", "--points", "480", "--both-directions")
 
 @dataclass(frozen=True)
 class Command:
-    """A command of halltwin that works in a folder of a trial: a study on two processes, or a bench."""
+    """A command of halltwin that works in a folder of a trial: a study on a pool of processes, or a bench."""
 
     name: str
     given: tuple[str, ...]
     study: bool = True
+    workers: int = 2
 
     def arguments(self, place: Path) -> list[str]:
         """The whole command line."""
         where = (
-            ("--workers", "2", "-o", str(place / STUDY))
+            ("--workers", str(self.workers), "-o", str(place / STUDY))
             if self.study
             else ("--twin", str(place.parent / TWIN), "-o", str(place / SWEEP))
         )
@@ -140,6 +143,11 @@ def resumed(command: Command, place: Path, calm: Path) -> tuple[str, bool]:
         return f"exit {again.code}: {again.last_line}", False
     difference = command.difference(place, calm)
     return difference or "resumed, equal", not difference
+
+
+def write_encoder(work: Path) -> None:
+    """The encoder on the bench: one without noise, since a bench that goes on draws other noise."""
+    write_twin(work / TWIN, read_preset("paper-encoder").without("noise"))
 
 
 def files(place: Path) -> dict[str, bytes]:

@@ -18,13 +18,13 @@ ROOT = Path(__file__).parents[2]
 LONGEST_S = 300.0
 """No run takes so long, be the machine ever so busy: one that does is taken to hang."""
 STUDY, SWEEP, TWIN = "study", "sweep.csv", "encoder.toml"
-GENERATE = ("generate", "-n", "1500", "--chunk", "50")
+GENERATE = ("generate", "-n", "800", "--chunk", "40")
 RECOVER = (
     *("recover", "--cause", "baseline", "--cause", "clean", "--noise", "0.02,0.05"),
-    *("--points", "36,60,72", "--turns", "1", "--fits", "40", "--sweeps", "1"),
+    *("--points", "36,48,60,72", "--turns", "1", "--fits", "20", "--sweeps", "1"),
 )
-DESIGN = ("design", "--diameter", "4:9:0.5", "--height", "2.5,3", "--air-gap", "1:3:0.5", "--mountings", "60")
-BENCH = ("bench", "--points", "480", "--both-directions")
+DESIGN = ("design", "--diameter", "4:8:0.5", "--height", "2.5,3", "--air-gap", "1:3:0.5", "--mountings", "60")
+BENCH = ("bench", "--points", "300", "--both-directions")
 
 
 @dataclass(frozen=True)

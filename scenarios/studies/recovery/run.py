@@ -13,7 +13,7 @@ import numpy as np
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
-from scenarios.studies.recovery.cells import BASELINE, CLEAN, PARAMETERS, Cell, Grid
+from scenarios.studies.recovery.cells import BASELINE, CLEAN, PARAMETERS, Cell, Grid, simulate
 from scenarios.studies.study_folder import StudyFolder
 from scenarios.studies.training.draw import drawable
 from twin.angles import Array
@@ -41,6 +41,21 @@ def check(grid: Grid) -> None:
                 f"cause {cell.cause!r} does not show at {cell.points} points and {cell.turns} turns; expected "
                 f"{BASELINE}, {CLEAN} or among {', '.join(visible)}"
             )
+    searched = [cell for cell in grid.cells() if cell.cause != BASELINE]
+    if searched:
+        _require_enough(min(searched, key=lambda cell: cell.points * cell.turns))
+
+
+def _require_enough(cell: Cell) -> None:
+    """Raise UserError where the sweeps of a cell are too short to be asked for causes."""
+    from diagnosis.discovery.pipeline import State
+    from diagnosis.discovery.stages.observe import observe
+
+    chain, sweep = simulate(cell, cell.motion(), np.random.default_rng(0))
+    try:
+        observe(State.of(sweep, chain))
+    except UserError as error:
+        raise UserError(f"{cell.points} points and {cell.turns} turns are too few: {error}") from None
 
 
 @contextlib.contextmanager

@@ -6,7 +6,7 @@ import contextlib
 import sys
 from collections.abc import Callable, Iterator
 
-EXIT_CODE = 130
+from scenarios.commands.progress import INTERRUPTED
 
 
 @contextlib.contextmanager
@@ -15,5 +15,5 @@ def interruptible(kept: Callable[[], str]) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        print(f"halltwin: stopped; {kept()}", file=sys.stderr)
-        raise SystemExit(EXIT_CODE) from None
+        print(f"halltwin: interrupted; {kept()}", file=sys.stderr)
+        raise SystemExit(INTERRUPTED) from None

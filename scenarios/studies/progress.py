@@ -9,6 +9,8 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from scenarios.commands.progress import duration
+
 FIRST_S, SHARE = 10.0, 0.1
 """Without a terminal the first line comes after so many seconds, each further one after a tenth of the time so far
 or after as many seconds again: a log of an hour has some forty lines."""
@@ -28,12 +30,12 @@ class Course:
         """The state in words, with the rate and the time left."""
         each = self.items / self.chunks
         reached = round((self.before + self.done) * each)
-        said = f"{reached:,} of {self.items:,} {self.unit}, {clock(elapsed_s)}"
+        said = f"halltwin: after {duration(elapsed_s)}: {reached:,} of {self.items:,} {self.unit}"
         if not self.done:
             return said
         rate = self.done * each / elapsed_s
         left = (self.chunks - self.before - self.done) * elapsed_s / self.done
-        return f"{said}, {rate:.3g} {self.unit}/s, {clock(left)} left"
+        return f"{said}, {rate:.3g} {self.unit}/s, {duration(left)} left"
 
 
 @contextlib.contextmanager
@@ -101,10 +103,3 @@ def _bar(console: object, course: Course) -> Iterator[Callable[[], None]]:
             shown.update(task, rate="" if not speed else f"{speed:,.0f} {course.unit}/s")
 
         yield step
-
-
-def clock(seconds: float) -> str:
-    """A duration as people write it: 40 s, 12 min, 3.5 h."""
-    if seconds < 90.0:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"

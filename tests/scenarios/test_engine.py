@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios.studies import study_folder
+from scenarios.studies import progress, study_folder
 from scenarios.studies.machines import Machines
+from scenarios.studies.progress import Course
 from scenarios.studies.study_folder import StudyFolder
 from tests.scenarios.study_jobs import CHUNKS, Draws, FillsDisk, KillsItsWorker, content, run, study
 from twin.errors import UserError
@@ -114,3 +115,21 @@ def test_no_scheduler_at_an_address_is_a_line(tmp_path: Path) -> None:
     pytest.importorskip("distributed", reason="needs the extra 'sweeps'")
     with pytest.raises(UserError, match="--scheduler nowhere"):
         study(tmp_path / "s", machines=Machines(scheduler="nowhere"))
+
+
+def test_a_line_says_how_far_a_study_is_and_when_it_will_end() -> None:
+    course = Course(chunks=10, before=4, items=1000, unit="sweeps")
+    assert course.line(20.0) == "halltwin: after 20 s: 400 of 1,000 sweeps"
+    course.done = 2
+    assert course.line(20.0) == "halltwin: after 20 s: 600 of 1,000 sweeps, 10 sweeps/s, 40 s left"
+
+
+def test_without_a_terminal_lines_come_while_a_chunk_is_computed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(progress, "FIRST_S", 0.01)
+    said = ""
+    with progress.progress(chunks=2, done=0, items=2, unit="cells") as step:
+        step()
+        while said.count("1 of 2 cells") < 2:
+            said += capsys.readouterr().err

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import signal
 import sys
 import tempfile
 import time
@@ -30,39 +31,50 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("-o", "--output", type=Path, metavar="JSON", help="write the trials to this file")
     asked = parser.parse_args(arguments)
     chosen = [command for command in COMMANDS if asked.only is None or command.name in asked.only]
-    disks = asked.disks
-    if disks and not can_mount():
-        print("full disks are not tried: this user may not mount one (unshare -rm, tmpfs)", file=sys.stderr)
-        disks = 0
+    # An end by a signal leaves no files behind either; a shell's background jobs ignore interrupts unless told.
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, signal.default_int_handler)
     trials: list[Trial] = []
+    try:
+        with tempfile.TemporaryDirectory(prefix="kill-study-", ignore_cleanup_errors=True) as folder:
+            complete = _try_all(chosen, Path(folder), asked, trials)
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        return 130
+    if asked.output is not None:
+        asked.output.write_text(json.dumps([asdict(trial) for trial in trials], indent=1) + "\n", encoding="utf-8")
+    print(table(chosen, trials))
+    return 0 if complete and all(trial.good for trial in trials) else 1
+
+
+def _try_all(commands: Sequence[Command], work: Path, asked: argparse.Namespace, trials: list[Trial]) -> bool:
+    """Every trial of every command, told as it ends; whether all could be tried."""
 
     def tell(trial: Trial) -> None:
         trials.append(trial)
         word = "ok " if trial.good else "BAD"
         print(f"{word} {trial.command:8} {KINDS[trial.kind]:11} {trial.done}: {trial.outcome}", flush=True)
 
-    with tempfile.TemporaryDirectory(prefix="kill-study-") as folder:
-        work = Path(folder)
-        write_encoder(work)
-        for command in chosen:
-            calm = work / f"{command.name}-calm"
-            start = time.monotonic()
-            first = command.run(calm)
-            seconds = time.monotonic() - start
-            if first.code != 0:
-                print(f"{command.name} fails undisturbed: {first.last_line}", file=sys.stderr)
-                return 1
-            print(f"    {command.name} takes {seconds:.1f} s undisturbed", flush=True)
-            for number in range(asked.kills):
-                kill(command, work, calm, number=number, seconds=seconds, tell=tell)
-            if disks:
-                fill(command, calm, levels=disks, tell=tell)
-            for number in range(asked.pairs):
-                pair(command, work, calm, number=number, tell=tell)
-    if asked.output is not None:
-        asked.output.write_text(json.dumps([asdict(trial) for trial in trials], indent=1) + "\n", encoding="utf-8")
-    print(table(chosen, trials))
-    return 0 if all(trial.good for trial in trials) else 1
+    disks = asked.disks if asked.disks and can_mount() else 0
+    if disks < asked.disks:
+        print("full disks are not tried: this user may not mount one (unshare -rm, tmpfs)", file=sys.stderr)
+    write_encoder(work)
+    for command in commands:
+        calm = work / f"{command.name}-calm"
+        start = time.monotonic()
+        first = command.run(calm)
+        seconds = time.monotonic() - start
+        if first.code != 0:
+            print(f"{command.name} fails undisturbed: {first.last_line}", file=sys.stderr)
+            return False
+        print(f"    {command.name} takes {seconds:.1f} s undisturbed", flush=True)
+        for number in range(asked.kills):
+            kill(command, work, calm, number=number, seconds=seconds, tell=tell)
+        if disks:
+            fill(command, calm, levels=disks, tell=tell)
+        for number in range(asked.pairs):
+            pair(command, work, calm, number=number, tell=tell)
+    return True
 
 
 def table(commands: Sequence[Command], trials: Sequence[Trial]) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from typing import Annotated
 
 import typer
 
+from scenarios.cli import streams
 from scenarios.cli.bench import bench
 from scenarios.cli.effects import causes, check_effect, new_effect
 from scenarios.cli.simulation import hardware, paper, simulate, spinning
@@ -71,16 +73,35 @@ def main() -> None:
     """Run the command line; a mistake of the user's is one line on stderr and exit code 2, a finding asked for is 1."""
     # The matrices here are small: a thread of their own for each core costs more than it brings.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    streams.prepare()
+    code, said = _run()
+    unprinted = streams.settle(sys.stdout)
+    if unprinted is not None and code in (0, 1):
+        gone = streams.reader_is_gone(unprinted)
+        code, said = (streams.READER_GONE, "") if gone else (2, streams.unprinted(unprinted))
+    if said:
+        # Names of files and cells may hold line breaks and control characters; the message stays one line.
+        line = " ".join(said.split())
+        with contextlib.suppress(OSError):
+            print(f"halltwin: {''.join(c if c.isprintable() else '?' for c in line)}", file=sys.stderr)
+    streams.settle(sys.stderr)
+    raise SystemExit(code)
+
+
+def _run() -> tuple[int, str]:
+    """Exit code of the command, and the line to end with; empty where nothing is to be said."""
     try:
         app()
+    except SystemExit as ended:
+        if streams.reader_is_gone(ended.__context__):
+            return streams.READER_GONE, ""
+        return (ended.code if isinstance(ended.code, int) else int(ended.code is not None)), ""
     except Exception as error:
         code, said = _ending(error)
         if code == CRASHED:
             sys.excepthook(type(error), error, error.__traceback__)
-        # Names of files and cells may hold line breaks and control characters; the message stays one line.
-        line = " ".join(said.split())
-        print(f"halltwin: {''.join(c if c.isprintable() else '?' for c in line)}", file=sys.stderr)
-        raise SystemExit(code) from None
+        return code, said
+    return 0, ""
 
 
 def _ending(error: Exception) -> tuple[int, str]:
@@ -95,6 +116,9 @@ def _ending(error: Exception) -> tuple[int, str]:
         return 2, str(error)
     if isinstance(error, OSError) and error.filename is not None:
         return 2, f"{error.filename}: {error.strerror}; give another path"
+    # Without a buffer nothing is left to be written: whether it was standard output that failed shows in another try.
+    if isinstance(error, OSError) and (unprinted := streams.settle(sys.stdout, more="\n")) is not None:
+        return 2, streams.unprinted(unprinted)
     return CRASHED, "this is a fault of the program, not of the input; please report it with the lines above"
 
 

@@ -100,6 +100,20 @@ def test_a_link_stays_and_what_it_leads_to_is_replaced(folder: Path, monkeypatch
     assert link.read_bytes() == b"after"
 
 
+def test_a_disk_that_fills_up_takes_nothing_away(folder: Path) -> None:
+    """Files can be no longer than so many bytes, as on a disk with no more room: of several, also behind a link."""
+    (folder / "link").symlink_to("there.txt")
+    code = (
+        "import resource, sys; from pathlib import Path; from twin.whole_file import write_together\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (5000, 5000))\n"
+        "write_together({Path('new.txt'): b'new', Path('link'): b'x' * 5001})"
+    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    ended = subprocess.run([sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, check=False)
+    assert b"link: cannot be written (File too large)" in ended.stderr
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == {"there.txt": b"before", "link": b"before"}
+
+
 def test_names_cannot_be_foreseen_and_a_planted_link_is_not_followed(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -75,15 +75,20 @@ class Diagnosis:
         """The twin with these factors and nothing else, not even noise: to simulate with."""
         return self.findings.fit.chain()
 
-    def summary(self) -> str:
+    def summary(self, width: int = 80) -> str:
         """The answer as a person reads it: the text that ``halltwin diagnose`` prints for one sweep.
+
+        Parameters
+        ----------
+        width : int, optional
+            Characters in a line.
 
         Returns
         -------
         str
             Several lines, without a line break at the end.
         """
-        return self._alone.summary()
+        return self._alone.summary(width)
 
     def to_dict(self) -> dict[str, Any]:
         """The answer as plain values: the content of ``halltwin diagnose --json``, schema ``halltwin.diagnose/1``.
@@ -154,8 +159,13 @@ class Diagnoses:
 
         return gap_laws(self._findings)
 
-    def summary(self) -> str:
+    def summary(self, width: int = 80) -> str:
         """The text that ``halltwin diagnose`` prints: all about a single sweep, or one line each.
+
+        Parameters
+        ----------
+        width : int, optional
+            Characters in a line.
 
         Returns
         -------
@@ -164,7 +174,7 @@ class Diagnoses:
         """
         from diagnosis.report.diagnose_text import text
 
-        return text(self._findings, self.air_gaps)
+        return text(self.to_dict(), width=width)
 
     def to_dict(self) -> dict[str, Any]:
         """The answer as plain values: the content of ``halltwin diagnose --json``, schema ``halltwin.diagnose/1``.

@@ -54,7 +54,7 @@ FACTORS = (
     Factor(name="Vy_over_Ay", label="offset y", effect=OFFSET, param="y_percent", scale=0.01),
     Factor(name="gain_ratio", label="gain ratio", effect=GAIN_MISMATCH, param="ratio"),
     Factor(name="beta_deg", label="phase", effect=PHASE, param="beta_deg", unit="deg"),
-    Factor(name="quad", label="quadratic", effect=QUADRATIC_NONLINEARITY, param="q_percent", scale=0.01),
+    Factor(name="quad", label="quadratic term", effect=QUADRATIC_NONLINEARITY, param="q_percent", scale=0.01),
     Factor(name="zero_deg", label="zero", effect=ZERO, param="zero_deg", unit="deg"),
 )
 """In the order of the model's points."""

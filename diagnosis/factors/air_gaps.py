@@ -61,9 +61,9 @@ def sentences(found: tuple[Law, ...]) -> tuple[str, ...]:
     for law in found:
         if law.part == "gain mismatch and phase":
             if law.best == "stays":
-                said.append("air gaps: gain mismatch and phase keep their share: the electronics, no misalignment")
+                said.append("air gaps: gain ratio and phase keep their share: the electronics, no misalignment")
             else:
-                said.append(f"air gaps: gain mismatch and phase change ({law.change_sigma:.0f} sigma): misalignment")
+                said.append(f"air gaps: gain ratio and phase change ({law.change_sigma:.0f} sigma): misalignment")
         elif law.part == "offset":
             said.append(
                 f"air gaps: the offset {law.best}; a constant voltage and a stray field both fall with the field: "

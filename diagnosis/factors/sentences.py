@@ -10,22 +10,17 @@ from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.null_space import HIDDEN, invisible_count
 from diagnosis.factors.profile_likelihood import Profile
 from twin.angles import Array
+from twin.baseline import FACTORS
 
 TIED = 0.9
 """Correlation from which two parameters are called nearly tied."""
-_WHAT = {
-    "Vx_over_Ax": "x offset",
-    "Vy_over_Ay": "y offset",
-    "gain_ratio": "gain ratio",
-    "beta_rad": "phase",
-    "quad": "quadratic term",
-    "zero_rad": "zero",
-}
+_WHAT = dict(zip(NAMES, (factor.label for factor in FACTORS), strict=True))
+"""What people read for each parameter of the model."""
 
 
 def said_of_any_sweep(fit: BaselineFit, has_channels: bool) -> tuple[str, ...]:
     """What no angle can show, whatever the readings, and what raw channels show or would show."""
-    visible = "an angle shows only Vx/Ax, Vy/Ay, Ay/Ax, beta, q and the zero"
+    visible = f"an angle shows only {', '.join(_WHAT.values())}"
     hidden = f"{visible}; of the paper's ten unknowns {invisible_count(fit.point)} combinations stay hidden:"
     first = f"{hidden} {'; '.join(HIDDEN)}"
     if has_channels:
@@ -78,8 +73,8 @@ def said_of_the_mirror_solution(fit: BaselineFit) -> tuple[str, ...]:
     senses = fit.senses
     if senses.other is None:
         return ()
-    beta, offset = np.degrees(senses.other[model.BETA]), 100.0 * senses.other[model.VY]
-    pair = f"s = {-senses.sensor:+d}, h = {-senses.output:+d} (beta {beta:+.3f} deg, Vy/Ay {offset:+.3f} %)"
+    phase, offset = np.degrees(senses.other[model.BETA]), 100.0 * senses.other[model.VY]
+    pair = f"s = {-senses.sensor:+d}, h = {-senses.output:+d} (phase {phase:+.3f} deg, offset y {offset:+.3f} %)"
     if senses.matters:
-        return (f"the mirror solution {pair} is {senses.sigma:.0f} standard errors worse, through q alone",)
-    return (f"the mirror solution {pair} fits as well: an angle with so small a q cannot part them",)
+        return (f"the mirror solution {pair} is {senses.sigma:.0f} standard errors worse, by its quadratic term alone",)
+    return (f"the mirror solution {pair} fits as well: an angle with so small a quadratic term cannot part them",)

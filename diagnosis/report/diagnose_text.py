@@ -1,115 +1,165 @@
-"""The factors of diagnosed sweeps as a person reads them: what ``halltwin diagnose`` prints."""
+"""The factors of diagnosed sweeps as a person reads them: what ``halltwin diagnose`` prints.
+
+Each function takes the answer (the content of the JSON) and nothing else, so that both say the same.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
-import numpy as np
-
-from diagnosis.error_model.model import NAMES
 from diagnosis.factors.air_gaps import Law, sentences
-from diagnosis.factors.findings import Findings
-from twin.baseline import FACTORS
+from diagnosis.report.factor_names import LABELS, SCALES, UNITS
+from diagnosis.report.wording import figure, plain
 
-_ROWS = (
-    ("offset x", "% of amplitude", 4),
-    ("offset y", "% of amplitude", 4),
-    ("gain ratio", "", 6),
-    ("phase", "deg", 4),
-    ("quadratic", "% of amplitude", 4),
-    ("zero", "deg", 4),
-)
-"""Label, unit and decimals of each parameter, in the order of the point and in the twin's units."""
+_OF_AMPLITUDE = {"%": "% of amplitude"}
+_INDENT = 16
+_SHORTEST_NAME = 12
 
 
-def text(found: Sequence[Findings], over_gaps: Sequence[Law]) -> str:
-    """The answer: all about a single sweep, one line each for many, and what the air gaps add."""
-    lines = one_sweep(found[0]) if len(found) == 1 else many_sweeps(found)
-    return "\n".join([*lines, *(f"- {sentence}" for sentence in sentences(tuple(over_gaps)))])
+def text(answer: Mapping[str, Any], *, width: int) -> str:
+    """The answer in lines of at most this many characters: all about a single sweep, or one line each for many."""
+    sweeps = answer["sweeps"]
+    lines = one_sweep(sweeps[0], width=width) if len(sweeps) == 1 else many_sweeps(sweeps, width=width)
+    laws = tuple(Law(**law) for law in answer["air_gaps"])
+    return "\n".join([*lines, *_listed(sentences(laws), width)])
 
 
-def one_sweep(found: Findings) -> list[str]:
+def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:
     """The answer for one sweep, line by line."""
-    fit, sweep = found.fit, found.sweep
-    left_out = f"; {len(found.glitch_rows)} left out as gross errors" if found.glitch_rows else ""
-    rejected = f", {len(sweep.rejected)} rejected" if sweep.rejected else ""
-    contributed = fit.contributions
+    steps, senses = sweep["steps"], sweep["senses"]
+    alone, swarm, polished = (_deg(v) for v in (steps["zero_only_rms_deg"], steps["swarm_rms_deg"], sweep["rms_deg"]))
+    particles = steps["particles_evaluated"]
+    facts = {
+        "error RMS": f"{alone} with the zero alone, {swarm} after the swarm ({particles} particles), "
+        f"{polished} after the polish",
+        "senses": f"s = {senses['sensor']:+d}, h = {senses['output']:+d}",
+        "range": _range_words(sweep["search"]),
+    }
     return [
-        f"{sweep.name}   {sweep.rows} readings{rejected}{left_out}",
+        *_wrapped(f"{sweep['sweep']}   {rows_words(sweep)}", width, 2),
         "",
-        *_parameter_lines(found),
+        *_parameter_lines(sweep["parameters"]),
         "",
-        f"error RMS    {_deg(contributed.zero_only_rms_rad)} with the zero alone, "
-        f"{_deg(contributed.swarm_rms_rad)} after the swarm ({contributed.particles_evaluated} particles), "
-        f"{_deg(fit.rms_rad)} after the polish",
-        f"senses       s = {fit.senses.sensor:+d}, h = {fit.senses.output:+d}",
-        f"range        {_range_words(found)}",
+        *(line for name, said in facts.items() for line in _wrapped(f"{name:{_INDENT}}{said}", width, _INDENT)),
         "",
-        *_mechanical_lines(found),
+        *_wrapped(mechanical_words(sweep["mechanical"]), width, 2),
         "",
-        *(f"- {sentence}" for sentence in found.sentences),
+        *_listed(sweep["sentences"], width),
     ]
 
 
-def _parameter_lines(found: Findings) -> list[str]:
-    """The table of the six parameters, and the profiles' limits below it."""
-    fit = found.fit
-    lines = [f"{'':12} {'value':>12}   95 % interval"]
-    for k, (label, unit, digits) in enumerate(_ROWS):
-        scale = FACTORS[k].per_coordinate
-        low, high = scale * fit.low[k], scale * fit.high[k]
-        bound = "   at the model's limit" if fit.at_bound[k] else ""
-        lines.append(
-            f"{label:12} {scale * fit.point[k]:12.{digits}f}   {low:.{digits}f} .. {high:.{digits}f} {unit}{bound}"
-        )
-    for profile in found.identifiability.profiles:
-        k = NAMES.index(profile.name)
-        label, unit, digits = _ROWS[k]
-        scale = FACTORS[k].per_coordinate
-        low, high = scale * profile.low, scale * profile.high
-        lines.append(f"{'  profile':12} {label:>12}   {low:.{digits}f} .. {high:.{digits}f} {unit}")
+def rows_words(sweep: Mapping[str, Any]) -> str:
+    """How many readings there are, and which of them the fit is not made of."""
+    said = f"{sweep['rows']} readings"
+    if sweep["rejected"]:
+        said += f", {sweep['rejected']} rejected"
+    glitches = sweep["glitch_rows"]
+    if glitches:
+        more = f" and {len(glitches) - 5} more" if len(glitches) > 5 else ""
+        listed = ", ".join(map(str, glitches[:5]))
+        said += f"; {len(glitches)} left out as gross errors ({'row' if len(glitches) == 1 else 'rows'} {listed}{more})"
+    return said
+
+
+def _parameter_lines(parameters: Mapping[str, Any]) -> list[str]:
+    """The table of the six factors, with the profile's limits below those that have them."""
+    lines = [f"{'':{_INDENT}}{'value':>12}   95 % interval"]
+    for key, label in LABELS.items():
+        parameter = parameters[key]
+        unit = _OF_AMPLITUDE.get(UNITS[key], UNITS[key])
+        value, _ = figure(parameter, SCALES[key])
+        bound = "   at the model's limit" if parameter["at_bound"] else ""
+        limits = _limits(parameter["low"], parameter["high"], value, SCALES[key])
+        lines.append(f"{label:{_INDENT}}{value:>12}   {limits} {unit}{bound}".rstrip())
+        if "profile" in parameter:
+            low, high = parameter["profile"]
+            limits = _limits(low, high, value, SCALES[key])
+            lines.append(f"{'  profile':{_INDENT}}{'':>12}   {limits} {unit}".rstrip())
     return lines
 
 
-def many_sweeps(found: Sequence[Findings]) -> list[str]:
-    """One line a sweep."""
-    width = max(len(item.sweep.name) for item in found)
-    lines = [
-        f"{'sweep':{width}} {'rows':>7} {'Vx/Ax %':>9} {'Vy/Ay %':>9} {'gain':>9} {'beta deg':>9} {'quad %':>9} "
-        f"{'RMS deg':>8} {'before':>8}"
-    ]
-    for item in found:
-        cells = " ".join(f"{factor.per_coordinate * item.fit.point[k]:9.4f}" for k, factor in enumerate(FACTORS[:5]))
-        fit = item.fit
-        lines.append(
-            f"{item.sweep.name:{width}} {item.sweep.rows:7d} {cells} {np.degrees(fit.rms_rad):8.4f} "
-            f"{np.degrees(fit.contributions.zero_only_rms_rad):8.4f}"
-        )
+def _limits(low: float | None, high: float | None, value: str, scale: float) -> str:
+    """An interval with the digits of its value; an end that is none is said to be open."""
+    decimals = len(value.partition(".")[2]) if "e" not in value else None
+    ends = []
+    for end in (low, high):
+        if end is None:
+            ends.append("open")
+        else:
+            ends.append(f"{end * scale:.2e}" if decimals is None else f"{end * scale:.{decimals}f}")
+    return " .. ".join(ends)
+
+
+def many_sweeps(sweeps: Sequence[Mapping[str, Any]], *, width: int) -> list[str]:
+    """One line a sweep; with the half widths of the intervals where the lines are long enough for them."""
+    keys = list(LABELS)[:5]
+    labels, units = ([names[key] for key in keys] for names in (LABELS, UNITS))
+    heads = [["rows", *labels, "RMS", "before"], ["", *units, "deg", "deg"]]
+    longest = max(len(sweep["sweep"]) for sweep in sweeps)
+    for shown, gap in ((" ".join, 2), (_value_alone, 2), (_value_alone, 1)):
+        rows = [*heads, *(_cells(sweep, keys, shown) for sweep in sweeps)]
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        name = width - sum(widths) - gap * len(widths)
+        if name >= longest:
+            break
+    name = max(_SHORTEST_NAME, min(name, longest))
+    firsts = ["sweep", "", *(sweep["sweep"] for sweep in sweeps)]
+    lines = []
+    for first, row in zip(firsts, rows, strict=True):
+        cells = [f"{cell:>{size}}" for cell, size in zip(row, widths, strict=True)]
+        lines.append((" " * gap).join([f"{_end_of(first, name):{name}}", *cells]).rstrip())
     return lines
 
 
-def _mechanical_lines(found: Findings) -> list[str]:
-    equivalent = found.mechanical
+def _value_alone(shown: tuple[str, str]) -> str:
+    return shown[0]
+
+
+def _cells(sweep: Mapping[str, Any], keys: Iterable[str], shown: Any) -> list[str]:
+    """What the line of a sweep says behind its name."""
+    factors = [shown(figure(sweep["parameters"][key], SCALES[key])) for key in keys]
+    return [str(sweep["rows"]), *factors, plain(sweep["rms_deg"]), plain(sweep["steps"]["zero_only_rms_deg"])]
+
+
+def _end_of(name: str, length: int) -> str:
+    """A name, or of one that is too long its end: files of a series differ there."""
+    return name if len(name) <= length else f"…{name[len(name) - length + 1 :]}"
+
+
+def mechanical_words(equivalent: Mapping[str, Any]) -> str:
+    """The mechanical causes that would make the same curve."""
     ways = []
-    if equivalent.off_axis_mm is not None:
-        towards = equivalent.off_axis_direction_deg
-        ways.append(f"sensor {equivalent.off_axis_mm:.2f} mm off the axis towards {towards:.0f} deg or opposite")
-    if equivalent.tilt_deg is not None:
-        ways.append(f"sensor tilted {equivalent.tilt_deg:.1f} deg towards {equivalent.tilt_direction_deg:.0f} deg")
+    if equivalent["off_axis_mm"] is not None:
+        towards = equivalent["off_axis_direction_deg"]
+        ways.append(f"a sensor {equivalent['off_axis_mm']:.2f} mm off the axis towards {towards:.0f} deg or opposite")
+    if equivalent["tilt_deg"] is not None:
+        tilt, towards = equivalent["tilt_deg"], equivalent["tilt_direction_deg"]
+        ways.append(f"a sensor tilted {tilt:.1f} deg towards {towards:.0f} deg")
     same = " or ".join(ways) if ways else "no misalignment within the twin's range"
-    return [
-        f"would look the same: gain ratio and phase ({equivalent.order_2_deg:.3f} deg of order 2) = {same}",
-        f"                     offset = stray field of {equivalent.stray_x_mT:.3f}, {equivalent.stray_y_mT:.3f} mT "
-        f"beside a magnet of {equivalent.field_mT:.0f} mT",
-    ]
+    return (
+        f"would look the same: gain ratio and phase ({plain(equivalent['order_2_deg'])} deg of order 2) as {same}; "
+        f"offset x and y as a stray field of {plain(equivalent['stray_x_mT'])}, {plain(equivalent['stray_y_mT'])} mT "
+        f"beside a magnet of {plain(equivalent['field_mT'])} mT"
+    )
 
 
-def _range_words(found: Findings) -> str:
-    search = found.fit.search
-    if not search.widened:
+def _range_words(search: Mapping[str, Any]) -> str:
+    if not search["widened"]:
         return "Table 2's"
-    return f"wider than Table 2's in {', '.join(search.widened)} ({search.rounds} rounds)"
+    wide = ", ".join(LABELS[key] for key in search["widened"])
+    return f"wider than Table 2's in {wide} ({search['rounds']} rounds)"
 
 
-def _deg(value_rad: float) -> str:
-    return f"{np.degrees(value_rad):.4f} deg"
+def _wrapped(words: str, width: int, indent: int) -> list[str]:
+    return textwrap.wrap(words, width, subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
+
+
+def _listed(said: Iterable[str], width: int) -> list[str]:
+    """Sentences as a list."""
+    return [line for sentence in said for line in _wrapped(f"- {sentence}", width, 2)]
+
+
+def _deg(value: float | None) -> str:
+    return f"{plain(value)} deg"

@@ -11,6 +11,7 @@ from scenarios.commands.fail_on import DIAGNOSE, asked, in_diagnoses, raise_foun
 from scenarios.commands.inputs import read_sweeps, sweep_paths
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.commands.progress import ended_by_interrupt, progress_line
+from scenarios.commands.terminal import terminal_width
 
 
 def run(
@@ -34,7 +35,7 @@ def run(
     found = replace(found, made=replace(found.made, command=command))
     answer = {**found.to_dict(), "unusable": read.listed()}
     try:
-        for line in (found.summary(), *read.lines):
+        for line in (found.summary(terminal_width()), *read.lines):
             print(line)
     finally:
         files.write({json_path: lambda: json_text(answer), plot: found.plot, convergence: found.plot_convergence})

@@ -78,7 +78,7 @@ def test_diagnose_uses_several_air_gaps(tmp_path: Path, capsys: pytest.CaptureFi
         columns = {"reference_deg": np.degrees(angle), "measured_deg": measured, "vx": x, "vy": y}
         Sweep.from_columns(columns).write(tmp_path / f"{name}.csv")
     diagnose.run([str(tmp_path)], json_path=tmp_path / "a.json")
-    assert "air gaps: gain mismatch and phase change" in capsys.readouterr().out
+    assert "air gaps: gain ratio and phase change" in capsys.readouterr().out
     laws = {law["part"]: law["best"] for law in json.loads((tmp_path / "a.json").read_text())["air_gaps"]}
     assert laws["gain mismatch and phase"] == "grows with the field"
     assert laws["quadratic term"] == "stays"

@@ -65,36 +65,37 @@ def _figure(columns: dict[str, Array]) -> Any:
     figure, axes = plt.subplots(3, 2, figsize=(10.0, 9.0), sharex=True, layout="constrained")
     across = columns["shaft_deg"]
     panels: list[tuple[str, str, dict[str, Array]]] = [
-        ("magnet", "field in the plane / mT", {axis: columns[f"in_plane_{axis}_mT"] for axis in "xy"}),
-        ("concentrator", "vertical field / mT", {axis: columns[f"vertical_{axis}_mT"] for axis in "xy"}),
+        ("magnet", "field in the plane [mT]", {axis: columns[f"in_plane_{axis}_mT"] for axis in "xy"}),
+        ("concentrator", "vertical field [mT]", {axis: columns[f"vertical_{axis}_mT"] for axis in "xy"}),
         (
             "spinning current",
-            "output minus field / mT",
+            "output minus field [mT]",
             {
                 f"{axis}, {name}": columns[f"{kind}_{axis}_mT"] - columns[f"vertical_{axis}_mT"]
                 for kind, name in (("unspun", "before"), ("spun", "after"))
                 for axis in "xy"
             },
         ),
-        ("converter", "code / LSB", {axis: columns[f"code_{axis}_lsb"] for axis in "xy"}),
+        ("converter", "code [LSB]", {axis: columns[f"code_{axis}_lsb"] for axis in "xy"}),
         (
             "CORDIC",
-            "angle minus that of the codes / deg",
+            "angle minus that of the codes [deg]",
             {
                 "integer CORDIC": wrap_deg(
                     columns["cordic_deg"] - np.degrees(np.arctan2(columns["code_y_lsb"], columns["code_x_lsb"]))
                 )
             },
         ),
-        ("link", "reading minus reference / deg", {"received": columns["error_deg"]}),
+        ("link", "reading minus reference [deg]", {"received": columns["error_deg"]}),
     ]
     for axis, (title, label, curves) in zip(axes.flat, panels, strict=True):
-        for name, values in curves.items():
-            axis.plot(across, values, linewidth=0.8, label=name)
+        for dashes, (name, values) in zip(("-", "--", "-", "--"), curves.items(), strict=False):
+            axis.plot(across, values, dashes, linewidth=0.9, label=name)
         axis.set(title=title, ylabel=label)
         axis.grid(alpha=0.3)
-        axis.legend(fontsize=7)
+        if len(curves) > 1:
+            axis.legend(fontsize=8, ncols=2, loc="center right" if len(curves) > 2 else "upper center")
     for axis in axes[-1]:
-        axis.set_xlabel("shaft angle / deg")
+        axis.set_xlabel("shaft angle [deg]")
     plt.close(figure)
     return figure

@@ -43,6 +43,7 @@ def run(folder: Path, *, force: bool = False) -> None:
     contents: dict[Path | None, Any] = {folder / "table1.csv": table_csv(rows)}
     for number, draw in FIGURES.items():
         figure, columns = draw(plt)
+        figure.suptitle(f"Fig. {number}: {TITLES[number]}", fontsize=10)
         csv, *pictures = names[number]
         contents |= {csv: csv_text(columns), **dict.fromkeys(pictures, figure)}
         plt.close(figure)
@@ -69,7 +70,7 @@ def offsets(plt: Any) -> tuple[Any, Columns]:
             error = _error_deg(offset_of(x, y))
             axis.plot(ANGLE_DEG, error, label=label)
             columns[f"error_x_{x:g}mV_y_{y:g}mV_deg"] = error
-        _label(axis, title, "angle / deg", "error / deg")
+        _label(axis, title, "angle [deg]", "error [deg]", legend="offset, amplitude 1 V")
     axes[0, 0].set_yscale("symlog", linthresh=1e-3)
     return figure, columns
 
@@ -78,14 +79,14 @@ def gain(plt: Any) -> tuple[Any, Columns]:
     """Fig. 4: the error over angle and gain mismatch."""
     percents = np.linspace(0.0, 1.0, 21)
     chains = [Chain().with_effect(GAIN_MISMATCH.name, ratio=1.0 + 0.01 * percent) for percent in percents]
-    return _surface(plt, percents, chains, "gain mismatch / %", "mismatch_percent")
+    return _surface(plt, percents, chains, "gain mismatch [%]", "mismatch_percent")
 
 
 def phase(plt: Any) -> tuple[Any, Columns]:
     """Fig. 5: the error over angle and phase deviation."""
     degrees = np.linspace(0.0, 0.5, 21)
     chains = [Chain().with_effect(PHASE.name, beta_deg=beta) for beta in degrees]
-    return _surface(plt, degrees, chains, "phase deviation / deg", "beta_deg")
+    return _surface(plt, degrees, chains, "phase deviation [deg]", "beta_deg")
 
 
 def field_and_voltage(plt: Any) -> tuple[Any, Columns]:
@@ -100,16 +101,16 @@ def field_and_voltage(plt: Any) -> tuple[Any, Columns]:
     figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
     axes[0].plot(field, 1e3 * (real - share), label="curve")
     axes[0].plot(field, 1e3 * (fitted - share), "--", label="quadratic fit")
-    _label(axes[0], "deviation from a straight line", "field / mT", "deviation / mV")
+    _label(axes[0], "deviation from a straight line", "field [mT]", "deviation [mV]")
     axes[1].plot(field, real, label="output")
-    _label(axes[1], "output at 1 V for 100 mT", "field / mT", "voltage / V")
+    _label(axes[1], "output at 1 V for 100 mT", "field [mT]", "voltage [V]")
     return figure, {"field_mT": field, "voltage_V": real, "fitted_V": np.asarray(fitted, dtype=np.float64)}
 
 
 def non_linearity(plt: Any) -> tuple[Any, Columns]:
     """Fig. 7: the error over angle and field."""
     fields = np.linspace(0.0, 100.0, 21)
-    return _surface(plt, fields, [non_linear(field) for field in fields], "field / mT", "field_mT")
+    return _surface(plt, fields, [non_linear(field) for field in fields], "field [mT]", "field_mT")
 
 
 def fluctuation(plt: Any) -> tuple[Any, Columns]:
@@ -130,7 +131,13 @@ def fluctuation(plt: Any) -> tuple[Any, Columns]:
         axis.plot(code, 1e3 * (volts - seen * converter.step), ".", markersize=2, color=line.get_color())
         columns[f"error_{millivolt:g}mV_mV"] = formula
         columns[f"converted_{millivolt:g}mV_mV"] = 1e3 * (volts - seen * converter.step)
-    _label(axis, "lines: Eq. 3; points: the converter, full scale 1 V", "code of 14 bits", "sampling error / mV")
+    _label(
+        axis,
+        "lines: Eq. 3; points: the converter, full scale 1 V",
+        "code of 14 bits [1]",
+        "sampling error [mV]",
+        legend="change of the reference",
+    )
     return figure, columns
 
 
@@ -148,11 +155,11 @@ def calculation(plt: Any) -> tuple[Any, Columns]:
         largest.append(float(np.degrees(np.max(np.abs(error)))))
     for count in (6, 8, 10):
         axes[0].plot(columns["angle_deg"], columns[f"error_{count}_iterations_deg"], linewidth=0.6, label=f"{count}")
-    _label(axes[0], "error through 6, 8, 10 iterations", "angle / deg", "error / deg")
+    _label(axes[0], "error over the first quadrant", "angle [deg]", "error [deg]", legend="iterations")
     bound = [float(np.degrees(np.arctan(2.0 ** -(count - 1)))) for count in counts]
     axes[1].semilogy(list(counts), largest, "o", label="largest error")
     axes[1].semilogy(list(counts), bound, "--", label="atan(2^-(n-1))")
-    _label(axes[1], "envelope", "iterations", "error / deg")
+    _label(axes[1], "largest error and its bound", "iterations [1]", "error [deg]")
     return figure, columns
 
 
@@ -165,6 +172,15 @@ FIGURES: dict[int, Callable[[Any], tuple[Any, Columns]]] = {
     8: fluctuation,
     9: calculation,
 }
+TITLES = {
+    3: "angle error by offsets of the channels",
+    4: "angle error by a mismatch of the gains",
+    5: "angle error by a phase that is not 90 deg",
+    6: "output voltage over the field",
+    7: "angle error by the quadratic term",
+    8: "sampling error by a change of the converter's reference",
+    9: "angle error by the iterations of the CORDIC",
+}
 
 
 def _surface(plt: Any, across: Array, chains: Sequence[Chain], label: str, name: str) -> tuple[Any, Columns]:
@@ -174,12 +190,12 @@ def _surface(plt: Any, across: Array, chains: Sequence[Chain], label: str, name:
     figure = plt.figure(figsize=(6.5, 5.0), layout="constrained")
     axis = figure.add_subplot(projection="3d")
     axis.plot_surface(angle, parameter, error, cmap="viridis", rcount=21, ccount=90, linewidth=0.1)
-    axis.set(xlabel="angle / deg", ylabel=label, zlabel="error / deg")
+    axis.set(xlabel="angle [deg]", ylabel=label, zlabel="error [deg]")
     axis.set_box_aspect(None, zoom=0.85)
     return figure, {"angle_deg": angle.ravel(), name: parameter.ravel(), "error_deg": error.ravel()}
 
 
-def _label(axis: Any, title: str, across: str, up: str) -> None:
+def _label(axis: Any, title: str, across: str, up: str, *, legend: str | None = None) -> None:
     axis.set(title=title, xlabel=across, ylabel=up)
     axis.grid(alpha=0.3)
-    axis.legend(fontsize=7)
+    axis.legend(fontsize=7, title=legend, title_fontsize=7)

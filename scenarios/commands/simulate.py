@@ -9,7 +9,8 @@ from typing import Any
 
 from scenarios.commands.outputs import PICTURE, SWEEP, TABLE, OutputFiles
 from scenarios.commands.protocol import Protocol
-from scenarios.commands.trace import trace, trace_figure, trace_text
+from scenarios.commands.trace import trace, trace_text
+from scenarios.commands.trace_plot import trace_figure
 from twin.extensions import effects_with
 from twin.presets import read_twin_or_preset
 from twin.reference.encoder import Encoder

@@ -62,21 +62,26 @@ def _figure(
     corners: dict[str, float],
 ) -> Any:
     plt = style()
-    figure, axes = plt.subplots(3, 1, figsize=(8.0, 9.0), layout="constrained")
+    figure, axes = plt.subplots(4, 1, figsize=(8.0, 11.0), layout="constrained")
     time = 1e6 * traced.time_s.ravel()
-    axes[0].plot(time, traced.amplified_uV.ravel(), linewidth=0.8, label="at the amplifier's output, input-referred")
-    axes[0].plot(time, traced.demodulated_uV.ravel(), linewidth=0.8, label="after the demodulator")
-    axes[0].set(xlabel="time / us", ylabel="voltage / uV", title="Signal phase by phase; the field is on in the middle")
+    axes[0].plot(time, traced.amplified_uV.ravel(), linewidth=0.8)
+    axes[0].set(title="At the amplifier's output, input-referred, phase by phase; the field is on in the middle")
+    axes[1].plot(time, traced.demodulated_uV.ravel(), linewidth=0.8)
+    axes[1].set(title="After the demodulator: the field keeps its sign, the offset changes it from phase to phase")
+    for axis in axes[:2]:
+        axis.set(xlabel="time [us]", ylabel="voltage [uV]")
     cycle = 1e6 * traced.time_s.mean(axis=(1, 2))
-    axes[1].plot(cycle, traced.unspun_mT, "o-", label=f"bias left in phase 0: offset {offsets[0]:.3g} mT")
-    axes[1].plot(cycle, traced.output_mT, "o-", label=f"mean over a cycle: offset {offsets[1]:.3g} mT")
-    axes[1].set(xlabel="time / us", ylabel="output / mT", title="Offset before and after spinning")
+    axes[2].plot(cycle, traced.unspun_mT, "o-", label=f"bias left in phase 0: offset {offsets[0]:.3g} mT")
+    axes[2].plot(cycle, traced.output_mT, "o-", label=f"mean over a cycle: offset {offsets[1]:.3g} mT")
+    axes[2].set(xlabel="time [us]", ylabel="output [mT]", title="Offset before and after spinning")
     for name, (frequency, power) in spectra.items():
         label = f"{name}: corner {_stated(corners[name], frequency)}"
-        axes[2].loglog(frequency, 1e6 * np.sqrt(power), linewidth=0.8, label=label)
-    axes[2].set(xlabel="frequency / Hz", ylabel="noise / (nT / sqrt(Hz))", title="Noise of the output")
+        axes[3].loglog(frequency, 1e6 * np.sqrt(power), linewidth=0.8, label=label)
+    axes[3].set(xlabel="frequency [Hz]", ylabel="noise [nT/sqrt(Hz)]", title="Noise of the output")
     for axis in axes:
         axis.grid(alpha=0.3)
+        axis.title.set_fontsize(9)
+    for axis in axes[2:]:
         axis.legend(fontsize=8, loc="best")
     figure.suptitle(f"Spinning current, {PHASES} phases of {1e6 * plate.phase_s:g} us")
     plt.close(figure)

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from diagnosis.report.plotting import style
-from twin.angles import TAU, Array, wrap
+from twin.angles import Array, wrap
 from twin.catalogue import STAGES
 from twin.chain import Chain, Step
 from twin.concentrator.disk import vertical_mT
@@ -137,34 +135,3 @@ def trace_text(traced: Trace) -> str:
     columns["reference_deg"] = traced.reference_deg
     columns["error_deg"] = traced.error_deg
     return csv_text(columns, comments=traced.notes)
-
-
-def trace_figure(traced: Trace, *, title: str) -> Any:
-    """Three panels: the channels, what each effect does to the angle, and the error that is left."""
-    plt = style()
-    figure, axes = plt.subplots(3, 1, figsize=(8.0, 8.5), sharex=True, layout="constrained")
-    turn = traced.motion.shaft_rad
-    single = traced.motion.turns <= 1.0 and np.all(np.diff(turn) > 0)
-    across = turn * 360.0 / TAU if single else np.arange(len(traced.motion))
-    marker = {"linewidth": 0.9}
-    channels = [signal for signal in traced.signals if signal.unit == "1"][-1]
-    axes[1].set_prop_cycle(color=plt.get_cmap("tab20").colors)
-    for label, values in zip("xy", channels.values, strict=True):
-        axes[0].plot(across, values, label=label, **marker)
-    axes[0].set_ylabel("channel / nominal amplitude")
-    for signal in traced.signals:
-        if np.max(np.abs(signal.moved_deg)) > 1e-9:
-            # The roughest curves go behind the smooth ones.
-            behind = 2.0 - float(np.std(np.diff(signal.moved_deg)))
-            name = "magnet" if signal.name == CONVERSIONS["after field"] else signal.name
-            axes[1].plot(across, signal.moved_deg, label=name, zorder=behind, **marker)
-    axes[1].set_ylabel("change of the angle / deg")
-    axes[2].plot(across, traced.error_deg, color="black", label="reading minus reference", **marker)
-    axes[2].set_ylabel("error / deg")
-    axes[2].set_xlabel("shaft angle / deg" if single else "reading")
-    for axis in axes:
-        axis.grid(alpha=0.3)
-        axis.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    figure.suptitle(title)
-    plt.close(figure)
-    return figure

@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.command_line import halltwin
@@ -17,10 +18,12 @@ from tests.pages import GUIDE, ROOT
 from twin.adc.converter import Converter
 from twin.baseline import FACTORS
 from twin.catalogue import CATALOGUE
+from twin.chain import Chain
 from twin.concentrator.disk import Disk
 from twin.hall.spinning_current import Plate
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement
+from twin.motion import Motion
 from twin.parts import Parts
 from twin.reference.encoder import Encoder
 from twin.sweep import COLUMNS
@@ -118,6 +121,20 @@ def test_keys_of_diagnose_are_listed(tmp_path: Path) -> None:
     written = tmp_path / "found.json"
     halltwin("diagnose", ROOT / "scenarios/data/bench_sweep.csv", "--json", written)
     assert undescribed(json.loads(written.read_text(encoding="utf-8"))) == set()
+
+
+def test_keys_of_monitor_are_listed(tmp_path: Path) -> None:
+    """Of a series there and back, one of whose factors jumps: every key is there."""
+    written, way = tmp_path / "found.json", 2.0 * np.pi * np.arange(60) / 60
+    motion = Motion.from_angle(np.concatenate([way, way[::-1]]))
+    for k in range(12):
+        sensor = Chain().with_effect("hysteresis", lag_deg=0.1 if k < 8 else 0.4, memory_deg=5.0)
+        sensor.with_effect("noise", rms_deg=0.01).simulate(motion, seed=k).write(tmp_path / f"s{k:02d}.csv")
+    halltwin("monitor", tmp_path, "--json", written)
+    answer = json.loads(written.read_text(encoding="utf-8"))
+    assert answer["factors"]["zero_deg"]["forward"]["change"]["number"] == 9
+    assert answer["factors"]["lag_deg"]["change"]["size"] == pytest.approx(0.3, abs=0.02)
+    assert undescribed(answer) == set()
 
 
 def test_a_new_key_would_be_missed() -> None:

@@ -118,7 +118,7 @@ def _change(found: MonitoredSeries, item: Chart) -> dict[str, Any] | None:
     if item.change is None:
         return None
     return {
-        "shape": item.change.shape,
+        "kind": item.change.shape,
         "number": item.change.first + 1,
         "low": item.change.low + 1,
         "high": item.change.high + 1,

@@ -132,6 +132,12 @@ def test_monitor_names_the_factor_that_drifts(folder: Path, tmp_path: Path, caps
     assert "drift: gain_ratio up" in capsys.readouterr().out
     first = json.loads((tmp_path / "m.json").read_text())["first"]
     assert first["factor"] == "gain_ratio"
+    told = json.loads((tmp_path / "m.json").read_text())["factors"]["gain_ratio"]
+    # Twelve sweeps as they were, then a ramp: its start lies in the interval, and so does the estimate.
+    assert told["change"]["kind"] == "ramp"
+    assert told["change"]["low"] <= 14 <= told["change"]["high"]
+    assert told["unit"] == "1"
+    assert "forward" not in told
     assert 13 < first["number"] <= 22
     assert (tmp_path / "m.png").stat().st_size > 10_000
 

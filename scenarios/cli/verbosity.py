@@ -45,8 +45,9 @@ def with_verbosity(command: Callable[..., None]) -> Callable[..., None]:
         with _silence() if quiet else _told() if verbose else _as_is():
             command(**options)
 
-    # typer asks a function for its signature, and gives each parameter by name.
+    # typer asks a function for its signature and its annotations, and gives each parameter by name.
     run.__signature__ = inspect.Signature([*own, *both])  # type: ignore[attr-defined]
+    run.__annotations__ = {one.name: one.annotation for one in (*own, *both)}
     return run
 
 

@@ -1,4 +1,4 @@
-"""What ``halltwin diagnose`` prints: all that its JSON says, in lines that fit the terminal, under one name a factor."""
+"""What ``halltwin diagnose`` prints: all that its JSON says, in lines that fit the terminal, one name a factor."""
 
 from __future__ import annotations
 

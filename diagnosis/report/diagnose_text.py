@@ -95,8 +95,9 @@ def _limits(low: float | None, high: float | None, value: str, scale: float) -> 
 def many_sweeps(sweeps: Sequence[Mapping[str, Any]], *, width: int) -> list[str]:
     """One line a sweep; with the half widths of the intervals where the lines are long enough for them."""
     keys = list(LABELS)[:5]
-    labels, units = ([names[key] for key in keys] for names in (LABELS, UNITS))
-    heads = [["rows", *labels, "RMS", "before"], ["", *units, "deg", "deg"]]
+    first, rest = zip(*(LABELS[key].partition(" ")[::2] for key in keys), strict=True)
+    units = [", ".join(filter(None, (word, UNITS[key]))) for key, word in zip(keys, rest, strict=True)]
+    heads = [["rows", *first, "RMS", "before"], ["", *units, "deg", "deg"]]
     longest = max(len(sweep["sweep"]) for sweep in sweeps)
     for shown, gap in ((" ".join, 2), (_value_alone, 2), (_value_alone, 1)):
         rows = [*heads, *(_cells(sweep, keys, shown) for sweep in sweeps)]

@@ -70,11 +70,14 @@ def of_one_file(file: str, tests: str, *rows: tuple[str, str, str, str]) -> tupl
     Parameters
     ----------
     file, tests : str
-        The file that is changed, and the folder of the tests, relative to the root of the repository.
+        The file that is changed, and the folder or file of the tests, relative to the root of the repository.
     *rows : tuple of str
-        Name, text that is replaced, what replaces it, and node id below the folder.
+        Name, text that is replaced, what replaces it, and node id below the folder or, with ``::`` first, the file.
     """
-    return tuple(Mutation(name, file, old, new, (f"{tests}/{test}",)) for name, old, new, test in rows)
+    return tuple(
+        Mutation(name, file, old, new, (f"{tests}{'' if test.startswith('::') else '/'}{test}",))
+        for name, old, new, test in rows
+    )
 
 
 def checked(mutations: Iterable[Mutation], root: Path = ROOT) -> tuple[Mutation, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tests.mutations.by_hand import BY_HAND
 from tests.mutations.discovery import DISCOVERY
+from tests.mutations.files import FILES
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
 from tests.mutations.parts import PARTS
@@ -14,4 +15,4 @@ from tests.mutations.stages import STAGES
 
 def mutations() -> tuple[Mutation, ...]:
     """Every mutation, those by hand first."""
-    return (*BY_HAND, *NOISE, *DISCOVERY, *STAGES, *PARTS, *settings(), *signs())
+    return (*BY_HAND, *NOISE, *DISCOVERY, *STAGES, *PARTS, *FILES, *settings(), *signs())

@@ -9,6 +9,7 @@ are.
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import re
 import secrets
@@ -22,6 +23,8 @@ from twin.errors import UserError
 
 TEMPORARY = ".halltwin-*.part"
 """What matches the names of files that are being written; one that a killed program left may be removed."""
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""What the system says where there is no room for a file."""
 _STREAM = re.compile(r"/proc/(self|\d+)/fd/\d+|/dev/(stdin|stdout|stderr|fd/\d+)")
 _MOST_LINKS = 40
 
@@ -194,4 +197,5 @@ def _told(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise UserError(f"{path}: cannot be written ({error.strerror or error}); give another path") from None
+        advice = "make room, or give another path" if error.errno in FULL else "give another path"
+        raise UserError(f"{path}: cannot be written ({error.strerror or error}); {advice}") from None

@@ -96,7 +96,7 @@ def hidden_encoder(twin: str | None, hide: Sequence[str], effect_files: Sequence
 
 
 def _measurement(options: Options) -> Measurement:
-    from scenarios.bench.link import check_log_name
+    from scenarios.bench.bus_log import check_log_name
     from scenarios.bench.measure import Measurement
     from scenarios.bench.plan import Plan
     from scenarios.bench.sequence import Patience

@@ -92,6 +92,8 @@ class Journal:
 
     def kept(self) -> str:
         """What a run that broke off leaves, and how to go on."""
+        if not self.readings:
+            return "nothing is measured yet: run again with the same options"
         return (
             f"{len(self.readings)} of {self._plan.readings} readings are kept in {self.path}: run again with the same "
             "options to go on"

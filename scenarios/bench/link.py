@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import can
 
+from scenarios.bench.bus_log import BusLog
 from scenarios.bench.faults import FaultyBus, Opener
 from scenarios.bench.messages import SEQUENCES, Frame, messages
 from scenarios.bench.readings import Assembler, Event
 from twin.errors import UserError
 
-LOG_FORMATS = (".asc", ".blf", ".csv", ".db", ".log", ".trc")
-"""Formats of python-can that hold every frame whole, without further packages."""
 RECOVERY_S = 0.05
 RECOVERIES = 100
 """How long and how often the bench tries to get back on a bus that went off."""
@@ -32,8 +30,11 @@ class Link:
         self._open = open_bus
         self._bus = open_bus()
         self.assembler = assembler
-        self._record = record
-        self._log: Any = None if record is None else open_log(record, replace=replace)
+        try:
+            self._log = None if record is None else BusLog(record, replace=replace)
+        except BaseException:
+            self._bus.shutdown()
+            raise
         self._sequence = 0
         # An interface may hand back what it sent itself.
         self._own = {messages().by_name[name].frame_id for name in messages().sent_by("Bench")}
@@ -69,32 +70,17 @@ class Link:
 
     def close(self) -> None:
         """Close log and bus. Raises UserError where the log could not be written to its end."""
-        log, self._log = self._log, None
         try:
-            if log is not None:
-                with self._log_told():
-                    log.stop()
+            if self._log is not None:
+                self._log.close()
         finally:
             self._bus.shutdown()
 
     def _write(self, message: can.Message) -> None:
-        if self._log is None:
-            return
-        # Sent frames have no stamp of their own; logs want one order of time.
-        message.timestamp = time.time()
-        log = self._log
-        with self._log_told():
-            # A log that failed once fails when it is closed, too.
-            self._log = None
-            log.on_message_received(message)
-            self._log = log
-
-    @contextlib.contextmanager
-    def _log_told(self) -> Iterator[None]:
-        try:
-            yield
-        except OSError as error:
-            raise UserError(f"{self._record}: cannot be written ({error.strerror or error}); make room") from None
+        if self._log is not None:
+            # Sent frames have no stamp of their own; logs want one order of time.
+            message.timestamp = time.time()
+            self._log.write(message)
 
     def _kept_on(self, action: Callable[[], Any]) -> Any:
         for attempt in range(RECOVERIES):
@@ -115,20 +101,3 @@ class Link:
             return
         self._bus.shutdown()
         self._bus = self._open()
-
-
-def open_log(path: Path, *, replace: bool = False) -> Any:
-    """A log of python-can that writes to this file. Raises UserError for a format that cannot hold the frames."""
-    check_log_name(path)
-    if replace:
-        # Some formats would go on in a file that is there.
-        path.unlink(missing_ok=True)
-    if path.exists():
-        raise UserError(f"{path}: there is such a file; a log is not written over: give another name")
-    return can.Logger(str(path))
-
-
-def check_log_name(path: Path) -> None:
-    """Raise UserError where python-can cannot tell the format by the name."""
-    if path.suffix not in LOG_FORMATS:
-        raise UserError(f"{path.name}: bus logs end in {', '.join(LOG_FORMATS)}; found '{path.suffix}'")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from scenarios.bench.link import check_log_name
+from scenarios.bench.bus_log import check_log_name
 from scenarios.bench.measure import Measured
 from scenarios.bench.pretreatment import MANIFEST_DEG, pretreat, sweep_text
 from scenarios.bench.readings import Assembler

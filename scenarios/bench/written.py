@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from scenarios.bench.bus_log import LOG_FORMATS
 from scenarios.bench.journal import finished_path, running_path
-from scenarios.bench.link import LOG_FORMATS
 from scenarios.commands.outputs import JSON, MEASURED, PICTURE, TOML, Format, OutputFiles, check_ending
 from twin.errors import UserError
 from twin.whole_file import is_stream

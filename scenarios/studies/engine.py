@@ -8,7 +8,6 @@ written last.
 
 from __future__ import annotations
 
-import errno
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 
@@ -17,8 +16,7 @@ from scenarios.studies.machines import Machines
 from scenarios.studies.progress import progress
 from scenarios.studies.study_folder import StudyFolder
 from twin.errors import UserError
-
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+from twin.whole_file import FULL
 
 
 def run_study(job: Job, folder: StudyFolder, *, chunks: int, items: int, unit: str, machines: Machines) -> int:
@@ -37,7 +35,7 @@ def run_study(job: Job, folder: StudyFolder, *, chunks: int, items: int, unit: s
                 done += 1
                 step()
     except OSError as error:
-        why = "the disk is full" if error.errno in _FULL else f"it cannot be written ({error.strerror or error})"
+        why = "the disk is full" if error.errno in FULL else f"it cannot be written ({error.strerror or error})"
         raise UserError(
             f"{folder.path}: {why}; {done} of {chunks} chunks are complete and kept: make room and run the same "
             "command again"

@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import can
 import pytest
 
 from scenarios.bench.command import Options, run
@@ -211,3 +214,13 @@ def test_a_second_bench_for_the_same_sweep_is_refused(tmp_path: Path) -> None:
     assert ended.stderr.count("\n") == 1
     assert "another halltwin measures into it" in ended.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_a_bus_log_that_its_own_thread_cannot_write_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(can.SqliteWriter, "_create_db", lambda *_: sqlite3.connect(":memory:"))
+    before = threading.excepthook
+    with pytest.raises(UserError, match=r"bus\.db: cannot be written \(no such table: messages\)"):
+        run_bench(tmp_path / "sweep.csv", record=tmp_path / "bus.db")
+    assert threading.excepthook is before

@@ -251,13 +251,13 @@ def test_file_is_plain_json_and_ends_with_a_line_end(folder: Path) -> None:
 
 
 def test_null_stands_where_nothing_can_be_known(tmp_path: Path) -> None:
-    """Eight readings have nothing to hold out; null says so, and the command still ends well."""
-    angles = np.arange(8) * 45.0
-    path = tmp_path / "eight.csv"
+    """Eighteen readings are too few to liken simulated sweeps to; null says so, and the command still ends well."""
+    angles = np.arange(18) * 5.0
+    path = tmp_path / "quarter.csv"
     path.write_text(csv_text({"reference_deg": angles, "measured_deg": angles + 3.0 + 0.01 * angles % 0.05}))
     answer = explained(path)
-    assert answer["baseline"]["heldout_rms_deg"] is None
-    assert answer["extended"]["gain"] is None
+    assert answer["extended"]["likeness_p"] is None
+    assert answer["extended"]["likeness_worst"] is None
     assert is_figure(answer["baseline"]["rms_deg"], low=0.0)
 
 

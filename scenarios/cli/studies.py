@@ -190,7 +190,7 @@ def recover(
     seed: Seed = 0,
 ) -> None:
     """Map how well known parameters and hidden causes come back: bias, RMS against the bound, coverage, power."""
-    from scenarios.commands.intervals import values
+    from scenarios.commands.intervals import values, whole_values
     from scenarios.studies.machines import Machines
     from scenarios.studies.recovery.cells import Grid
     from scenarios.studies.recovery.run import run
@@ -198,8 +198,8 @@ def recover(
     grid = Grid(
         causes=tuple(cause or ("baseline", "clean", "saturation", "hysteresis")),
         noises_deg=values("noise", noise),
-        points=tuple(int(value) for value in values("points", points)),
-        turns=tuple(int(value) for value in values("turns", turns)),
+        points=whole_values("points", points),
+        turns=whole_values("turns", turns),
         amplitudes_deg=values("amplitude", amplitude),
         fits=fits,
         sweeps=sweeps,

@@ -17,15 +17,18 @@ from diagnosis.correction.cross_validation import BeforeAfter, against, cross_va
 from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
 from scenarios.commands.inputs import SweepsRead, read_sweeps, sweep_paths
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
+from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from twin.angles import TAU, Array, radians
 from twin.errors import UserError
 from twin.extensions import effects_with
+from twin.limits import require_within
 from twin.presets import is_twin, read_twin_or_preset
 from twin.shown_name import shown_name
 from twin.sweep import Sweep
 
 _FEWEST_POINTS = 4
 _MOST_POINTS = 65536
+_COARSEST_DEG = 10.0
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,8 @@ def run(
     words = asked(fail_on, COMPENSATE)
     if not _FEWEST_POINTS <= outputs.points <= _MOST_POINTS:
         raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
+    require_within("temperature", temperature_c, COLDEST_C, HOTTEST_C, "C")
+    require_within("tolerance", tolerance_deg, 0.0, _COARSEST_DEG, "deg")
     checked_on = sweep_paths(check)
     files = _files(outputs, inputs=[Path(source), *checked_on, *effect_files])
     others = read_sweeps(checked_on)

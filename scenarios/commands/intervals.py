@@ -31,6 +31,15 @@ def values(name: str, text: str) -> tuple[float, ...]:
     raise UserError(f"{name} is {text!r}; expected low:high:step such as 0.5:4:0.25, or numbers with commas")
 
 
+def whole_values(name: str, text: str) -> tuple[int, ...]:
+    """The same for whole numbers. Raises UserError for others: 36.9 readings are not 36."""
+    found = values(name, text)
+    for value in found:
+        if value != int(value):
+            raise UserError(f"{name} is {text!r}; expected whole numbers, found {value:g}")
+    return tuple(int(value) for value in found)
+
+
 def with_units(name: str, text: str, units: Mapping[str, str]) -> dict[str, float]:
     """``key=number[unit], ...`` by key, each in its own unit of ``units``; a unit may be left out. Raises UserError."""
     found: dict[str, float] = {}

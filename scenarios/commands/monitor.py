@@ -19,6 +19,7 @@ from twin.errors import UserError
 from twin.sweep import Sweep
 
 SCHEMA = "halltwin.monitor/1"
+LONGEST_RUN = 1e6
 
 
 def run(
@@ -35,8 +36,8 @@ def run(
     """Fit every sweep of the series, chart the factors, print what was signalled."""
     words = asked(fail_on, (*MONITOR, *UNITS))
     made = Provenance.today(seed=seed, command=command)
-    if run_length < 10.0:
-        raise UserError(f"run length is {run_length:g}; expected at least 10 sweeps between false alarms")
+    if not 10.0 <= run_length <= LONGEST_RUN:
+        raise UserError(f"run length is {run_length:g}; expected 10 to {LONGEST_RUN:g} sweeps between false alarms")
     paths = sweep_paths(names)
     files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE)], inputs=paths, force=force)
     read = read_sweeps(paths)

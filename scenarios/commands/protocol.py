@@ -12,6 +12,10 @@ from twin.angles import TAU
 from twin.limits import OutOfRangeError, require_within
 from twin.motion import Motion
 
+COLDEST_C, HOTTEST_C = -100.0, 300.0
+"""Between these a magnet and a sensor are what their figures say."""
+MOST_READINGS = 10_000_000
+"""More are more than memory holds with every signal on its way."""
 STOP_S = 0.5
 """Time from one stop to the next in a stop-and-measure run [s]."""
 
@@ -31,7 +35,14 @@ class Protocol:
         require_within("turns", self.turns, 1, 1e5, whole=True)
         require_within("points", self.points, 8, 1e6, whole=True)
         require_within("speed-rpm", list(self.speeds_rpm), 0.0, 1e5, "rpm")
-        require_within("temperatures", list(self.temperatures_c), -100.0, 300.0, "C")
+        require_within("temperatures", list(self.temperatures_c), COLDEST_C, HOTTEST_C, "C")
+        require_within("readings (turns, points, directions, speeds, temperatures)", self.rows, 8, MOST_READINGS)
+
+    @property
+    def rows(self) -> int:
+        """Readings of the whole run."""
+        legs = (1 + self.both_directions) * len(self.speeds_rpm) * max(len(self.temperatures_c), 1)
+        return self.turns * self.points * legs
 
     def motion(self) -> Motion:
         """The motion, one leg after the other; the shaft goes back over the same angles in the second direction."""

@@ -177,7 +177,8 @@ class StudyFolder:
     def save(self, chunk: int, arrays: Mapping[str, np.ndarray[Any, Any]]) -> list[Path]:
         """Write a chunk's arrays as .npz, whole or not at all; the files that it is made of. Raises OSError."""
         out = io.BytesIO()
-        np.savez(out, allow_pickle=False, **arrays)
+        # Its own argument, allow_pickle, is newer than the oldest numpy, which would store it as an array.
+        np.savez(out, **arrays)  # type: ignore[arg-type]
         target = self._chunk(chunk)
         target.parent.mkdir(exist_ok=True)
         write_whole(target, out.getvalue())

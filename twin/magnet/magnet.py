@@ -60,8 +60,18 @@ class Magnet:
         return np.asarray(0.5 * np.asarray(self.diameter_mm, dtype=np.float64))
 
     def remanence_at(self, temperature_c: Number = REFERENCE_C) -> Array:
-        """Remanence [T] at this temperature [C]: linear in the temperature, from the value at 20 C."""
+        """Remanence [T] at this temperature [C]: linear in the temperature, from the value at 20 C.
+
+        Raises OutOfRangeError where the line has fallen to zero: no magnet turns its poles round for that.
+        """
         stated = grade(self.grade)
         base = stated.remanence_T if self.remanence_T is None else self.remanence_T
         slope = stated.percent_per_K if self.percent_per_K is None else self.percent_per_K
-        return np.asarray(base * (1.0 + 0.01 * np.asarray(slope) * (np.asarray(temperature_c) - REFERENCE_C)))
+        found = np.asarray(base * (1.0 + 0.01 * np.asarray(slope) * (np.asarray(temperature_c) - REFERENCE_C)))
+        if np.any(found <= 0.0):
+            hottest = float(np.max(temperature_c))
+            raise OutOfRangeError(
+                f"remanence is {np.min(found):g} T at {hottest:g} C; expected more than 0: a smaller percent_per_K, or "
+                "other temperatures"
+            )
+        return found

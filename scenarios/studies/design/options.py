@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from typing import cast, get_args
 
 from scenarios.commands.intervals import interval, values, with_units
-from scenarios.studies.design.space import TOLERANCES, Sampling, Space
+from scenarios.studies.design.space import MOST_DESIGNS, TOLERANCES, Sampling, Space
 from scenarios.studies.design.study import Demand
 from twin.errors import UserError
+from twin.limits import require_within
 from twin.magnet.magnet import Shape
 
 
@@ -25,6 +26,7 @@ def space_of(
     """The space. Raises UserError."""
     if shape not in get_args(Shape):
         raise UserError(f"shape is {shape!r}; expected one of {', '.join(get_args(Shape))}")
+    require_within("count", count, 1, MOST_DESIGNS, whole=True)
     return Space(
         axes={name: values(name, text) for name, text in axes.items()},
         shape=cast(Shape, shape),

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from scenarios.commands.outputs import JSON, PICTURE, TABLE, TOML, OutputFiles, json_text
+from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from scenarios.studies.design.check import Check, check_design, design_twin
-from scenarios.studies.design.space import AXES, Space, require_mountable
+from scenarios.studies.design.space import AXES, MOST_DESIGNS, Space, require_mountable
 from scenarios.studies.design.study import Demand, DesignStudy, feasible, ranking
 from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
@@ -24,11 +25,10 @@ from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.files import to_dict, twin_text
 from twin.limits import require_within
-from twin.magnet.magnet import LARGEST_T
+from twin.magnet.magnet import LARGEST_MM, LARGEST_T
 from twin.presets import read_twin_or_preset
 
 Figures = dict[str, np.ndarray[Any, Any]]
-MOST_DESIGNS = 10_000_000
 _CHUNK = 16
 
 
@@ -41,7 +41,8 @@ def study_of(twin: str, space: Space, demand: Demand, *, seed: int) -> DesignStu
     require_within("max-error", demand.max_error_deg, 1e-6, 180.0, "deg")
     require_within("mountings", demand.mountings, 1, 100_000, whole=True)
     require_within("min-yield", demand.min_yield, 0.0, 1.0)
-    require_within("temperature", list(demand.temperature_c), -100.0, 300.0, "C")
+    require_within("temperature", list(demand.temperature_c), COLDEST_C, HOTTEST_C, "C")
+    require_within("bore", space.bore_mm, 0.0, LARGEST_MM, "mm")
     require_within("window", list(demand.window_mT), 0.0, 2000.0, "mT")
     # Bad numbers are refused here, in one line, and not in a worker.
     require_within("remanence", list(space.axes["remanence_T"]), 0.0, LARGEST_T, "T")

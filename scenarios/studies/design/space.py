@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -42,6 +43,7 @@ TOLERANCES = {
 }
 """Radius of the disk that a displacement, tilt or field is drawn from evenly; half the width for the air gap."""
 
+MOST_DESIGNS = 10_000_000
 MOUNTING_UNIFORMS = 11
 """Uniform numbers that a mounting is drawn from: two for each displacement, tilt and field, one for the air gap."""
 
@@ -69,7 +71,7 @@ class Space:
         """How many designs there are."""
         if self.sampling != "grid":
             return self.count
-        return len(self.grades) * int(np.prod([len(self.axes[name]) for name in AXES]))
+        return len(self.grades) * math.prod(len(self.axes[name]) for name in AXES)
 
     def table(self) -> tuple[Array, Array]:
         """All designs: columns of AXES (designs, 9), and which grade (designs,)."""

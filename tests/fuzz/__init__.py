@@ -1,0 +1,1 @@
+"""Inputs broken at random, in great number: whatever is handed in ends in an answer or in one line."""

@@ -1,0 +1,126 @@
+"""What is done with each broken input, and what has to hold of an answer."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis import diagnose, explain
+from diagnosis.correction.compensation import correction_of
+from scenarios.bench.replay import replay
+from scenarios.commands.protocol import Protocol
+from tests.fuzz import logs, options, sweeps, twins
+from tests.fuzz.trial import ANSWERED, FAILED, REFUSED, Ended, tried, within
+from twin.chain import Chain
+from twin.files import from_dict, read_twin, to_dict
+from twin.sweep import Sweep
+
+Generator = np.random.Generator
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of input: ``make`` draws one as (ending of the file, bytes), ``use`` does with the file what is tried."""
+
+    make: Callable[[Generator], tuple[str, bytes]]
+    use: Callable[[Path], None]
+
+
+def _as_json(answer: Mapping[str, Any]) -> None:
+    """An answer is JSON: no figure in it is NaN or infinite."""
+    json.dumps(answer, allow_nan=False)
+
+
+def read_and_diagnosed(path: Path) -> None:
+    """The reader, then the error factors with all that is said of them."""
+    found = diagnose(Sweep.read(path))
+    _as_json(found.to_dict())
+    assert found.summary()
+
+
+def explained(path: Path) -> None:
+    """The search, all that is said of it, and the extended twin read back."""
+    found = explain(Sweep.read(path))
+    answer = found.to_dict()
+    _as_json(answer)
+    assert found.summary(72)
+    with tempfile.TemporaryDirectory() as folder:
+        found.write_report(Path(folder) / "report.html")
+    again = from_dict(answer["twin"], effects=found.extended.effects)
+    assert again.values.keys() <= found.extended.values.keys()
+
+
+def twin_used(path: Path) -> None:
+    """A twin read, simulated, inverted, and written as it was read."""
+    chain = read_twin(path)
+    motion = Protocol(turns=2, points=24, both_directions=True, speeds_rpm=(60.0,), temperatures_c=(25.0,)).motion()
+    sweep = chain.simulate(motion, seed=1)
+    assert np.isfinite(sweep.measured_deg).all()
+    assert np.isfinite(sweep.reference_deg).all()
+    chain.trace(motion, seed=1)
+    correction = correction_of(chain)
+    assert np.isfinite(correction.table(16)).all()
+    assert _same(from_dict(to_dict(chain)), chain)
+
+
+def _same(one: Chain, other: Chain) -> bool:
+    return to_dict(one) == to_dict(other)
+
+
+def replayed(path: Path) -> None:
+    """The sweep of a recorded bus, read back."""
+    with tempfile.TemporaryDirectory() as folder:
+        output = Path(folder) / "sweep.csv"
+        replay(path, output)
+        Sweep.read(output)
+
+
+KINDS: Mapping[str, Kind] = {
+    "sweeps": Kind(lambda rng: (".csv", sweeps.mutated(rng)), read_and_diagnosed),
+    "twins": Kind(lambda rng: (".toml", twins.mutated(rng)), twin_used),
+    "logs": Kind(logs.mutated, replayed),
+    "options": Kind(lambda rng: (".txt", options.drawn(rng)), options.run),
+}
+
+
+@cache
+def scratch() -> Path:
+    """A folder of this process for the input that is being tried."""
+    return Path(tempfile.mkdtemp(prefix="halltwin_fuzz_"))
+
+
+def content(kind: str, number: int, seed: int) -> tuple[str, bytes]:
+    """The input of this number: the same for the same seed, whatever was drawn before."""
+    return KINDS[kind].make(np.random.default_rng([seed, sorted(KINDS).index(kind), number]))
+
+
+def trial(kind: str, number: int, seed: int, *, search: bool = False) -> tuple[Ended, str, bytes]:
+    """One input tried: how it ended, and the input as file ending and bytes. ``search``: with explain."""
+    ending, raw = content(kind, number, seed)
+    path = scratch() / f"input{ending}"
+    path.write_bytes(raw)
+    ended = tried(lambda: (explained if search else KINDS[kind].use)(path))
+    return ended, ending, raw
+
+
+def accepted(number: int, seed: int) -> bool:
+    """Whether the sweep of this number can be read."""
+    _, raw = content("sweeps", number, seed)
+    path = scratch() / "asked.csv"
+    path.write_bytes(raw)
+    try:
+        with within(60):
+            Sweep.read(path)
+    except Exception:
+        return False
+    return True
+
+
+__all__ = ["ANSWERED", "FAILED", "KINDS", "REFUSED", "accepted", "content", "trial"]

@@ -1,0 +1,85 @@
+"""One trial: a call under a clock, which may answer or refuse in one line, and nothing else."""
+
+from __future__ import annotations
+
+import contextlib
+import resource
+import signal
+import traceback
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from types import FrameType
+
+from twin.errors import UserError
+
+LONGEST_S = 60
+"""No run of an input of ordinary size takes longer."""
+TIMES_THE_MEMORY = 10
+"""Nor has the process ever more than so many times the memory of a plain run."""
+LONGEST_LINE = 1500
+
+ANSWERED, REFUSED, FAILED = "answered", "refused", "failed"
+
+
+class OverTimeError(BaseException):
+    """The time is up; nothing but the trial catches it."""
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a trial ended, and what was said: the line of a refusal, or the traceback of a failure."""
+
+    how: str
+    said: str = ""
+
+
+@contextlib.contextmanager
+def within(seconds: float) -> Iterator[None]:
+    """Raise OverTimeError in the body when so much time has passed."""
+
+    def over(number: int, frame: FrameType | None) -> None:
+        raise OverTimeError(f"took more than {seconds:g} s")
+
+    previous = signal.signal(signal.SIGALRM, over)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, previous)
+
+
+def tried(call: Callable[[], object], *, seconds: float = LONGEST_S) -> Ended:
+    """Run a call that answers or raises UserError; all else is a failure, a refusal of several lines too."""
+    try:
+        with within(seconds):
+            call()
+    except UserError as refusal:
+        said = str(refusal)
+        if len(said) > LONGEST_LINE:
+            return Ended(FAILED, f"a line of {len(said)} characters: {said[:500]}")
+        return Ended(REFUSED, said)
+    except (Exception, SystemExit, OverTimeError):
+        return Ended(FAILED, traceback.format_exc())
+    return Ended(ANSWERED)
+
+
+def peak_mb() -> float:
+    """The most memory that this process has ever held."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+
+
+@dataclass
+class MemoryWatch:
+    """Whether an input made the process larger than so many times what a plain run takes."""
+
+    plain_mb: float
+    highest_mb: float = 0.0
+
+    def judged(self, ended: Ended) -> Ended:
+        """The end of a trial, or a failure where the process has grown beyond the limit meanwhile."""
+        before, self.highest_mb = self.highest_mb, peak_mb()
+        limit = TIMES_THE_MEMORY * self.plain_mb
+        if before <= limit < self.highest_mb and ended.how != FAILED:
+            return Ended(FAILED, f"took {self.highest_mb:.0f} MB, a plain run {self.plain_mb:.0f} MB")
+        return ended

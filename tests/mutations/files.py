@@ -21,9 +21,9 @@ FILES: tuple[Mutation, ...] = (
             "::test_a_file_keeps_its_permissions[436]",
         ),
         (
-            "whole_file.others_may_read_meanwhile",
+            "whole_file.a_new_file_is_for_its_owner_alone",
             "0o666 if there is None else",
-            "0o666 if True else",
+            "0o600 if there is None else",
             "::test_a_new_file_has_the_permissions_that_the_umask_leaves",
         ),
         (

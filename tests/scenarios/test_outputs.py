@@ -15,12 +15,14 @@ import numpy as np
 import pytest
 import typer
 
+from scenarios.cli import main
 from scenarios.cli.main import app
 from scenarios.commands import paper
 from scenarios.commands.marks import is_own
 from tests.command_line import csv_text, halltwin, sweep_angles
 from twin.whole_file import TEMPORARY
 
+COMMAND_LINE = typer.main.get_command(app)
 FOREIGN = b"time_s,reference_deg,measured_deg\n0,1,2\n# somebody's own\n"
 
 
@@ -95,6 +97,8 @@ def folder(read: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of what the commands read, which is also where they run."""
     shutil.copytree(read, tmp_path, dirs_exist_ok=True)
     monkeypatch.setattr(paper, "FIGURES", {3: paper.FIGURES[3]})
+    # Built once: building it takes longer than a refusal.
+    monkeypatch.setattr(main, "app", COMMAND_LINE)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

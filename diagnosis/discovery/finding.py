@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.settings import FOOTPRINTS
 from twin.catalogue import base_name, unnamed
 
 if TYPE_CHECKING:
@@ -19,7 +20,8 @@ if TYPE_CHECKING:
 class Finding:
     """One entry of the answer: a cause, its probability, rivals, and the held-out RMS around it [deg].
 
-    ``log_p`` is the log probability by chance of this effect alone, ``family_log_p`` that of any effect, where known.
+    ``log_p`` is the log probability by chance of this effect alone, ``family_log_p`` that of any effect with the same
+    footprint.
     ``rivals`` are the fits with another effect in its place, ``options`` the measurements that would part them.
     ``rows`` are the raw rows (from 0) that a cause of single readings has touched; ``intervals`` are of parameters
     that no fit of the mean has, by instance and name.
@@ -28,13 +30,13 @@ class Finding:
     keys: tuple[str, ...]
     log_p: float
     gain: float
+    family_log_p: float
     rivals: Mapping[str, Fit] = field(default_factory=dict)
     options: tuple[Option, ...] = ()
     before_deg: float = float("nan")
     after_deg: float = float("nan")
     rows: tuple[int, ...] = ()
     intervals: Mapping[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
-    family_log_p: float | None = None
 
     def __repr__(self) -> str:
         rivals = f", cannot be told from {', '.join(self.rivals)}" if self.rivals else ""
@@ -42,10 +44,15 @@ class Finding:
             f"Finding({', '.join(self.keys)}; held-out RMS {self.before_deg:.4g} -> {self.after_deg:.4g} deg{rivals})"
         )
 
-    def false_alarm_probability(self, looked_at: int) -> float:
-        """Probability that noise looks as much like any of so many effects."""
-        log_p = self.log_p + float(np.log(max(looked_at, 1))) if self.family_log_p is None else self.family_log_p
-        return float(np.exp(max(min(log_p, 0.0), -300.0)))
+    @classmethod
+    def among(cls, family: int, key: str, log_p: float, *, gain: float, **more: Any) -> Finding:
+        """A finding of one effect among so many that were looked for in its footprint (Bonferroni)."""
+        return cls((key,), log_p, gain, log_p + float(np.log(family)), **more)
+
+    @property
+    def false_alarm_probability(self) -> float:
+        """Probability that a sweep without a cause looks as much like any, in any of the footprints (Bonferroni)."""
+        return float(np.exp(max(min(self.family_log_p + np.log(FOOTPRINTS), 0.0), -300.0)))
 
     @property
     def name(self) -> str:
@@ -67,7 +74,7 @@ def merge(entries: Sequence[Finding]) -> list[Finding]:
                 first,
                 keys=(*first.keys, *entry.keys),
                 log_p=min(first.log_p, entry.log_p),
-                family_log_p=min((p for p in (first.family_log_p, entry.family_log_p) if p is not None), default=None),
+                family_log_p=min(first.family_log_p, entry.family_log_p),
                 gain=first.gain + entry.gain,
                 rivals={name: fit for name, fit in first.rivals.items() if name in entry.rivals},
                 before_deg=float("nan"),

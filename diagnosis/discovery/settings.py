@@ -10,7 +10,10 @@ that is not at the edge).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from numbers import Integral, Real
+from typing import Any
 
 import numpy as np
 
@@ -52,13 +55,14 @@ class DiscoverySettings:
     stairs_log_odds: float = 20.0
     """Odds. Beside coarse stairs, whose own pattern aliases to lines at any order: what an effect that could be such a
     line must gain more, and how improbable by chance any cause must be there."""
+    aliased_shapes: int = 20
+    """Limit. An effect that is tried in more shapes than this has places enough that stairs' own pattern meets one."""
     sigma_apart: float = 3.0
     """Derived. Two causes are told apart by three sigma: by twice the log likelihood of 9 in the sweep itself, and by
     the same separation expected of a further measurement."""
     sigma_enough: float = 5.0
     """Derived. A further measurement is advised without reserve at five sigma: twice the log likelihood then
-    scatters about 25 by 10, and falls below the 9 of three sigma in 5.5 % of the cases.
-    The output's stairs are seen at as much."""
+    scatters about 25 by 10, and falls below the 9 of three sigma in 5.5 % of the cases."""
     stairs_sigma_factor: float = 2.0
     """Limit. Beside coarse stairs so many times more sigma: what the fit leaves of the stairs themselves favours now
     one smooth shape, now another."""
@@ -90,6 +94,9 @@ class DiscoverySettings:
     seen_share: float = 0.9
     """Limit. Share of what the error model leaves that a cause makes up if it is three times the noise: so few readings
     that not even such a one would be seen are not searched."""
+    whole_order_turns: float = 1.8
+    """Derived. Below two turns an order is not told from the next half one (Rayleigh), so whole orders alone are tried;
+    a record of two turns that ends before the last angle counts as two."""
     radius_left: float = 1.5
     """Limit. Variance of the radius against that of its noise above which something in it is unexplained: with
     thirty degrees of freedom a ratio of 1.5 is exceeded by chance in 4 % (chi-square), with ten in 13 %."""
@@ -122,7 +129,8 @@ class DiscoverySettings:
     set_share: float = 0.9
     """Limit. A finite set of angles that leaves out less than a tenth of the words cannot be told from all of them."""
     set_missed: float = 0.04
-    """Limit. Share of the readings that may lie outside a finite set: other links' errors, of a few percent at most."""
+    """Limit. Share of the readings that may lie outside a finite set: other links' errors, of a few percent at most.
+    Each that does speaks against the set by as much."""
     burst_ratio: float = 2.25
     """Limit. A stretch is louder where its noise is at least half as large again (1.5 squared)."""
 
@@ -147,21 +155,25 @@ class DiscoverySettings:
     """Limit. Growth of the held-out RMS above which the fit has not seen at all what the cause is about."""
     predictive_sweeps: int = 199
     """Derived. Sweeps simulated for the predictive check: the smallest p is 1/200."""
+    fewest_checked: int = 30
+    """Limit. Readings beyond the fitted parameters below which simulated sweeps are not held against the measured one:
+    thirty tell a variance to a quarter (the root of 2/30), and fewer hardly anything."""
     fewest_simulated: int = 32
     """Budget. Fewest sweeps that the family-wise probability is calibrated on; the tail is fitted to half of them."""
     most_simulated: int = 96
     """Budget. Most of them."""
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.false_alarm_probability < 1.0:
-            raise ValueError(
-                f"false_alarm_probability is {self.false_alarm_probability}; expected a number between 0 and 1"
-            )
         for one in fields(self):
-            value = getattr(self, one.name)
-            if not np.isfinite(value) or (one.type == "int" and (value != int(value) or value < 1)):
-                kind = "a whole number of at least 1" if one.type == "int" else "a finite number"
-                raise ValueError(f"{one.name} is {value}; expected {kind}")
+            if one.name not in _RANGES:
+                raise TypeError(f"{one.name} has no range; expected one in _RANGES")
+            low, high = _RANGES[one.name]
+            _require(one.name, getattr(self, one.name), low=low, high=high, whole=one.type == "int")
+        if self.fewest_simulated > self.most_simulated:
+            raise ValueError(
+                f"fewest_simulated is {self.fewest_simulated} and most_simulated {self.most_simulated}; "
+                "expected at most as many"
+            )
 
     def __repr__(self) -> str:
         """Show what differs from the defaults."""
@@ -191,3 +203,70 @@ class DiscoverySettings:
     def same_fit(self, *, coarse: bool) -> float:
         """Difference of twice the log likelihood below which two causes cannot be told apart; ``coarse``: stairs."""
         return (self.sigma_apart * (self.stairs_sigma_factor if coarse else 1.0)) ** 2
+
+
+_LOG_P = (-1e4, -1e-9)
+_NATS = (0.0, 1e4)
+_SIGMA = (0.1, 1e3)
+_SHARE = (0.0, 1.0)
+_RATIO = (1.0, 1e3)
+_COUNT = (1, 10_000)
+_RANGES: Mapping[str, tuple[float, float]] = {
+    "false_alarm_probability": (1e-300, 1.0 - 1e-9),
+    "beyond_doubt_log_p": _LOG_P,
+    "no_simulation_log_p": _LOG_P,
+    "unnamed_log_odds": _NATS,
+    "swap_log_odds": _NATS,
+    "colour_log_odds": _NATS,
+    "stairs_log_odds": _NATS,
+    "aliased_shapes": _COUNT,
+    "sigma_apart": _SIGMA,
+    "sigma_enough": _SIGMA,
+    "stairs_sigma_factor": _RATIO,
+    "most_causes": _COUNT,
+    "most_together": _COUNT,
+    "most_in_place": _COUNT,
+    "most_rounds": _COUNT,
+    "most_contenders": _COUNT,
+    "most_rivals": _COUNT,
+    "contender_nats": _NATS,
+    "contender_share": _SHARE,
+    "fair_share": _SHARE,
+    "rival_share": _SHARE,
+    "seen_share": _SHARE,
+    "whole_order_turns": (0.0, 1e3),
+    "radius_left": _RATIO,
+    "smallest_rms_deg": (0.0, 180.0),
+    "spike_sigma": _SIGMA,
+    "spike_sigma_few": _SIGMA,
+    "spike_few": _COUNT,
+    "longest_spike": _COUNT,
+    "fallen_out": (1e-6, 10.0),
+    "fewest_words": _COUNT,
+    "stairs_in_noise": _SHARE,
+    "stairs_cause_share": _SHARE,
+    "set_share": _SHARE,
+    "set_missed": (1e-6, 1.0),
+    "burst_ratio": _RATIO,
+    "noise_reach": _NATS,
+    "noise_turns": (0.0, 1e3),
+    # One fold holds nothing out; with more of them each fit sees nearly all that the final one does, at a cost.
+    "folds": (2, 100),
+    "blocks_a_turn": _COUNT,
+    "heldout_slack": _RATIO,
+    "heldout_lost": _RATIO,
+    "predictive_sweeps": _COUNT,
+    "fewest_checked": _COUNT,
+    # A tail is fitted to half of the simulated scores.
+    "fewest_simulated": (16, 10_000),
+    "most_simulated": (16, 10_000),
+}
+"""The smallest and the largest value of each setting with which the discovery still means something."""
+
+
+def _require(name: str, value: Any, *, low: float, high: float, whole: bool) -> None:
+    """Refuse what is no number of the kind, or lies outside the range. Raises ValueError."""
+    number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
+    if not number or not low <= value <= high:
+        kind = "a whole number" if whole else "a number"
+        raise ValueError(f"{name} is {value!r}; expected {kind} from {low:g} to {high:g}")

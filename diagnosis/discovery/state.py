@@ -129,6 +129,11 @@ class State:
         """The effects that show in the mean: those that the stepwise search is for."""
         return tuple(effect for effect in self.effects if effect.footprint == "mean")
 
+    def family(self, footprint: str) -> int:
+        """How many effects are searched for that show there, in a recording like this: what an improbable one pays."""
+        provided = self.sweep.motion().provides if self.fitted is None else self.fit.observations.motion.provides
+        return sum(effect.footprint == footprint and effect.visible_in(provided) for effect in self.effects)
+
     def found(self, footprint: str) -> bool:
         """Whether a cause that shows there has been found beside the joint fit."""
         declared = {effect.name: effect.footprint for effect in self.effects}

@@ -156,7 +156,7 @@ def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
         "name": cause.name,
         "stage": effect.stage,
         "parameters": parameters(found, cause),
-        "false_alarm_probability": cause.false_alarm_probability(found.looked_at),
+        "false_alarm_probability": cause.false_alarm_probability,
         "heldout_rms_deg_before": cause.before_deg,
         "heldout_rms_deg_after": cause.after_deg,
         "indistinguishable_from": list(cause.rivals),

@@ -43,6 +43,12 @@ PARTS: tuple[Mutation, ...] = (
         f"{_D}/marks/sequence.py",
         _T,
         (
+            "sequence.no_family_to_pay_for",
+            "effect_log_p(family)",
+            "effect_log_p(1)",
+            "stages/test_repeated_frames.py::test_a_claim_is_believed_by_its_probability",
+        ),
+        (
             "sequence.rows_belong_to_several_effects",
             "np.where(spoken_for, 0.0, raw_residual(fit, sweep))",
             "raw_residual(fit, sweep)",
@@ -54,15 +60,27 @@ PARTS: tuple[Mutation, ...] = (
         _T,
         (
             "quantisation.readings_outside_cost_nothing",
-            " + missed * _MISSED_NATS",
+            " + missed * -np.log(settings.set_missed)",
             "",
             "marks/test_quantisation.py::test_chance_is_the_share_of_the_words_to_the_power_of_the_readings",
         ),
         (
             "quantisation.levels_cost_nothing",
-            "settings.effect_log_p(len(tried))",
-            "settings.footprint_log_p",
+            " + np.log(len(tried))",
+            "",
             "stages/test_quantisation.py::test_chance_is_shared_by_the_levels_that_are_tried",
+        ),
+        (
+            "quantisation.no_family_to_pay_for",
+            "if level and log_p < settings.effect_log_p(family)",
+            "if level and log_p < settings.footprint_log_p",
+            "stages/test_quantisation.py::test_chance_is_shared_by_the_levels_that_are_tried",
+        ),
+        (
+            "quantisation.correlated_squares_count_in_full",
+            "fit.rows / float(np.mean(spectrum**2))",
+            "float(fit.rows)",
+            "stages/test_grid_cause.py::test_stairs_are_seen_by_fewer_readings_in_correlated_noise",
         ),
         (
             "quantisation.every_reading_counts",

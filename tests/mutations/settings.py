@@ -26,10 +26,11 @@ NOTICED_BY: dict[str, tuple[str, ...]] = {
     "swap_log_odds": (f"{_D}/search/test_exchange.py::test_what_becomes_of_the_causes_held",),
     "colour_log_odds": (f"{_D}/fitting/test_plausible.py::test_members_within_reach_of_the_best_are_plausible",),
     "stairs_log_odds": (f"{_D}/search/test_likelihood_ratio.py::test_what_an_effect_has_to_gain_beyond_others",),
+    "aliased_shapes": (f"{_D}/search/test_likelihood_ratio.py::test_among_many_places_stairs_pass_for_one",),
     "sigma_apart": (
         f"{_D}/search/test_rivals.py::test_as_good_is_within_three_sigma_and_beside_coarse_stairs_within_six",
     ),
-    "sigma_enough": (f"{_D}/stages/test_grid_cause.py::test_stairs_must_be_seen",),
+    "sigma_enough": (f"{_VALUES}[sigma_enough]",),
     "stairs_sigma_factor": (
         f"{_D}/search/test_rivals.py::test_as_good_is_within_three_sigma_and_beside_coarse_stairs_within_six",
     ),
@@ -53,6 +54,7 @@ NOTICED_BY: dict[str, tuple[str, ...]] = {
     "fair_share": (f"{_D}/search/test_forward_step.py::test_who_explains_a_fair_share_is_remembered",),
     "rival_share": (f"{_D}/search/test_rivals.py::test_only_who_gains_a_share_to_first_order_is_fitted",),
     "seen_share": (f"{_VALUES}[seen_share]",),
+    "whole_order_turns": (f"{_D}/search/test_periodogram.py::test_below_two_turns_whole_orders_alone_are_tried",),
     "radius_left": (f"{_D}/search/test_iterate.py::test_more_than_its_noise_is_left_of_the_radius",),
     "smallest_rms_deg": (f"{_D}/stages/test_stepwise.py::test_below_a_files_last_digit_nothing_is_searched",),
     "spike_sigma": (f"{_D}/stages/test_row_masks.py::test_which_rows_are_masked",),
@@ -78,6 +80,7 @@ NOTICED_BY: dict[str, tuple[str, ...]] = {
     "blocks_a_turn": (f"{_D}/proof/test_cross_validation.py::test_blocks_are_dealt_out_in_turn",),
     "heldout_slack": (f"{_D}/proof/test_selection.py::test_which_cause_stays",),
     "heldout_lost": (f"{_D}/proof/test_selection.py::test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost",),
+    "fewest_checked": (f"{_D}/stages/test_predictive_check.py::test_of_too_few_readings_nothing_is_said",),
     "predictive_sweeps": (f"{_D}/stages/test_predictive_check.py::test_a_missing_cause_is_seen",),
     "fewest_simulated": (f"{_D}/proof/test_selection.py::test_as_many_sweeps_are_simulated_as_there_is_room_for",),
     "most_simulated": (f"{_D}/proof/test_selection.py::test_as_many_sweeps_are_simulated_as_there_is_room_for",),

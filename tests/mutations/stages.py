@@ -114,7 +114,7 @@ STAGES: tuple[Mutation, ...] = (
         ),
         (
             "spread.no_family_to_pay_for",
-            "effect_log_p(state.looked_at)",
+            "effect_log_p(family)",
             "effect_log_p(1)",
             "stages/test_spread.py::test_what_is_named",
         ),

@@ -20,9 +20,6 @@ from twin.chain import Chain
 from twin.effect import Effect
 from twin.sweep import Sweep
 
-_MISSED_NATS = 4.0
-"""What a reading outside the set speaks against it: other errors of the link are one in fifty (e^-4)."""
-
 
 def grid_bits(measured: Array, settings: DiscoverySettings) -> int | None:
     """The smallest word length (6 to 20 bits) on whose grid all readings (n,) [rad] lie; None: no such grid."""
@@ -45,7 +42,8 @@ def finite_set(
     """Which level's set of attainable angles holds the readings (n,) [rad].
 
     ``step`` is the output grid [rad] that the set is rounded to. Chance is the share of the grid's cells that are in
-    the set, to the power of the different words. Returns the level and the log of that chance; (0, 0): none.
+    the set, to the power of the different words; a reading outside it is an error of the link, as rare as these are.
+    Returns the level and the log of the chance at any of the levels; (0, 0): none.
     """
     assert effect.attainable is not None
     name = effect.roles("level")[0]
@@ -60,17 +58,20 @@ def finite_set(
         missed = int(np.count_nonzero(~np.isin(words, allowed)))
         if share > settings.set_share or missed > settings.set_missed * words.size:
             continue
-        log_p = (distinct - missed) * np.log(share) + missed * _MISSED_NATS
+        log_p = (distinct - missed) * np.log(share) + missed * -np.log(settings.set_missed) + np.log(len(tried))
         if log_p < best[1]:
             best = (float(level), float(log_p))
     return best
 
 
-def with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | None) -> tuple[Fit, tuple[Finding, ...]]:
+def with_stairs(
+    fit: Fit, sweep: Sweep, effects: Sequence[Effect], *, bits: int | None, family: int
+) -> tuple[Fit, tuple[Finding, ...]]:
     """The fit with the stairs that the set of values shows, and those of them that are causes by that alone.
 
-    ``bits`` is the word length on whose grid all readings lie, if there is one. The grid becomes part of the model
-    where it is not small against the noise; a finite set of angles is a cause.
+    ``bits`` is the word length on whose grid all readings lie, if there is one; ``family`` the number of effects that
+    are looked for in the values. The grid becomes part of the model where it is not small against the noise; a finite
+    set of angles is a cause.
     """
     step = TAU / 2.0**bits if bits is not None else 0.0
     chain, grid, settings = fit.chain, output_grid(effects), fit.settings
@@ -82,9 +83,9 @@ def with_stairs(fit: Fit, sweep: Sweep, effects: Sequence[Effect], bits: int | N
         name = effect.roles("level")[0]
         tried = [shape[name] for shape in effect.shapes(fit.observations.motion)]
         level, log_p = finite_set(measured, effect, tried, step=step, settings=settings)
-        if level and log_p < settings.effect_log_p(len(tried)):
+        if level and log_p < settings.effect_log_p(family):
             chain = chain.with_values({effect.name: {name: level}})
-            found.append(Finding((effect.name,), log_p, -2.0 * log_p))
+            found.append(Finding.among(family, effect.name, log_p, gain=-2.0 * log_p))
     if grid is not None and bits is not None and grid.name not in chain.values:
         sigma = robust_rms(local_residual(fit.residual[0]))
         if step / np.sqrt(12.0) > settings.stairs_in_noise * sigma:
@@ -104,17 +105,30 @@ def _blurred(fit: Fit, chain: Chain) -> Fit:
     return solve(reblurred(fit))
 
 
-def grid_as_cause(fit: Fit, grid: Effect, step: float) -> Finding | None:
+def grid_as_cause(fit: Fit, grid: Effect, *, step: float, family: int) -> Finding | None:
     """The output's grid as a cause: where its noise exceeds half of what is left otherwise, and its stairs are seen.
 
-    Noise ahead of the grid blurs the stairs; where it blurs them away, nothing is gained by knowing them.
+    Noise ahead of the grid blurs the stairs; where it blurs them away, nothing is gained by knowing them. ``step`` is
+    the grid's [rad], ``family`` the number of effects that are looked for in the values.
     """
     blur, settings = fit.weighting.blur, fit.settings
     if grid.name not in fit.chain.values or blur <= 0.0 or step / np.sqrt(12.0) <= settings.stairs_cause_share * blur:
         return None
     use = fit.observations.usable
     plain = without_stairs(fit, grid.name)[use]
-    gain = int(use.sum()) * float(np.log(np.mean(plain**2) / np.mean(fit.residual[0][use] ** 2)))
-    log_p = float(log_probability(np.array(gain), 1, int(use.sum())))
-    # The squares of correlated noise count for less than their number: so five sigma, of noise taken to be white.
-    return Finding((grid.name,), log_p, gain) if gain > settings.sigma_enough**2 else None
+    rows = independent_rows(fit)
+    # Nothing is left where the readings keep to the stairs exactly.
+    left = max(float(np.mean(fit.residual[0][use] ** 2)), float(np.finfo(np.float64).tiny))
+    gain = rows * float(np.log(np.mean(plain**2) / left))
+    log_p = float(log_probability(np.array(gain), 1, int(rows)))
+    return Finding.among(family, grid.name, log_p, gain=gain) if log_p < settings.effect_log_p(family) else None
+
+
+def independent_rows(fit: Fit) -> float:
+    """How many independent readings tell a mean square as well as the rows in use do, whose noise is correlated.
+
+    With a spectrum S of mean 1 over the cosine coefficients the sum of squares has the variance ``2 sum(S^2)`` (in
+    units of the noise's variance squared), where independent readings have 2 each.
+    """
+    spectrum = fit.weighting.family.spectra[fit.weighting.member]
+    return max(fit.rows / float(np.mean(spectrum**2)), 1.0)

@@ -14,11 +14,12 @@ from twin.sweep import Sweep
 
 
 def touched_rows(
-    fit: Fit, sweep: Sweep, effect: Effect, *, step: float, spoken_for: BoolArray
+    fit: Fit, sweep: Sweep, effect: Effect, *, step: float, spoken_for: BoolArray, family: int
 ) -> tuple[BoolArray, Finding] | None:
     """Raw rows (n_raw,) that the effect has touched, and the effect as a cause; None where chance explains them.
 
-    ``step`` [rad] is that of the output's grid; rows ``spoken_for`` (n_raw,) belong to another effect already.
+    ``step`` [rad] is that of the output's grid; rows ``spoken_for`` (n_raw,) belong to another effect already;
+    ``family`` is the number of effects that are looked for in the sequence.
     """
     assert effect.marks is not None
     residual = np.where(spoken_for, 0.0, raw_residual(fit, sweep))
@@ -26,8 +27,7 @@ def touched_rows(
     stairs = coarsest_stair(fit.chain) / np.sqrt(12.0)
     sigma = max(robust_rms(local_residual(residual)), stairs)
     mask, log_p = effect.marks(np.radians(sweep.measured_deg), residual, sigma, step, sweep.motion())
-    if log_p > fit.settings.footprint_log_p or not mask.any():
+    if log_p > fit.settings.effect_log_p(family) or not mask.any():
         return None
     rows = tuple(int(row) for row in np.flatnonzero(mask))
-    # Looked for by itself, on readings that no other effect touches: there is no family to pay for.
-    return mask, Finding((effect.name,), log_p, -2.0 * log_p, rows=rows, family_log_p=log_p)
+    return mask, Finding.among(family, effect.name, log_p, gain=-2.0 * log_p, rows=rows)

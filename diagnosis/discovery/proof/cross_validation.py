@@ -11,9 +11,6 @@ from twin.angles import TAU, Array, IntArray, wrap
 from twin.catalogue import base_name
 from twin.effect import BoolArray
 
-_FEWEST_ROWS = 8
-"""A fold whose other rows are fewer is not held out: the baseline alone has six parameters."""
-
 
 def folds(fit: Fit) -> IntArray:
     """Fold (n,) of each row: blocks of a part of a turn of travel, dealt out so that every part is held out in
@@ -50,7 +47,8 @@ def held_out_residual(fit: Fit, keys: Sequence[str], present: Collection[str], f
     residual = np.full(len(fit.observations), np.nan)
     for number in range(fit.settings.folds):
         held = fold == number
-        if not np.any(held & use) or np.count_nonzero(use & ~held) < _FEWEST_ROWS:
+        # Fewer readings than parameters tell the fit nothing.
+        if not np.any(held & use) or np.count_nonzero(use & ~held) <= len(fit.free):
             continue
         trained = solve(evaluate(chain, free, fit.observations.masked(use & ~held), fit.weighting), iterations=6)
         residual[held] = wrap(fit.observations.measured - trained.linear.angle)[held]

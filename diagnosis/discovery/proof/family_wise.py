@@ -22,7 +22,7 @@ from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
 from diagnosis.discovery.fitting.noise.rounding import ahead_of_stairs
 from diagnosis.discovery.proof.bootstrap import simulated
 from diagnosis.discovery.search.periodogram import line_shapes
-from diagnosis.discovery.search.screening import Base, by_chance, gains_of, matched_to
+from diagnosis.discovery.search.screening import Base, by_chance, gains_of, matched_to, sharpened
 from twin.angles import Array
 from twin.effect import Effect
 from twin.noise.description import Noise
@@ -34,6 +34,9 @@ TAIL = 0.5
 """Share of the simulated scores that the tail is fitted to."""
 FEWEST = 8
 """Fewest scores that a tail is fitted to."""
+SHARPENED = 12
+"""Strongest simulated scores whose shape is found as closely as that of the measured sweep: what the others would gain
+by it is told by these."""
 PEAKS = 2
 """Lines looked at on each simulated sweep, of each of its spectra: the strongest is among them."""
 
@@ -123,5 +126,16 @@ def _scores(base: Base, effect: Effect, left: Array) -> Array:
         return np.full(len(left), np.inf)
     gains, coefficients = gains_of(base, effect, shapes)
     best_gain = gains.max(axis=1)
-    log_p = by_chance(base, effect, best_gain, coefficients.shape[2], looks)
-    return np.asarray(np.where(best_gain > 0.0, log_p, np.inf))
+    terms = coefficients.shape[2]
+    log_p = by_chance(base, effect, best_gain, terms, looks)
+    scores = np.asarray(np.where(best_gain > 0.0, log_p, np.inf))
+    strongest = np.argsort(scores)[:SHARPENED]
+    strongest = strongest[np.isfinite(scores[strongest])]
+    if not strongest.size:
+        return scores
+    points = sharpened(base.part(strongest), effect, shapes, gains[strongest], coefficients[strongest])
+    exact = by_chance(base, effect, np.array([point.gain for point in points]), terms, looks)
+    # What falls off as exp(score) is, all moved by independent gains, moved by the log of their mean exponential.
+    moved = scores - np.log(np.mean(np.exp(scores[strongest] - exact)))
+    moved[strongest] = exact
+    return np.asarray(moved)

@@ -22,7 +22,6 @@ from twin.angles import TAU, Array, IntArray
 from twin.noise.description import Noise
 from twin.noise.spectrum import to_rows
 
-FEWEST_ROWS = 30
 _BINS = 360
 _COARSE = 12
 _HIGHEST_ORDER = 90
@@ -55,7 +54,7 @@ def likeness(fit: Fit, *, rng: np.random.Generator, noise: Noise | None = None) 
     left = float(np.mean(fit.residual[0][use] ** 2))
     smallest = float(np.radians(fit.settings.smallest_rms_deg))
     # Less than the noise ahead of the stairs: no reading lies near an edge, and only the file's digits are left.
-    if fit.rows < FEWEST_ROWS + len(fit.free) or left < max(smallest, 0.9 * fit.weighting.blur) ** 2:
+    if fit.rows < fit.settings.fewest_checked + len(fit.free) or left < max(smallest, 0.9 * fit.weighting.blur) ** 2:
         return None
     noise = noise or noise_of(fit)
     plan = _Plan.of(fit)

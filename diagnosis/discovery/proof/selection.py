@@ -57,8 +57,8 @@ class Proof:
                 (cause.key,),
                 cause.log_p,
                 cause.gain,
+                self.by_chance(cause),
                 cause.rivals,
-                family_log_p=self.by_chance(cause),
                 before_deg=before,
                 after_deg=after,
             )

@@ -17,8 +17,6 @@ from twin.catalogue import unnamed
 from twin.chain import Chain
 from twin.effect import Effect
 
-MOST_SHAPES = 20
-"""An effect with more shapes than this on its grid has lines or places enough that stairs' own pattern meets one."""
 SETTLING = 3
 """Times that noise and fit are adapted to one another; the second time the noise hardly ever changes."""
 
@@ -172,4 +170,4 @@ def doubt_beside(fit: Fit, keys: Sequence[str]) -> float:
 def _aliased(effect: Effect, fit: Fit) -> bool:
     """Whether an effect has so many shapes, lines and places, that stairs' own pattern resembles one of them."""
     any_order = effect.line is not None or "order" in effect.params or unnamed(effect.name)
-    return any_order or len(effect.shapes(fit.linear.motion)) > MOST_SHAPES
+    return any_order or len(effect.shapes(fit.linear.motion)) > fit.settings.aliased_shapes

@@ -15,8 +15,6 @@ from twin.effect import Effect, Line
 
 OVERSAMPLING = 4
 PEAKS = 8
-_ONE_TURN = 1.8
-"""Turns below which orders between the whole ones are not told from them."""
 _FEW = 64
 """So few independent frequencies are all tried; a transform pays for more."""
 _LARGEST_GRID = 1 << 21
@@ -39,7 +37,7 @@ def line_shapes(
     span = float(np.ptp(clock))
     if span <= 0.0 or high <= low:
         return [], 0.0
-    if line.clock == "shaft" and span < _ONE_TURN:
+    if line.clock == "shaft" and span < fit.settings.whole_order_turns:
         # Over one turn only whole orders are told apart; others are what an aperiodic residual looks like.
         grid = _whole(low, high)
         grid = grid[line.within(grid)]

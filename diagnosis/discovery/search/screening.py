@@ -19,7 +19,7 @@ from diagnosis.discovery.fitting.joint_fit import Fit, radius_nuisance, root_wei
 from diagnosis.discovery.fitting.linearised_chain import Term
 from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.search.periodogram import line_shapes
-from twin.angles import Array
+from twin.angles import Array, IntArray
 from twin.effect import Effect
 from twin.noise.spectrum import to_rows
 
@@ -108,6 +108,11 @@ class Base:
             likelihood[:, member] = -0.5 * (self.dof * np.log(squares) + cost)
         return replace(self, residuals=residuals, likelihood=likelihood)
 
+    def part(self, chosen: IntArray) -> Base:
+        """The same with these residuals of the batch alone."""
+        residuals = [residual[chosen] if residual.size else residual for residual in self.residuals]
+        return replace(self, residuals=residuals, likelihood=self.likelihood[chosen])
+
     @property
     def member(self) -> int:
         """The family member that fits best (the first residual of a batch)."""
@@ -137,13 +142,10 @@ def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, floa
     if not shapes:
         return None
     looks = max(looks, float(len(shapes)))
-    gains, coefficients = (found[0] for found in gains_of(base, effect, shapes))
+    gains, coefficients = gains_of(base, effect, shapes)
     if not np.any(gains > 0.0):
         return None
-    best = int(np.argmax(gains))
-    point = _Point(shapes[best], float(gains[best]), coefficients[best])
-    for name in _smooth(effect, point.shape):
-        point = _zoom(base, effect, point, name=name, axis=np.unique([shape[name] for shape in shapes]))
+    (point,) = sharpened(base, effect, shapes, gains, coefficients)
     terms = point.coefficient.size
     found = _parameters(effect, fit.linear.terms(effect), point.coefficient, motion)
     values = {**effect.null(), **point.shape, **found}
@@ -266,7 +268,7 @@ def _allowed(effect: Effect, terms: tuple[Term, ...], coefficients: Array) -> Ar
 
 
 @dataclass(frozen=True, eq=False)
-class _Point:
+class Point:
     """A shape of an effect, what it gains, and the coefficients (T,) of its first-order fit."""
 
     shape: Mapping[str, float]
@@ -274,7 +276,24 @@ class _Point:
     coefficient: Array
 
 
-def _zoom(base: Base, effect: Effect, point: _Point, *, name: str, axis: Array) -> _Point:
+def sharpened(
+    base: Base, effect: Effect, shapes: Sequence[Mapping[str, float]], gains: Array, coefficients: Array
+) -> list[Point]:
+    """The best shape for each residual (batch,), zoomed in on where shapes are continuous.
+
+    ``gains`` (batch, G) and ``coefficients`` (batch, G, T) are those of the ``shapes`` (see :func:`gains_of`).
+    """
+    points = []
+    for place, best in enumerate(gains.argmax(axis=1)):
+        alone = base.part(np.array([place]))
+        point = Point(shapes[best], float(gains[place, best]), coefficients[place, best])
+        for name in _smooth(effect, point.shape):
+            point = _zoom(alone, effect, point, name=name, axis=np.unique([shape[name] for shape in shapes]))
+        points.append(point)
+    return points
+
+
+def _zoom(base: Base, effect: Effect, point: Point, *, name: str, axis: Array) -> Point:
     """Climb from the best point of a grid ``axis`` of one parameter: finer grids between its neighbours."""
     place = int(np.searchsorted(axis, point.shape[name]))
     low, high = axis[max(place - 1, 0)], axis[min(place + 1, axis.size - 1)]
@@ -290,7 +309,7 @@ def _zoom(base: Base, effect: Effect, point: _Point, *, name: str, axis: Array) 
         gains, coefficients = (found[0] for found in gains_of(base, effect, fine))
         best = int(np.argmax(gains))
         if gains[best] > point.gain:
-            point = _Point(fine[best], float(gains[best]), coefficients[best])
+            point = Point(fine[best], float(gains[best]), coefficients[best])
         width = (high - low) / (_ZOOM_POINTS - 1)
         low, high = max(low, point.shape[name] - width), min(high, point.shape[name] + width)
     return point

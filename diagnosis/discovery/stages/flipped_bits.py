@@ -11,7 +11,14 @@ def flipped_bits(state: State) -> State:
     for effect in state.effects:
         if effect.marks is None or state.has(effect):
             continue
-        found = touched_rows(state.fit, state.sweep, effect, step=state.step, spoken_for=state.touched)
+        found = touched_rows(
+            state.fit,
+            state.sweep,
+            effect,
+            step=state.step,
+            spoken_for=state.touched,
+            family=state.family("sequence"),
+        )
         if found is not None:
             mask, cause = found
             state = state.with_(touched=state.touched | mask, findings=(*state.findings, cause))

@@ -12,5 +12,5 @@ def grid_cause(state: State) -> State:
     grid = output_grid(state.effects)
     if grid is None or state.found("values"):
         return state
-    cause = grid_as_cause(state.fit, grid, state.step)
+    cause = grid_as_cause(state.fit, grid, step=state.step, family=state.family("values"))
     return state if cause is None else state.with_(findings=(*state.findings, cause))

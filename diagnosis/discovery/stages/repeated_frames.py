@@ -15,7 +15,14 @@ def repeated_frames(state: State) -> State:
     for effect in state.effects:
         if effect.marks is None or not effect.marks.early or state.has(effect):
             continue
-        found = touched_rows(state.fit, state.sweep, effect, step=state.step, spoken_for=state.touched)
+        found = touched_rows(
+            state.fit,
+            state.sweep,
+            effect,
+            step=state.step,
+            spoken_for=state.touched,
+            family=state.family("sequence"),
+        )
         if found is not None:
             mask, cause = found
             touched = state.touched | mask

@@ -26,8 +26,8 @@ def spread(state: State) -> State:
     burst = bursts(fit)
     if burst is not None:
         shapes.append(burst)
-    # One family with the causes of the mean: what is listed is as improbable among everything that was searched.
-    limit = state.settings.effect_log_p(state.looked_at) - doubt_beside(fit, state.keys)
+    family = state.family("spread")
+    limit = state.settings.effect_log_p(family) - doubt_beside(fit, state.keys)
     odds = state.settings.unnamed_log_odds
     judged = [(shape.log_p + (odds if unnamed(shape.name) else 0.0), shape) for shape in shapes]
     score, best = min(judged, key=lambda item: item[0], default=(0.0, None))
@@ -38,7 +38,7 @@ def spread(state: State) -> State:
         return state.with_(scaled(fit, np.ones(len(fit.observations))))
     chain = fit.chain.with_values({best.name: _in_recording(state, best)})
     intervals = {(best.name, name): limits for name, limits in best.intervals.items()}
-    named = Finding((best.name,), best.log_p, best.gain, intervals=intervals)
+    named = Finding.among(family, best.name, best.log_p, gain=best.gain, intervals=intervals)
     weighed = scaled(evaluate(chain, fit.free, fit.observations, fit.weighting), best.variance)
     return state.with_(weighed, findings=(*state.findings, named))
 

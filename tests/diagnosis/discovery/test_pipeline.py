@@ -235,7 +235,7 @@ def test_a_stage_may_be_added() -> None:
     """One of one's own names what it knows: here, that the bench is cold."""
 
     def cold(state: State) -> State:
-        return state.with_(findings=(*state.findings, Finding(("zero_drift",), -20.0, 40.0)))
+        return state.with_(findings=(*state.findings, Finding.among(1, "zero_drift", -20.0, gain=40.0)))
 
     stages = (*PIPELINE[: PIPELINE.index(answer)], cold, *PIPELINE[PIPELINE.index(answer) :])
     assert set(names(discover(start_of(SATURATED), stages))) == {"saturation", "zero_drift"}

@@ -16,18 +16,46 @@ PLAIN = DiscoverySettings()
 WHOLE = [one.name for one in fields(PLAIN) if isinstance(one.default, int)]
 
 
+NAMES = [one.name for one in fields(PLAIN)]
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 10**400, "4", None, True, [4]], ids=repr)
+def test_what_is_no_number_is_refused_by_name(name: str, value: Any) -> None:
+    with pytest.raises(ValueError, match=f"^{name} is .*; expected a (whole )?number from [0-9e.+-]+ to [0-9e.+-]+$"):
+        DiscoverySettings(**{name: value})
+
+
 @pytest.mark.parametrize(
     ("name", "value", "expected"),
     [
-        *(("false_alarm_probability", value, "a number between 0 and 1") for value in (0.0, 1.0, -0.1, 2.0, np.nan)),
-        *((name, value, "a whole number of at least 1") for name in WHOLE for value in (0, 2.5, np.nan)),
-        ("spike_sigma", np.inf, "a finite number"),
-        ("swap_log_odds", np.nan, "a finite number"),
+        *(("false_alarm_probability", value, "a number from 1e-300 to 1") for value in (0.0, 1.0, -0.1, 2.0)),
+        *((name, value, "a whole number from") for name in WHOLE for value in (0, -1, 2.5, 4.0)),
+        *((name, -0.1, "a number from") for name in NAMES if name not in WHOLE and not name.endswith("_log_p")),
+        *((name, 0.0, "a number from -10000 to -1e-09") for name in NAMES if name.endswith("_log_p")),
+        # One fold holds nothing out.
+        ("folds", 1, "a whole number from 2 to 100"),
+        ("folds", 10**6, "a whole number from 2 to 100"),
+        # What may grow by chance does not shrink.
+        ("heldout_slack", 0.99, "a number from 1 to 1000"),
+        # More than all.
+        ("set_share", 1.01, "a number from 0 to 1"),
     ],
 )
 def test_what_cannot_be_is_refused_by_name(name: str, value: Any, expected: str) -> None:
     with pytest.raises(ValueError, match=f"^{name} is {value}; expected {expected}"):
         DiscoverySettings(**{name: value})
+
+
+def test_the_fewest_are_at_most_as_many_as_the_most() -> None:
+    with pytest.raises(ValueError, match="fewest_simulated is 97 and most_simulated 96"):
+        DiscoverySettings(fewest_simulated=97)
+
+
+@pytest.mark.parametrize("kind", [np.int64, np.int32, int])
+def test_whole_numbers_may_be_those_of_numpy(kind: type) -> None:
+    assert DiscoverySettings(folds=kind(5)).folds == 5
+    assert DiscoverySettings(spike_sigma=kind(8)).spike_sigma == 8
 
 
 def test_settings_are_frozen() -> None:
@@ -67,6 +95,7 @@ DERIVED: dict[str, tuple[Callable[[DiscoverySettings], float], float, float]] = 
     "sigma_enough": (lambda s: norm.cdf((s.sigma_apart**2 - s.sigma_enough**2) / (2.0 * s.sigma_enough)), 0.05, 0.06),
     "sigma_apart": (lambda s: 2.0 * norm.sf(s.sigma_apart), 0.002, 0.003),
     # What stairs at the limit add to the RMS of the noise.
+    "fewest_checked": (lambda s: np.sqrt(2.0 / s.fewest_checked), 0.24, 0.27),
     "stairs_in_noise": (lambda s: np.hypot(1.0, s.stairs_in_noise) - 1.0, 0.004, 0.005),
     # A stretch is loud from an RMS half as large again on.
     # A cause that makes up this share of what is left is so many times the noise.

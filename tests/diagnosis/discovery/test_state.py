@@ -107,7 +107,7 @@ def test_what_is_searched_is_what_the_error_model_lacks() -> None:
 
 def test_what_has_been_found_is_told_by_place_and_by_name() -> None:
     state = start_of(MADE).with_(
-        findings=(Finding(("stale_frames",), -20.0, 40.0), Finding(("hysteresis#2",), -9.0, 18.0))
+        findings=(Finding.among(2, "stale_frames", -20.0, gain=40.0), Finding.among(9, "hysteresis#2", -9.0, gain=18.0))
     )
     assert {place: state.found(place) for place in ("sequence", "values", "spread")} == {
         "sequence": True,

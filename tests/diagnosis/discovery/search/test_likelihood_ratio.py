@@ -42,6 +42,16 @@ def test_what_an_effect_has_to_gain_beyond_others(name: str, plain: float, coars
     assert handicap(effect, beside) == pytest.approx(coarse + effect.handicap)
 
 
+@pytest.mark.parametrize(("shapes", "coarse"), [(12, 0.0), (20, 0.0), (21, 20.0), (38, 20.0)])
+def test_among_many_places_stairs_pass_for_one(shapes: int, coarse: float) -> None:
+    fit = clean().fit
+    effect = replace(
+        find("hysteresis"), shapes=lambda motion: [{"memory_deg": 1.0 + 0.1 * place} for place in range(shapes)]
+    )
+    beside = replace(fit, weighting=replace(fit.weighting, coarse=True))
+    assert handicap(effect, beside) == pytest.approx(coarse + effect.handicap)
+
+
 @pytest.mark.parametrize(
     ("keys", "member", "nats"),
     [

@@ -57,7 +57,7 @@ def test_of_stairs_what_knowing_them_gains() -> None:
 
 def test_what_makes_readings_scatter_gains_nothing_in_their_mean() -> None:
     state = before(answer, MADE)
-    state = state.with_(findings=(*state.findings, Finding((BURST,), -20.0, 40.0)))
+    state = state.with_(findings=(*state.findings, Finding.among(1, BURST, -20.0, gain=40.0)))
     before_deg, after_deg = figures(state)["unnamed"]
     assert before_deg == after_deg
 
@@ -105,14 +105,14 @@ def test_instances_of_one_effect_are_one_entry_and_so_is_all_without_a_name() ->
     fit = state.fit
 
     def finding(key: str, gain: float, **more: object) -> Finding:
-        return replace(Finding((key,), -0.5 * gain, gain, before_deg=0.3, after_deg=0.2, family_log_p=-gain), **more)
+        return replace(Finding((key,), -0.5 * gain, gain, -gain, before_deg=0.3, after_deg=0.2), **more)
 
     state = state.with_(
         findings=(
             finding("drive_ripple", 30.0, rivals={"cardan_coupling": fit, "magnet_harmonic": fit}),
             finding("unnamed_order", 50.0),
             finding("drive_ripple#2", 40.0, rivals={"magnet_harmonic": fit}, after_deg=0.1, before_deg=0.2),
-            finding("unnamed_bump#2", 5.0, family_log_p=None),
+            finding("unnamed_bump#2", 5.0),
         )
     )
     ripple, nameless = answer(state).causes

@@ -93,7 +93,7 @@ def test_the_baseline_is_fitted_by_the_same_rows_and_weights() -> None:
 
 def test_findings_that_are_no_stairs_leave_the_baseline_its_own() -> None:
     made = Made(causes=(("saturation", 0.08),), points=120, bits=14)
-    state = before(final_fit, made).with_(findings=(Finding(("stale_frames",), -20.0, 40.0),))
+    state = before(final_fit, made).with_(findings=(Finding.among(1, "stale_frames", -20.0, gain=40.0),))
     baseline = final_fit(state).baseline
     assert baseline is not None
     assert GRID in baseline.chain.values

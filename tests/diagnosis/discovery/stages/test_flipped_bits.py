@@ -26,7 +26,9 @@ def test_the_words_that_were_hit_are_named(made: Made) -> None:
     after = flipped_bits(before(flipped_bits, made))
     (cause,) = [finding for finding in after.findings if finding.keys == (GLITCH,)]
     assert cause.rows == rows_hit(made, GLITCH)
-    assert cause.family_log_p == cause.log_p < LIMIT
+    # Two effects are looked for in the sequence.
+    assert cause.family_log_p == pytest.approx(cause.log_p + np.log(2.0))
+    assert cause.family_log_p < LIMIT
     assert set(cause.rows) <= set(np.flatnonzero(after.touched))
     assert flipped_bits(after) is after
 
@@ -72,9 +74,12 @@ def test_an_error_that_is_no_bit_is_not_named(case: Off) -> None:
 
 @pytest.mark.parametrize(("margin", "named"), [(-0.1, True), (0.1, False)])
 @pytest.mark.parametrize("early", [True, False])
-def test_a_claim_is_believed_by_its_probability(margin: float, named: bool, early: bool) -> None:
+@pytest.mark.parametrize("family", [1, 3])
+def test_a_claim_is_believed_by_its_probability(margin: float, named: bool, early: bool, family: int) -> None:
     """Those that are looked for first are looked for once more in what is left at the end."""
-    state = with_effects(before(flipped_bits, CLEAN), claiming(GLITCH, (40, 90), LIMIT + margin, early=early))
+    claims = LIMIT - np.log(family) + margin
+    silent = [claiming(STALE, (), 0.0, early=True) for _ in range(family - 1)]
+    state = with_effects(before(flipped_bits, CLEAN), claiming(GLITCH, (40, 90), claims, early=early), *silent)
     after = flipped_bits(state)
     assert (after is state) == (not named)
     assert tuple(np.flatnonzero(after.touched)) == ((40, 90) if named else ())
@@ -82,5 +87,5 @@ def test_a_claim_is_believed_by_its_probability(margin: float, named: bool, earl
 
 def test_what_has_been_found_is_not_looked_for_again() -> None:
     state = with_effects(before(flipped_bits, CLEAN), claiming(STALE, (40, 90), -50.0, early=True))
-    state = state.with_(findings=(Finding((STALE,), -20.0, 40.0),))
+    state = state.with_(findings=(Finding.among(1, STALE, -20.0, gain=40.0),))
     assert flipped_bits(state) is state

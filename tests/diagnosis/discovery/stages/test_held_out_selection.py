@@ -84,7 +84,7 @@ def test_a_cause_among_all_that_were_searched_must_be_improbable(strength_deg: f
 
 def test_what_was_found_beside_the_joint_fit_comes_after() -> None:
     state = before(held_out_selection, ONE)
-    found = Finding(("stale_frames",), -50.0, 100.0)
+    found = Finding.among(1, "stale_frames", -50.0, gain=100.0)
     after = held_out_selection(state.with_(findings=(found,)))
     assert [finding.keys for finding in after.findings] == [(SATURATION,), ("stale_frames",)]
     assert after.findings[-1] is found

@@ -93,6 +93,9 @@ def test_uneven_noise_that_no_cause_carries_is_seen() -> None:
     assert p_of(state.with_(scaled(state.fit, np.ones(state.fit.rows)))) == pytest.approx(1.0 / (SWEEPS + 1))
 
 
-def test_of_too_few_readings_nothing_is_said() -> None:
-    state = before(predictive_check, Made(points=32))
-    assert predictive_check(state).likeness is None
+@pytest.mark.parametrize(("beyond", "said"), [(16, False), (29, False), (31, True), (58, True)])
+def test_of_too_few_readings_nothing_is_said(beyond: int, said: bool) -> None:
+    """Thirty beyond the parameters that are fitted tell a variance to a quarter; fewer hardly anything."""
+    state = before(predictive_check, Made(points=beyond + 6))
+    assert state.fit.rows - len(state.fit.free) == beyond
+    assert (predictive_check(state).likeness is not None) == said

@@ -88,20 +88,24 @@ def test_the_finite_set_of_a_truncated_cordic_is_a_cause(strength_deg: float) ->
 
 @dataclass(frozen=True, kw_only=True)
 class Half:
-    """So many different words, all in one half of the cells, where so many levels are tried; whether that is enough."""
+    """So many different words, all in one half of the cells, where so many levels of so many effects are tried."""
 
     words: int
     tried: int
     enough: bool
+    effects: int = 1
 
 
 HALVES = {
-    # log(0.01 / 4) - log(10) = -8.29: twelve halves are -8.32, eleven -7.62.
+    # log(0.01 / 4) - log(10) = -8.29 for one effect: twelve halves are -8.32, eleven -7.62.
     "ten levels, just enough": Half(words=12, tried=10, enough=True),
     "ten levels, one too few": Half(words=11, tried=10, enough=False),
     # log(0.01 / 4) = -5.99: nine halves are -6.24, eight -5.55.
     "one level, just enough": Half(words=9, tried=1, enough=True),
     "one level, one too few": Half(words=8, tried=1, enough=False),
+    # log(0.01 / 4 / 3) = -7.09: eleven halves are -7.62, ten -6.93.
+    "one of three effects, just enough": Half(words=11, tried=1, effects=3, enough=True),
+    "one of three effects, one too few": Half(words=10, tried=1, effects=3, enough=False),
 }
 
 
@@ -120,7 +124,14 @@ def half_of_the_cells(tried: int) -> Effect:
 def test_chance_is_shared_by_the_levels_that_are_tried(case: Half) -> None:
     state = before(quantisation, Made(points=180, bits=30))
     words = 2 * (np.arange(180) % case.words)
-    effects = (half_of_the_cells(case.tried),)
+    # The others leave all words, and cannot be told.
+    everywhere = np.arange(2**BITS) * STEP
+    effect = half_of_the_cells(case.tried)
+    others = [
+        replace(effect, name=f"all_{number}", attainable=lambda values: everywhere)
+        for number in range(case.effects - 1)
+    ]
+    effects = (effect, *others)
     sweep = replace(state.sweep, measured_deg=np.degrees(words * STEP))
     state = state.with_(sweep=sweep, start=replace(state.start, effects=effects), bits=BITS)
     assert len(quantisation(state).findings) == int(case.enough)

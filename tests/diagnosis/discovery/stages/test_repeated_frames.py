@@ -41,8 +41,9 @@ def test_every_repeated_frame_is_named_and_masked(made: Made) -> None:
     (cause,) = after.findings
     assert cause.keys == (STALE,)
     assert cause.rows == rows
-    # Looked for by itself, so that there is no family to pay for.
-    assert cause.family_log_p == cause.log_p < LIMIT
+    # Two effects are looked for in the sequence.
+    assert cause.family_log_p == pytest.approx(cause.log_p + np.log(2.0))
+    assert cause.family_log_p < LIMIT
     assert tuple(np.flatnonzero(after.touched)) == rows
     assert set(rows) <= set(np.flatnonzero(~after.fit.observations.usable))
     assert repeated_frames(after) is after
@@ -66,11 +67,14 @@ class Case:
     named: bool
     rows: tuple[int, ...] = (40, 90)
     early: bool = True
+    family: int = 1
 
 
 CASES = {
     "just improbable enough": Case(log_p=LIMIT - 0.1, named=True),
     "just too probable": Case(log_p=LIMIT + 0.1, named=False),
+    "one of three, just improbable enough": Case(log_p=LIMIT - np.log(3.0) - 0.1, family=3, named=True),
+    "one of three, just too probable": Case(log_p=LIMIT - np.log(3.0) + 0.1, family=3, named=False),
     "no row": Case(log_p=-50.0, rows=(), named=False),
     "an effect that is not looked for first": Case(log_p=-50.0, early=False, named=False),
 }
@@ -83,7 +87,9 @@ def test_the_limit_is_a_quarter_of_the_policy() -> None:
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 def test_a_claim_is_believed_by_its_probability(case: Case) -> None:
-    state = with_effects(before(repeated_frames, CLEAN), claiming(STALE, case.rows, case.log_p, early=case.early))
+    silent = [claiming("bus_glitch", (), 0.0, early=False) for _ in range(case.family - 1)]
+    claim = claiming(STALE, case.rows, case.log_p, early=case.early)
+    state = with_effects(before(repeated_frames, CLEAN), claim, *silent)
     after = repeated_frames(state)
     assert (after is state) == (not case.named)
     assert len(after.findings) == int(case.named)

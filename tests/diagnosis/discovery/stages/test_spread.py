@@ -13,7 +13,7 @@ from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.spread import spread
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.spreads import Loud, handed
-from twin.catalogue import unnamed
+from twin.catalogue import find, unnamed
 
 LIMITS = DiscoverySettings()
 JITTER, BURST, BUMP = "reference_jitter", "unnamed_burst", "unnamed_bump"
@@ -21,31 +21,35 @@ JITTER, BURST, BUMP = "reference_jitter", "unnamed_burst", "unnamed_bump"
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """What is loud, the causes found among so many effects, the noise in force, and what is named."""
+    """What is loud, the causes found, the noise in force, how many effects may show in the spread, what is named."""
 
     loud: Loud
     keys: tuple[str, ...] = ()
     member: int = 0
-    looked_at: int = 20
+    family: int = 2
     named: str | None = None
 
 
 CASES = {
     "even noise": Case(loud=Loud()),
-    "shape, too weak": Case(loud=Loud(jitter_percent=0.045)),
-    "shape, strong enough": Case(loud=Loud(jitter_percent=0.055), named=JITTER),
-    "among fewer effects": Case(loud=Loud(jitter_percent=0.045), looked_at=2, named=JITTER),
-    "stretch, too weak for one without a name": Case(loud=Loud(stretch=1.75)),
-    "stretch, strong enough": Case(loud=Loud(stretch=1.85), named=BURST),
-    "beside a shape without a name, too weak": Case(loud=Loud(jitter_percent=0.06), keys=(BUMP,)),
-    "beside a shape without a name, strong enough": Case(loud=Loud(jitter_percent=0.07), keys=(BUMP,), named=JITTER),
-    "beside one in coloured noise": Case(loud=Loud(jitter_percent=0.06), keys=(BUMP,), member=1, named=JITTER),
-    "beside a named cause": Case(loud=Loud(jitter_percent=0.055), keys=("saturation",), named=JITTER),
+    "shape, too weak": Case(loud=Loud(jitter_percent=0.04)),
+    "shape, strong enough": Case(loud=Loud(jitter_percent=0.045), named=JITTER),
+    "among more effects, too weak": Case(loud=Loud(jitter_percent=0.045), family=20),
+    "among more effects, strong enough": Case(loud=Loud(jitter_percent=0.05), family=20, named=JITTER),
+    "stretch, too weak for one without a name": Case(loud=Loud(stretch=1.7)),
+    "stretch, strong enough": Case(loud=Loud(stretch=1.75), named=BURST),
+    "beside a shape without a name, too weak": Case(loud=Loud(jitter_percent=0.055), keys=(BUMP,)),
+    "beside a shape without a name, strong enough": Case(loud=Loud(jitter_percent=0.06), keys=(BUMP,), named=JITTER),
+    "beside one in coloured noise": Case(loud=Loud(jitter_percent=0.055), keys=(BUMP,), member=1, named=JITTER),
+    "beside a named cause": Case(loud=Loud(jitter_percent=0.045), keys=("saturation",), named=JITTER),
 }
 
 
 def state_of(case: Case) -> State:
-    state = handed(spread, case.loud).with_(keys=case.keys, looked_at=case.looked_at)
+    state = handed(spread, case.loud).with_(keys=case.keys)
+    # Others that may show there, and do not.
+    silent = [replace(find(BURST), name=f"silent_{number}") for number in range(case.family - 2)]
+    state = state.with_(start=replace(state.start, effects=(*state.start.effects, *silent)))
     return state.with_(replace(state.fit, weighting=replace(state.fit.weighting, member=case.member)))
 
 
@@ -57,9 +61,10 @@ def test_what_is_named(case: Case) -> None:
     assert (after is state) == (case.named is None)
     if case.named is not None:
         (finding,) = after.findings
-        # One family with all effects that were searched for; a shape without a name has to gain more, and so has any
-        # cause beside one. Near to the limit: half of it or twice as much would be noticed.
-        limit = LIMITS.effect_log_p(case.looked_at)
+        # One family with all effects that may show in the spread; a shape without a name has to gain more, and so has
+        # any cause beside one. Near to the limit: half of it or twice as much would be noticed.
+        limit = LIMITS.effect_log_p(case.family)
+        assert finding.family_log_p == pytest.approx(finding.log_p + np.log(case.family))
         odds = LIMITS.unnamed_log_odds * (unnamed(case.named) + (case.keys == (BUMP,) and case.member == 0))
         assert 2.0 * limit < finding.log_p + odds < limit
         assert finding.keys[0] in after.fit.chain.values
@@ -92,7 +97,7 @@ def test_where_is_said_of_a_stretch() -> None:
 
 
 def test_it_is_judged_once() -> None:
-    state = handed(spread, Loud(stretch=4.0)).with_(findings=(Finding((JITTER,), -30.0, 60.0),))
+    state = handed(spread, Loud(stretch=4.0)).with_(findings=(Finding.among(1, JITTER, -30.0, gain=60.0),))
     assert spread(state) is state
 
 

@@ -128,7 +128,8 @@ class Line:
     ``param`` is the parameter that holds its order, frequency or weight; ``clock`` is what it is periodic in: the shaft
     angle (orders), time (Hz), or a channel's value (a bit's weight, %). ``limits`` maps a motion to the lowest and
     highest order, frequency or weight worth looking at; ``within`` maps an array of these to a mask of those that
-    belong to the effect; ``multiples`` are multiples of it at which the same source shows again.
+    belong to the effect; ``multiples`` are multiples of it at which the same source shows again. ``begin`` maps such a
+    value, and the sign with which the shape matches a residual, to the shape parameters that a search sets out from.
     """
 
     param: str
@@ -136,6 +137,11 @@ class Line:
     limits: Callable[[Motion], tuple[float, float]]
     within: Callable[[Array], BoolArray]
     multiples: tuple[int, ...] = ()
+    begin: Callable[[float, float], Mapping[str, float]] | None = None
+
+    def begun(self, value: float, sign: float = 1.0) -> Mapping[str, float]:
+        """The shape that a search sets out from at this order, frequency or weight."""
+        return {self.param: value, **({} if self.begin is None else self.begin(value, sign))}
 
     def some(self, motion: Motion) -> Array:
         """Orders, frequencies or weights (m,) of the effect, ascending, over all its limits, whole ones among them."""

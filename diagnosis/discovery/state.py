@@ -165,7 +165,7 @@ Stage = Callable[[State], State]
 def until_still(*stages: Stage) -> Stage:
     """The stages one after the other, again and again, until none of them has anything more to say.
 
-    A stage is not asked again about a state that it has left as it is, and the loop ends after
+    A stage is not asked again about the state that it has itself handed on, and the loop ends after
     :attr:`DiscoverySettings.most_rounds` at the latest. Where the watch is told to stop, it ends at once with the state
     as it stands.
     """

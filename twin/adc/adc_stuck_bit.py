@@ -58,6 +58,14 @@ def within(step_percent: Array) -> BoolArray:
     return np.asarray((step_percent > 0.0) & (step_percent < 30.0))
 
 
+def begin(step_percent: float, sign: float) -> Mapping[str, float]:
+    """Held at 0 the bit leaves +cos(pi x / step) once its mean is in the offset; held at 1, the opposite.
+
+    Noise ahead of the bit of a fifth of its weight to begin with: a fit finds its own.
+    """
+    return {"level": 0.0 if sign > 0.0 else 1.0, "blur_percent": 0.2 * step_percent}
+
+
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
     """A bit of weight w errs by up to w / 2 in each channel: 0.1 deg is 0.35 % of the amplitude."""
     full_scale_percent = 200.0 * FULL_SCALE
@@ -95,7 +103,9 @@ ADC_STUCK_BIT = Effect(
     derived=derived,
     zoomed=("step_percent",),
     fitted_shapes=("step_percent", "blur_percent"),
-    line=Line(param="step_percent", clock="channels", limits=lambda motion: (0.04, 4.0), within=within),
+    line=Line(
+        param="step_percent", clock="channels", limits=lambda motion: (0.04, 4.0), within=within, begin=begin
+    ),
     drawing=drawing,
     source="offset binary code with one bit held; its mean goes into the offset",
     signature="0 or one step per channel: a square pattern in code",

@@ -10,6 +10,7 @@ from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.linearised_chain import Linear, is_staircase
 from diagnosis.discovery.fitting.noise.rounding import blur_behind, coarsest_stair
 from twin.angles import Array, wrap
+from twin.effect import Effect, Parameters
 
 
 def reblurred(fit: Fit) -> Fit:
@@ -30,13 +31,17 @@ def without_stairs(fit: Fit, key: str) -> Array:
     return wrap(fit.observations.measured - smooth.angle)
 
 
+def _fitted(effect: Effect, own: Parameters) -> bool:
+    """Whether all shapes of an effect that a fit may move are off their null: edges without a blur have no slope."""
+    return all(np.any(np.asarray(own[name]) != effect.params[name].null) for name in effect.fitted_shapes)
+
+
 def with_slopes(fit: Fit) -> Fit:
     """The fit at the very optimum of a blurred staircase in the channels, its slopes counted; else as it is.
 
     The bit's edges move with offset and gain: left out, the bit's weight stops short of its best by more than its
     interval.
     """
-    active = list(fit.chain.active("channels"))
-    if not any(is_staircase(effect) and float(own.get("blur_percent", 0.0)) > 0.0 for _, effect, own in active):
+    if not any(is_staircase(effect) and _fitted(effect, own) for _, effect, own in fit.chain.active("channels")):
         return fit
     return solve(evaluate(fit.chain, fit.free, fit.observations, replace(fit.weighting, slopes=True)), iterations=30)

@@ -19,7 +19,7 @@ from diagnosis.discovery.search.likelihood_ratio import (
     take_out,
 )
 from diagnosis.discovery.search.screening import Base, Candidate, screen, screen_one
-from twin.catalogue import base_name, find, unnamed
+from twin.catalogue import base_name, find
 from twin.effect import Effect
 
 _HIGHEST_SHARE = 0.9
@@ -29,7 +29,7 @@ _HIGHEST_SHARE = 0.9
 def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
     """Every effect that may still be added, at its best shape, best first after the handicap."""
     present = {base_name(key) for key in keys}
-    open_to = [e for e in effects if e.name not in present or e.repeatable or unnamed(e.name)]
+    open_to = [e for e in effects if e.name not in present or e.repeatable]
     found = screen(base, open_to)
     found += multiples(base, effects, keys)
     return sorted(found, key=lambda c: c.log_p + handicap(c.effect, base.fit))

@@ -53,7 +53,7 @@ def line_shapes(
     else:
         spectra = _spectra(matched, fit, effect, clock)
         grid, looks = spectra.whole_orders(line, peaks) if spectra.whole_only(line) else spectra.peaks(line, peaks)
-    return [{line.param: float(f)} for f in grid], looks
+    return [line.begun(float(f)) for f in grid], looks
 
 
 def _whole(low: float, high: float) -> Array:
@@ -188,18 +188,10 @@ def _weights_of_a_bit(
         grid += np.bincount((left + 1) % bins, signal * (place - left), bins)
     frequency = np.arange(bins // 2) / period
     inside = (frequency > 100.0 / (2.0 * high)) & (frequency < highest)
-    # Held at 0 the bit leaves +cos(pi x / step) once its mean is in the offset; held at 1, the opposite.
+    # Its mean is in the offset: the match is with a cosine, whose sign tells the bit's level.
     match = np.where(inside, np.fft.fft(grid)[: bins // 2].real, 0.0)
     size = np.abs(match)
     peak = np.flatnonzero((size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:])) + 1
     chosen = peak[np.argsort(size[peak])[::-1][: 2 * peaks]]
     looks = max(2.0 * float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
-    # Noise ahead of the bit of a fifth of its weight to begin with: the fit finds its own.
-    return [
-        {
-            effect.line.param: float(50.0 / frequency[k]),
-            "level": 0.0 if match[k] > 0.0 else 1.0,
-            "blur_percent": 0.2 * float(50.0 / frequency[k]),
-        }
-        for k in chosen
-    ], looks
+    return [effect.line.begun(float(50.0 / frequency[k]), float(match[k])) for k in chosen], looks

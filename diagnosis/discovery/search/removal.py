@@ -1,4 +1,4 @@
-"""Standings: what one cause that is in the joint fit does there, seen from the fit without it."""
+"""Removal: what one cause that is in the joint fit does there, seen from the fit without it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Repeated frames: readings that are no readings of their own must not be searched for causes."""
+"""Repeated frames, and what else the values alone tell: such readings must not be searched for causes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from diagnosis.discovery.state import State
 
 
 def repeated_frames(state: State) -> State:
-    """Find frames that repeat the one before, name the cause, and mask them.
+    """Find the readings whose marks can be told before the search (``Marks.early``), name the cause, and mask them.
 
     Asked again after the search: structure may hide them at first.
     """

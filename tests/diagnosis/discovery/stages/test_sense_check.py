@@ -72,11 +72,13 @@ def test_what_fits_better_by_the_odds_is_taken(case: Case) -> None:
     assert (after is state) == (not turned)
     assert (after.fit.chain.sensor_sense, after.fit.chain.output_sense) == ((-1, -1) if case.wrong > turned else (1, 1))
     if turned:
-        # The search sets out anew from the error model in the other sense.
-        assert after.keys == ()
-        assert after.baseline is after.fit
-        assert after.fit.free == state.baseline.free if state.baseline is not None else False
-        assert not {name for name, _ in case.causes} & set(after.fit.chain.values)
+        # The search sets out anew from the error model in the other sense, at once: what comes next is judged on it.
+        assert after.baseline is not None
+        assert state.baseline is not None
+        assert after.baseline.chain.sensor_sense == after.fit.chain.sensor_sense
+        assert after.baseline.free == state.baseline.free
+        assert not {name for name, _ in case.causes} & set(after.baseline.chain.values)
+        assert after.keys == state.keys
         assert sense_check(after) is after
 
 

@@ -233,7 +233,8 @@ _RANGES: Mapping[str, tuple[float, float]] = {
     "contender_share": _SHARE,
     "fair_share": _SHARE,
     "rival_share": _SHARE,
-    "seen_share": _SHARE,
+    # None and all of what is left have no F test.
+    "seen_share": (0.01, 0.999),
     "whole_order_turns": (0.0, 1e3),
     "radius_left": _RATIO,
     "smallest_rms_deg": (0.0, 180.0),

@@ -103,9 +103,7 @@ ADC_STUCK_BIT = Effect(
     derived=derived,
     zoomed=("step_percent",),
     fitted_shapes=("step_percent", "blur_percent"),
-    line=Line(
-        param="step_percent", clock="channels", limits=lambda motion: (0.04, 4.0), within=within, begin=begin
-    ),
+    line=Line(param="step_percent", clock="channels", limits=lambda motion: (0.04, 4.0), within=within, begin=begin),
     drawing=drawing,
     source="offset binary code with one bit held; its mean goes into the offset",
     signature="0 or one step per channel: a square pattern in code",

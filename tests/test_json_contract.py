@@ -261,6 +261,20 @@ def test_null_stands_where_nothing_can_be_known(tmp_path: Path) -> None:
     assert is_figure(answer["baseline"]["rms_deg"], low=0.0)
 
 
+def test_where_nothing_can_be_known_there_is_no_answer(tmp_path: Path) -> None:
+    """Eight readings could show nothing; a turn of sixteen is answered with every figure."""
+    for count in (8, 16):
+        angles = np.arange(count) * 360.0 / count
+        path = tmp_path / f"{count}.csv"
+        error = 0.2 * np.random.default_rng(count).standard_normal(count)
+        path.write_text(csv_text({"reference_deg": angles, "measured_deg": angles + 3.0 + error}))
+    refused = halltwin("explain", tmp_path / "8.csv", "--json", tmp_path / "8.json")
+    assert refused.code == 2
+    assert "8 readings; expected at least 15" in refused.err
+    assert not (tmp_path / "8.json").exists()
+    assert is_figure(explained(tmp_path / "16.csv")["baseline"]["heldout_rms_deg"], low=0.0)
+
+
 def test_without_json_nothing_is_written(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = written(folder, "clean")
     monkeypatch.chdir(tmp_path)

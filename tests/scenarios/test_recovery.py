@@ -79,16 +79,6 @@ def test_a_cause_that_cannot_show_is_refused() -> None:
         check(replace(GRID, causes=("gain_drift",)))
 
 
-def test_sweeps_too_short_for_a_search_are_refused_before_a_folder_is_made(tmp_path: Path) -> None:
-    check(replace(GRID, points=(8,)))
-    with (
-        pytest.raises(UserError, match=r"8 points and 1 turns are too few: .* 16 readings; expected at least 17"),
-        folder_of(replace(GRID, causes=(BASELINE, "clean"), points=(36, 8)), tmp_path / "s"),
-    ):
-        pass
-    assert not list(tmp_path.iterdir())
-
-
 def test_maps_have_a_colour_bar_and_the_number_of_sweeps() -> None:
     pytest.importorskip("matplotlib")
     cells = [

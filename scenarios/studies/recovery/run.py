@@ -41,21 +41,6 @@ def check(grid: Grid) -> None:
                 f"cause {cell.cause!r} does not show at {cell.points} points and {cell.turns} turns; expected "
                 f"{BASELINE}, {CLEAN} or among {', '.join(visible)}"
             )
-    searched = [cell for cell in grid.cells() if cell.cause != BASELINE]
-    if searched:
-        _require_enough(min(searched, key=lambda cell: cell.points * cell.turns))
-
-
-def _require_enough(cell: Cell) -> None:
-    """Raise UserError where the sweeps of a cell are too short to be asked for causes."""
-    from diagnosis.discovery.pipeline import State
-    from diagnosis.discovery.stages.observe import observe
-
-    chain, sweep = simulate(cell, cell.motion(), np.random.default_rng(0))
-    try:
-        observe(State.of(sweep, chain))
-    except UserError as error:
-        raise UserError(f"{cell.points} points and {cell.turns} turns are too few: {error}") from None
 
 
 @contextlib.contextmanager

@@ -13,7 +13,7 @@ import numpy as np
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
-from scenarios.studies.recovery.cells import BASELINE, CLEAN, PARAMETERS, Cell, Grid, simulate
+from scenarios.studies.recovery.cells import BASELINE, CLEAN, PARAMETERS, Cell, Grid
 from scenarios.studies.study_folder import StudyFolder
 from scenarios.studies.training.draw import drawable
 from twin.angles import Array

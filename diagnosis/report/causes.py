@@ -10,7 +10,7 @@ import numpy as np
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.data import Readings, binned, share_deg, unexplained_by
-from diagnosis.report.pictures import ANGLE, angle_bins, ways
+from diagnosis.report.pictures import ANGLE, angle_bins, by_way, ways
 from diagnosis.report.svg import Axis, Layer, Plot
 from diagnosis.report.wording import minus
 from twin.angles import TAU, Array
@@ -114,9 +114,11 @@ def _levels(values: Array, unit: str) -> Iterator[Group]:
 
 
 def _over_angle(read: Readings, share: Array, groups: list[Group]) -> Plot:
+    shown = share + read.after_deg
     layers = [
-        Layer("points", read.angle_deg[m], (share + read.after_deg)[m], f"readings{_behind(name)}", colour)
+        layer
         for name, colour, m in groups
+        for layer in by_way(read, read.angle_deg, shown, f"readings{_behind(name)}", colour=colour, among=m)
     ]
     for name, colour, m in groups:
         middles, means = binned(read.angle_deg[m], share[m], angle_bins(int(np.count_nonzero(m)), each=3))
@@ -127,12 +129,11 @@ def _over_angle(read: Readings, share: Array, groups: list[Group]) -> Plot:
 
 def _over(read: Readings, share: Array, across: Across, note: str) -> tuple[str, Plot]:
     """Note and picture of share and readings over a coordinate, in a window of it."""
-    use = np.flatnonzero((across.values >= across.window[0]) & (across.values <= across.window[1]))
+    within = (across.values >= across.window[0]) & (across.values <= across.window[1])
+    use = np.flatnonzero(within)
     use = use[np.argsort(across.values[use], kind="stable")]
-    layers = [
-        Layer("points", across.values[use], (share + read.after_deg)[use], "readings", "c-cause"),
-        Layer("line", across.values[use], share[use], "the effect", "c-cause deep"),
-    ]
+    layers = by_way(read, across.values, share + read.after_deg, "readings", colour="c-cause", among=within)
+    layers.append(Layer("line", across.values[use], share[use], "the effect", "c-cause deep"))
     words = f"the effect's share of the error over {across.label}"
     return note, Plot(Axis(across.label, across.window), Axis(_SHARE), layers, words)
 
@@ -155,7 +156,7 @@ def _spread(found: Discovery, read: Readings, effect: Effect, values: Any) -> tu
     fit = found.fit
     if effect.spread is None:
         clock, name = read.clock
-        layers = [Layer("points", clock, read.after_deg, "residual", "c-cause")]
+        layers = by_way(read, clock, read.after_deg, "residual", colour="c-cause")
         note = "The stretch that scatters more than the rest."
         return note, Plot(Axis(name), Axis("residual / deg"), layers, "residual in the order of the readings")
     sigma = np.degrees(np.sqrt(effect.spread(fit.linear.sensor_angle, values)))
@@ -164,7 +165,7 @@ def _spread(found: Discovery, read: Readings, effect: Effect, values: Any) -> tu
     middles, means = binned(read.angle_deg, np.hypot(added, rest), angle_bins(len(added), each=3))
     kept = np.isfinite(means)
     layers = [
-        Layer("points", read.angle_deg, read.after_deg, "residual", "c-cause"),
+        *by_way(read, read.angle_deg, read.after_deg, "residual", colour="c-cause"),
         Layer("line", middles[kept], 2.0 * means[kept], "two standard deviations, with the effect", "c-cause deep"),
         Layer("line", middles[kept], -2.0 * means[kept], "", "c-cause deep"),
     ]
@@ -178,7 +179,7 @@ def _single_readings(read: Readings, cause: Finding) -> tuple[str, Plot]:
     left = read.after_deg
     reach = float(np.max(np.abs(left)))
     layers = [
-        Layer("points", clock, left, "residual", "c-after"),
+        *by_way(read, clock, left, "residual", colour="c-after"),
         Layer("marks", clock[touched], left[touched], "touched readings", "c-before"),
     ]
     y = Axis("residual / deg", (-1.1 * reach, 1.1 * reach))

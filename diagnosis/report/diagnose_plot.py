@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnosis.error_model.model import ZERO
 from diagnosis.factors.findings import Findings, curve_deg
-from diagnosis.report.plotting import drawing
+from diagnosis.report.plotting import CURVE, DIRECTIONS, drawing
 from twin.angles import Array, wrap_deg
 from twin.errors import UserError
 
@@ -37,7 +37,10 @@ def fitted_figure(found: Sequence[Findings]) -> Figure:
             _panel(axis, item)
         for axis in axes.flat[len(found) :]:
             axis.set_visible(False)
-        figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+        # A sweep that turned one way only has fewer symbols than the legend names.
+        shown = [axis.get_legend_handles_labels() for axis in axes.flat]
+        named = {label: handle for pair in shown for handle, label in zip(*pair, strict=True)}
+        figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=3, frameon=False)
     return figure
 
 
@@ -49,8 +52,13 @@ def _panel(axis: Any, item: Findings) -> None:
     error = wrap_deg(sweep.measured_deg - slope * sweep.reference_deg - zero)
     pick = np.flatnonzero(~fit.outliers)[:: max(1, len(sweep) // _MOST_POINTS)]
     turn: Array = np.linspace(0.0, 360.0, 721)
-    axis.plot(shaft[pick], error[pick], ".", ms=3.0, color=_POINT, label="measured", rasterized=pick.size > 5000)
-    axis.plot(turn, curve_deg(fit, turn), "-", lw=1.2, color=_CURVE, label="fitted parameters")
+    way = sweep.motion().direction[pick]
+    for sense, colour, mark, label in DIRECTIONS:
+        chosen = pick[way == sense]
+        if chosen.size:
+            drawn = {"ms": 3.0, "mew": 0.7, "ls": "", "color": colour, "rasterized": pick.size > 5000}
+            axis.plot(shaft[chosen], error[chosen], mark, label=f"measured, {label}", **drawn)
+    axis.plot(turn, curve_deg(fit, turn), "-", lw=1.2, color=CURVE, label="fitted factors")
     axis.set(xlim=(0, 360), xticks=range(0, 361, 90), xlabel="shaft angle [deg]", ylabel="angle error [deg]")
     left = f"{np.degrees(fit.rms_rad):.3f} deg RMS left"
     hidden = f", {len(item.glitch_rows)} gross errors not shown" if item.glitch_rows else ""

@@ -8,13 +8,11 @@ import numpy as np
 
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import angle_error_deg
-from diagnosis.report.plotting import drawing
+from diagnosis.report.plotting import DIRECTIONS, drawing
 from twin.angles import Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-_DIRECTIONS = ((1.0, "#0072B2", "o", "forward"), (-1.0, "#D55E00", "^", "backward"))
 
 
 def residual_figure(found: Discovery) -> Figure:
@@ -46,11 +44,10 @@ def residual_figure(found: Discovery) -> Figure:
 
 def _panel(axis: Any, angle: Array, way: Array, values: Array, title: str) -> None:
     """Values (n,) [deg] over the angle (n,) [deg], the two directions in colours of their own."""
-    for sense, colour, mark, label in _DIRECTIONS:
+    for sense, colour, mark, label in DIRECTIONS:
         if np.any(way == sense):
-            axis.plot(
-                angle[way == sense], values[way == sense], mark, ms=2.2, mew=0, color=colour, label=label, alpha=0.7
-            )
+            drawn = {"ms": 2.4, "mew": 0.6, "color": colour, "alpha": 0.7}
+            axis.plot(angle[way == sense], values[way == sense], mark, label=label, **drawn)
     axis.set_title(f"{title}: {np.sqrt(np.mean(values**2)):.3g} deg RMS", fontsize=9)
     axis.set_xlabel("reference angle [deg]")
     axis.set_xticks(range(0, 361, 90))

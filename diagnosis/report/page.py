@@ -62,7 +62,7 @@ def _headline(answer: Mapping[str, Any]) -> str:
         ("noise floor", number(answer["noise_floor_deg"]), "deg"),
     ]
     verdict = f"Verdict: {answer['verdict']}{told}."
-    return f'<p class="verdict">{escape(verdict)}</p><p>{escape(statements.verdict_words(answer))}</p>{_cards(cards)}'
+    return f'<p class="verdict">{escape(verdict)}</p><p>{_text(statements.verdict_words(answer))}</p>{_cards(cards)}'
 
 
 def _cards(cards: list[tuple[str, str, str]]) -> str:
@@ -90,7 +90,7 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
     columns = ", ".join(f"<code>{escape(column)}</code>" for column in sweep["columns"])
     facts_said = f"{', '.join(statements.sweep_facts(sweep))}; {statements.rows_words(sweep)}"
     words = (
-        f"<p>{escape(facts_said)}.</p>"
+        f"<p>{_text(facts_said)}.</p>"
         f"<p>Columns: {columns}. The noise is best described as {escape(answer['noise'])}.</p>"
     )
     plots = _plots([("The shaft at each reading", "", drawn.protocol(read))])
@@ -99,8 +99,8 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
 
 def _baseline(answer: Mapping[str, Any], read: Readings, found: Discovery) -> str:
     words = (
-        f"<p>{escape(statements.baseline_words(answer))}. The share is one of the error's power. What stands above the "
-        f"{escape(statements.floor_words(answer))}, the simulation gets wrong.</p>"
+        f"<p>{_text(statements.baseline_words(answer))}. The share is one of the error's power. What stands above the "
+        f"{_text(statements.floor_words(answer))}, the simulation gets wrong.</p>"
     )
     limits = drawn.residual_limits(read)
     pictures = [
@@ -160,8 +160,8 @@ def _cause(
     else:
         words = f"<p>Stage: {escape(effect.stage)}. Signature in the error: {escape(minus(effect.signature))}.</p>"
     gain = (
-        f"<p>RMS on held-out readings, without it and with it: {escape(statements.held_words(cause))} deg. "
-        f"{statements.sentence(escape(statements.single_rows_words(cause)))}</p>"
+        f"<p>RMS on held-out readings, without it and with it: {_text(statements.held_words(cause))} deg. "
+        f"{statements.sentence(_text(statements.single_rows_words(cause)))}</p>"
     )
     pictures = [
         (f"Isolated: {effect_name}", caption, plot)
@@ -207,7 +207,7 @@ def _parameters(answer: Mapping[str, Any]) -> str:
     words = (
         "<p>Offsets in percent of their channel's amplitude; only the ratio of the amplitudes is visible in an angle. "
         f"The sensor counts {counting} the reference. "
-        f"{' '.join(statements.sentence(escape(words)) for words in said)}</p>"
+        f"{' '.join(statements.sentence(_text(words)) for words in said)}</p>"
     )
     return f"<h2>The factors of the error model</h2>{words}{tables.factors(answer)}"
 
@@ -215,10 +215,7 @@ def _parameters(answer: Mapping[str, Any]) -> str:
 def _invisible(answer: Mapping[str, Any]) -> str:
     if not answer["not_visible"]:
         return ""
-    words = (
-        "<p>These causes were not searched for, because this sweep could not have shown them: "
-        f"{escape(statements.invisible_words(answer))}.</p>"
-    )
+    words = "<p>These causes were not searched for, because this sweep could not have shown them.</p>"
     return f"<h2>Not visible in this sweep</h2>{words}{tables.invisible(answer['not_visible'])}"
 
 
@@ -228,6 +225,11 @@ def _provenance(answer: Mapping[str, Any]) -> str:
     if answer["command"] is None:
         return f"<footer><p>{made}, called from Python.</p></footer>"
     return f"<footer><p>{made}. The same again: <code>{escape(answer['command'])}</code></p></footer>"
+
+
+def _text(words: str) -> str:
+    """Words as HTML, with arrows and minus signs as such."""
+    return escape(minus(words.replace("->", "→")))
 
 
 def _plots(pictures: list[tuple[str, str, Plot]]) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from diagnosis.report.data import Readings, binned, highest_order, noise_level, spectrum, two_ways
-from diagnosis.report.svg import Axis, Layer, Plot
+from diagnosis.report.svg import Axis, Kind, Layer, Plot
 from twin.angles import Array
 from twin.effect import BoolArray
 
@@ -29,20 +29,34 @@ def ways(read: Readings) -> Iterator[tuple[str, str, BoolArray]]:
             yield name, colour, mask
 
 
+def by_way(
+    read: Readings, x: Array, y: Array, label: str, *, colour: str = "", among: BoolArray | None = None
+) -> list[Layer]:
+    """Readings (n,) as dots where the shaft turned forward and crosses where backward, each with its label.
+
+    Without a colour of their own they take that of their direction; ``among`` (n,) are those that are drawn.
+    """
+    symbols: dict[str, Kind] = {"forward": "points", "backward": "crosses"}
+    layers = []
+    for way, own, mask in ways(read):
+        drawn = mask if among is None else mask & among
+        if drawn.any():
+            named = label if label.endswith(way) else ", ".join(filter(None, (label, way)))
+            layers.append(Layer(symbols[way], x[drawn], y[drawn], named, colour or own))
+    return layers
+
+
 def protocol(read: Readings) -> Plot:
     """Where the shaft stood at each reading."""
     clock, name = read.clock
-    layers = [Layer("points", clock[mask], read.angle_deg[mask], way, colour) for way, colour, mask in ways(read)]
+    layers = by_way(read, clock, read.angle_deg, "")
     y = Axis("shaft angle / deg", (0.0, 360.0), (0, 90, 180, 270, 360))
     return Plot(Axis(name), y, layers, "the order in which the angles were taken")
 
 
 def error(read: Readings) -> Plot:
     """The measured error and the baseline's prediction of it."""
-    layers = [
-        Layer("points", read.angle_deg[mask], read.error_deg[mask], f"measured, {way}", colour)
-        for way, colour, mask in ways(read)
-    ]
+    layers = by_way(read, read.angle_deg, read.error_deg, "measured")
     middles, means = binned(read.angle_deg, read.predicted_deg, angle_bins(len(read.angle_deg), each=2))
     layers.append(Layer("line", *_without_gaps(middles, means), "baseline", "c-model"))
     return Plot(ANGLE, Axis(_ERROR), layers, "error of the angle over the shaft angle, and the baseline's prediction")
@@ -50,15 +64,12 @@ def error(read: Readings) -> Plot:
 
 def residual(read: Readings, values: Array, *, limits: tuple[float, float] | None = None) -> Plot:
     """A residual over the angle by direction, with its mean."""
-    layers = []
-    for way, colour, mask in ways(read):
-        layers.append(Layer("points", read.angle_deg[mask], values[mask], "readings" if mask.all() else way, colour))
+    layers = by_way(read, read.angle_deg, values, "readings")
     for way, colour, mask in ways(read):
         use = mask & read.plain
         if use.any():
             middles, means = binned(read.angle_deg[use], values[use], angle_bins(int(np.count_nonzero(use)), each=5))
-            name = "mean" if mask.all() else f"mean, {way}"
-            layers.append(Layer("line", *_without_gaps(middles, means), name, f"{colour} deep"))
+            layers.append(Layer("line", *_without_gaps(middles, means), f"mean, {way}", f"{colour} deep"))
     return Plot(ANGLE, Axis(_RESIDUAL, limits), layers, "residual over the shaft angle, by direction")
 
 
@@ -74,8 +85,8 @@ def over_clock(read: Readings) -> Plot:
     """The residual before and after in the order in which the readings were taken."""
     clock, name = read.clock
     layers = [
-        Layer("points", clock, read.before_deg, "baseline", "c-before"),
-        Layer("points", clock, read.after_deg, "extended twin", "c-after"),
+        *by_way(read, clock, read.before_deg, "baseline", colour="c-before"),
+        *by_way(read, clock, read.after_deg, "extended twin", colour="c-after"),
     ]
     return Plot(Axis(name), Axis(_RESIDUAL), layers, f"residual before and after over {name}")
 
@@ -93,8 +104,8 @@ def over_condition(read: Readings, values: Array, label: str) -> Plot:
         spread = np.mod(np.arange(values.size) * 0.618034, 1.0)
         left, right = -0.5 * margin * spread, 0.5 * margin * spread
     layers = [
-        Layer("points", values + left, read.before_deg, "baseline", "c-before"),
-        Layer("points", values + right, read.after_deg, "extended twin", "c-after"),
+        *by_way(read, values + left, read.before_deg, "baseline", colour="c-before"),
+        *by_way(read, values + right, read.after_deg, "extended twin", colour="c-after"),
     ]
     return Plot(Axis(label, limits), Axis(_RESIDUAL), layers, f"residual before and after over {label}")
 

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORMATS = (".png", ".svg", ".pdf")
+DIRECTIONS = ((1.0, "#0072B2", ".", "forward"), (-1.0, "#D55E00", "x", "backward"))
+"""Sense, colour, symbol and name of the directions, in every picture of an error."""
+CURVE = "#222222"
 STYLE = {"svg.fonttype": "none", "svg.hashsalt": "halltwin", "font.size": 9.0}
 """Text stays text and ids are fixed, so that the same data gives the same bytes."""
 

@@ -47,7 +47,9 @@ svg path { fill: none; }
 .grid { stroke: var(--grid); } .frame { stroke: var(--soft); }
 .points, .marks { stroke-linecap: round; stroke-width: 2.6; }
 .points { stroke-opacity: .5; } .few { stroke-width: 4; stroke-opacity: .75; }
-.marks { stroke-width: 7; } .sample.points { stroke-width: 7; stroke-opacity: 1; }
+.crosses { stroke-width: .9; stroke-opacity: .75; } .crosses.few { stroke-width: 1.2; stroke-opacity: .9; }
+.sample.crosses { stroke-width: 1.6; stroke-opacity: 1; } .marks { stroke-width: 7; }
+.sample.points { stroke-width: 7; stroke-opacity: 1; }
 .legend { display: flex; flex-wrap: wrap; gap: .1rem 1rem; font-size: .82rem; color: var(--soft);
   margin: 0 0 .35rem 1rem; }
 .legend svg { display: inline-block; width: 26px; height: 12px; margin-right: .35rem; vertical-align: -1px; }

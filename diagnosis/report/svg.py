@@ -20,14 +20,14 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 70.0, 16.0, 10.0, 46.0
 MOST_POINTS = 1500
 _FEW = 400
 
-Kind = Literal["points", "line", "marks"]
+Kind = Literal["points", "crosses", "line", "marks"]
 
 
 @dataclass(frozen=True, eq=False)
 class Layer:
     """One series: x and y of shape (n,), its label in the legend ("" for none) and the class of its colour.
 
-    A ``line`` is broken where y is not finite; ``marks`` are few and drawn large.
+    A ``line`` is broken where y is not finite; ``crosses`` are points of another symbol; ``marks`` are few and large.
     """
 
     kind: Kind
@@ -58,7 +58,7 @@ class Plot:
 
     def legend(self) -> str:
         """The legend as text that wraps as the page does, each label behind a sample of its layer."""
-        samples = {"line": "M1 6h24", "points": "M13 6h0", "marks": "M13 6h0"}
+        samples = {"line": "M1 6h24", "points": "M13 6h0", "crosses": "M10 3l6 6m0-6l-6 6", "marks": "M13 6h0"}
         items = "".join(
             f'<span><svg viewBox="0 0 26 12" aria-hidden="true"><path class="sample {layer.kind} {layer.colour}" '
             f'd="{samples[layer.kind]}"/></svg>{escape(layer.label)}</span>'
@@ -129,10 +129,18 @@ class _Frame:
             path = _line(x[inside], np.clip(y[inside], self.top, self.bottom))
             return f'<path class="line {layer.colour}" d="{path}"/>'
         inside = self._inside(x, y)
-        path = "".join(f"M{a:g} {b:g}h0" for a, b in thinned(x[inside], y[inside]))
         # Few points are drawn larger: nothing hides behind them.
-        kind = "points few" if layer.kind == "points" and np.count_nonzero(inside) < _FEW else layer.kind
-        return f'<path class="{kind} {layer.colour}" d="{path}"/>'
+        few = layer.kind in ("points", "crosses") and int(np.count_nonzero(inside)) < _FEW
+        places = thinned(x[inside], y[inside])
+        if layer.kind == "crosses":
+            arm = 2.4 if few else 1.6
+            path = "".join(
+                f"M{a - arm:.1f} {b - arm:.1f}l{2 * arm:.1f} {2 * arm:.1f}m0-{2 * arm:.1f}l-{2 * arm:.1f} {2 * arm:.1f}"
+                for a, b in places
+            )
+        else:
+            path = "".join(f"M{a:g} {b:g}h0" for a, b in places)
+        return f'<path class="{layer.kind}{" few" * few} {layer.colour}" d="{path}"/>'
 
     def _inside(self, x: Array, y: Array) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
         return np.asarray(

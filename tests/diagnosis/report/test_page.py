@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnosis import explain
+from diagnosis import Diagnoses, diagnose, explain
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.data import noise_level, spectrum
+from diagnosis.report.explain_plot import residual_figure
 from diagnosis.report.page import page, write_report
 from diagnosis.report.svg import MOST_POINTS, Axis, Layer, Plot, thinned
 from scenarios.commands.protocol import Protocol
@@ -187,3 +188,36 @@ def _drawn(source: Path, picture: Path, width: int) -> None:
     assert int.from_bytes(content[16:20], "big") == width
     # A blank page compresses to a few kB.
     assert len(content) > 30_000
+
+
+@pytest.mark.parametrize(("both", "ways"), [(True, {"forward", "backward"}), (False, {"forward"})])
+def test_direction_is_marked_in_every_picture_of_an_error(both: bool, ways: set[str]) -> None:
+    """By a symbol and in the legend; a spectrum alone has no readings in it."""
+    motion = Protocol(turns=2, points=120, both_directions=both).motion()
+    values = {**BASE, **CASES["glitches"], "saturation": {"k_percent": 1.0}}
+    found = explain(Chain().with_values(values).simulate(motion, seed=3))
+    html = page(found.discovery, found.to_dict())
+    figures = re.findall(r"<figure>.*?</figure>", html, flags=re.DOTALL)
+    assert len(figures) > 6
+    for figure in figures:
+        if "Spectrum" in figure:
+            continue
+        legend = re.search(r'<div class="legend">.*?</div>', figure)
+        assert legend, figure[:200]
+        assert set(re.findall("forward|backward", legend[0])) == ways
+        assert ("crosses" in figure) == both
+
+
+def test_direction_is_marked_in_the_pictures_of_matplotlib() -> None:
+    pytest.importorskip("matplotlib")
+    found = explained_case("hysteresis")[0]
+    axis = residual_figure(found).axes[0]
+    assert [text.get_text() for text in axis.get_legend().get_texts()] == ["forward", "backward"]
+    assert len({line.get_marker() for line in axis.get_lines()}) == 2
+    one, both = (
+        diagnose(Chain().with_values(BASE).simulate(Protocol(turns=1, points=72, both_directions=way).motion()))
+        for way in (False, True)
+    )
+    (legend,) = Diagnoses((*one._alone.items, *both._alone.items), one.made).plot().legends
+    said = [text.get_text() for text in legend.get_texts()]
+    assert said == ["measured, forward", "fitted factors", "measured, backward"]

@@ -6,20 +6,21 @@ import re
 
 from diagnosis.factors.series import UNITS
 from scenarios.cli.main import CRASHED
-from scenarios.commands.fail_on import COMPENSATE, DIAGNOSE, EXPLAIN, MONITOR
+from scenarios.cli.streams import READER_GONE
+from scenarios.commands.fail_on import BENCH, COMPENSATE, DIAGNOSE, EXPLAIN, MONITOR
 from scenarios.commands.progress import INTERRUPTED
 from tests.pages import GUIDE
 from twin.catalogue import CATALOGUE
 from twin.presets import preset_names
 
 PAGE = (GUIDE / "scripts.md").read_text(encoding="utf-8")
-WORDS = {"explain": EXPLAIN, "diagnose": DIAGNOSE, "monitor": MONITOR, "compensate": COMPENSATE}
+WORDS = {"explain": EXPLAIN, "diagnose": DIAGNOSE, "monitor": MONITOR, "compensate": COMPENSATE, "bench": BENCH}
 
 
 def test_words_to_fail_on() -> None:
     listed: dict[str, set[str]] = {command: set() for command in WORDS}
-    for row in re.findall(r"^\| (`(?:explain|diagnose|monitor|compensate)`[^|]*)\| ([^|]*) \|", PAGE, re.M):
-        for command in re.findall(r"`(\w+)`", row[0]):
+    for row in re.findall(r"^\| (`(?:explain|diagnose|monitor|compensate|bench)[^|]*)\| ([^|]*) \|", PAGE, re.M):
+        for command in re.findall(r"`(\w+)", row[0]):
             listed[command] |= set(re.findall(r"`([^`]+)`", row[1]))
     examples = {effect.name for effect in CATALOGUE} | set(UNITS)
     assert {command: words - examples for command, words in listed.items()} == {
@@ -31,7 +32,14 @@ def test_words_to_fail_on() -> None:
 
 
 def test_exit_codes() -> None:
-    assert [int(code) for code in re.findall(r"^\| (\d+) \|", PAGE, re.M)] == [0, 1, 2, CRASHED, INTERRUPTED]
+    assert [int(code) for code in re.findall(r"^\| (\d+) \|", PAGE, re.M)] == [
+        0,
+        1,
+        2,
+        CRASHED,
+        INTERRUPTED,
+        READER_GONE,
+    ]
 
 
 def test_presets() -> None:

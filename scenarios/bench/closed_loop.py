@@ -65,11 +65,12 @@ def run_loop(
     restart: bool,
     effects: tuple[Effect, ...] = CATALOGUE,
     seed: int,
+    command: str | None = None,
     say: Callable[[str], None],
 ) -> Loop:
     """Run the loop, the first half explained by these effects; all files lie beside ``job.output``.
 
-    A run that was broken off goes on where it was, in whichever half.
+    A run that was broken off goes on where it was, in whichever half. ``command``: the line that runs it again.
     """
     first, second = _half(job, "before"), _half(job, "after")
     with contextlib.closing(Journal(first.output, first.plan, twin=first.twin, restart=restart)) as earlier:
@@ -78,6 +79,7 @@ def run_loop(
         before = measure(first, earlier, open_bus, prepare=lambda sequence: sequence.load(None), last=False)
         say(f"measured {first.output.name}: {len(before.pretreated.kept)} readings")
         found = _explained(first.output, effects, seed)
+        found = replace(found, made=replace(found.made, command=command))
         answer = found.to_dict()
         correction = correction_of(found.extended)
         job.files.write(
@@ -111,6 +113,7 @@ def summary(loop: Loop) -> dict[str, Any]:
     """The report as plain values."""
     return {
         "schema": SCHEMA,
+        **{key: loop.answer[key] for key in ("version", "date", "seed", "command")},
         "verdict": loop.answer["verdict"],
         "causes": loop.answer["causes"],
         "orders": int(loop.correction.series.shape[1]),

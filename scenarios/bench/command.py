@@ -57,6 +57,8 @@ class Options:
     real_time: bool = False
     effect_files: Sequence[Path] = ()
     seed: int = 0
+    fail_on: Sequence[str] = ()
+    command: str | None = None
 
 
 def run(options: Options) -> None:
@@ -67,6 +69,8 @@ def run(options: Options) -> None:
     from scenarios.bench.buses import Interface, parse_options
     from scenarios.bench.faults import parse
 
+    if options.fail_on and (options.replay is not None or options.serve is not None or not options.closed_loop):
+        raise UserError("--fail-on asks about the closed loop; give --closed-loop")
     if options.replay is not None:
         _replay(options)
         return
@@ -144,15 +148,17 @@ def _files(options: Options) -> OutputFiles:
 
 def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> None:
     from scenarios.bench.buses import with_bench_faults
-    from scenarios.bench.closed_loop import lines, run_loop
+    from scenarios.bench.closed_loop import lines, run_loop, summary
     from scenarios.bench.journal import Journal
     from scenarios.bench.measure import measure
+    from scenarios.commands.fail_on import BENCH, asked, in_loop, raise_found
     from scenarios.commands.file_lock import alone
     from scenarios.commands.interrupt import interruptible
     from twin.extensions import effects_with
 
     if options.plot is not None and not options.closed_loop:
         raise UserError("--plot draws the closed loop; give --closed-loop, or draw the sweep with halltwin explain")
+    words = asked(options.fail_on, BENCH)
     job = _measurement(options)
     encoder = _encoder(options, faults)
     own_bus = with_bench_faults(open_bus, faults, options.seed)
@@ -177,11 +183,20 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
         with _bench(options, encoder, open_bus, faults, start=0):
             job = replace(job, twin=_twin_name(options))
             effects = effects_with(options.effect_files)
-            loop = run_loop(job, own_bus, restart=options.restart, effects=effects, seed=options.seed, say=print)
+            loop = run_loop(
+                job,
+                own_bus,
+                restart=options.restart,
+                effects=effects,
+                seed=options.seed,
+                command=options.command,
+                say=print,
+            )
         for line in lines(loop):
             print(line)
         job.files.write({options.plot: lambda: _picture(loop)})
         _tell_written(job)
+        raise_found(words, in_loop(summary(loop)))
 
 
 def _picture(loop: Loop) -> Any:

@@ -17,12 +17,15 @@ from scenarios.cli.options import (
     SweepFile,
     Temperatures,
     Turns,
+    fail_on_option,
     running,
     written,
 )
+from scenarios.cli.reproduce import command_line
 
 
 def bench(
+    context: typer.Context,
     output: SweepFile = Path("bench.csv"),
     closed_loop: Annotated[
         bool,
@@ -82,6 +85,9 @@ def bench(
     real_time: Annotated[bool, running("Motions take the time they would take.", "--real-time")] = False,
     effects: EffectFiles = None,
     seed: Seed = 0,
+    fail_on: Annotated[
+        list[str] | None, fail_on_option("missed (the closed loop did not reach its aim of 0.2 deg)")
+    ] = None,
 ) -> None:
     """Measure on a bench over CAN, virtual by default: stepper, reference encoder, Hall encoder, climate chamber."""
     from scenarios.bench.command import Options, run
@@ -116,5 +122,7 @@ def bench(
             real_time=real_time,
             effect_files=effects or (),
             seed=seed,
+            fail_on=fail_on or (),
+            command=command_line(context),
         )
     )

@@ -20,6 +20,7 @@ from scenarios.cli.options import (
     Workers,
     written,
 )
+from scenarios.cli.reproduce import command_line
 
 
 def generate(
@@ -74,6 +75,7 @@ def generate(
 
 
 def design(
+    context: typer.Context,
     max_error: Annotated[float, typer.Option(metavar="deg", help="Largest angle error in deg.")] = 0.5,
     tolerance: Annotated[
         str,
@@ -162,13 +164,14 @@ def design(
             mountings=mountings,
             min_yield=min_yield,
         ),
-        results=Results(best=best, plot=plot, force=force),
+        results=Results(best=best, plot=plot, force=force, command=command_line(context)),
         machines=Machines(workers=workers, scheduler=scheduler),
         seed=seed,
     )
 
 
 def recover(
+    context: typer.Context,
     output: StudyFolder,
     cause: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="baseline, clean, or a cause; may be repeated.")
@@ -205,4 +208,11 @@ def recover(
         sweeps=sweeps,
         seed=seed,
     )
-    run(grid, output, plot=plot, force=force, machines=Machines(workers=workers, scheduler=scheduler))
+    run(
+        grid,
+        output,
+        plot=plot,
+        force=force,
+        machines=Machines(workers=workers, scheduler=scheduler),
+        command=command_line(context),
+    )

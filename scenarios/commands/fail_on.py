@@ -41,6 +41,7 @@ DIAGNOSE = ("undetermined", "gross-errors", "rejected")
 MONITOR = ("drift",)
 """Beside it the name of any factor."""
 COMPENSATE = ("worse",)
+BENCH = ("missed",)
 
 
 def in_explanation(answer: Mapping[str, Any]) -> dict[str, str]:
@@ -69,6 +70,13 @@ def in_diagnoses(answer: Mapping[str, Any]) -> dict[str, str]:
             found["gross-errors"] = f"{len(sweep['glitch_rows'])} in {name}"
         found |= _rejected(name, sweep["rejected"])
     return found
+
+
+def in_loop(report: Mapping[str, Any]) -> dict[str, str]:
+    """What the report of a closed loop holds."""
+    if report["reached"]:
+        return {}
+    return {"missed": f"largest error {report['after']['largest_deg']:.3f} deg, aim {report['aim_deg']:g} deg"}
 
 
 def _undetermined(parameter: Mapping[str, Any]) -> bool:

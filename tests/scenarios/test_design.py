@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from diagnosis.report.provenance import day, version
 from scenarios.studies.design.check import check_design, magpylib_mT
 from scenarios.studies.design.options import demand_of, space_of
 from scenarios.studies.design.plot import map_figure
@@ -152,7 +154,9 @@ def test_the_study_gives_the_same_bytes_with_one_and_two_workers(tmp_path: Path)
 def test_the_command_lists_draws_and_checks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     chosen = study(diameter_mm="6,8", air_gap_mm="2,2.5")
     asked = {"space": chosen.space, "demand": chosen.demand, "machines": Machines(workers=1), "seed": 0}
-    run("imc-14bit", tmp_path / "s", results=Results(best=3), **asked)
+    run("imc-14bit", tmp_path / "s", results=Results(best=3, command="again"), **asked)
+    answer = json.loads((tmp_path / "s/best.json").read_text())
+    assert [answer[key] for key in ("version", "date", "seed", "command")] == [version(), day(), 0, "again"]
     out = capsys.readouterr().out
     assert "of 4 designs keep 0.5 deg" in " ".join(out.split())
     assert "magpylib has" in " ".join(out.split())

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios.commands.fail_on import in_diagnoses, in_explanation
+from scenarios.commands.fail_on import in_diagnoses, in_explanation, in_loop
 from tests.command_line import halltwin
 from tests.pages import ROOT
 from twin.angles import TAU
@@ -46,6 +46,21 @@ def test_what_diagnoses_hold() -> None:
     at_bound = clean | {"sweep": "c.csv", "parameters": {"quad": sure | {"at_bound": True}}, "glitch_rows": [3, 9]}
     found = in_diagnoses({"sweeps": [clean, open_end, at_bound]})
     assert found == {"undetermined": "quad of b.csv", "gross-errors": "2 in c.csv"}
+
+
+def test_what_a_closed_loop_holds() -> None:
+    report = {"after": {"largest_deg": 0.31}, "aim_deg": 0.2}
+    assert in_loop({**report, "reached": True}) == {}
+    assert in_loop({**report, "reached": False}) == {"missed": "largest error 0.310 deg, aim 0.2 deg"}
+
+
+def test_bench_fails_on_nothing_but_a_closed_loop(tmp_path: Path) -> None:
+    pytest.importorskip("can")
+    pytest.importorskip("cantools")
+    ended = halltwin("bench", "--fail-on", "missed", "-o", tmp_path / "b.csv")
+    assert ended.code == 2
+    assert "give --closed-loop" in ended.err
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(

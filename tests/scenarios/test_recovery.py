@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from diagnosis.error_model.model import Readings
+from diagnosis.report.provenance import day, version
 from scenarios.studies.machines import Machines
 from scenarios.studies.recovery.cells import BASELINE, SLOTS, Cell, Grid, bounds, simulate
 from scenarios.studies.recovery.plot import map_figures
@@ -68,10 +70,12 @@ def test_the_baseline_reaches_its_bound_and_any_number_of_workers_says_so(tmp_pa
 
 def test_the_command_asks_about_causes_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     grid = replace(GRID, causes=(BASELINE, "clean", "saturation"), noises_deg=(0.01,), amplitudes_deg=(0.2,), fits=8)
-    run(grid, tmp_path / "s", plot=True, machines=Machines(workers=2))
+    run(grid, tmp_path / "s", plot=True, machines=Machines(workers=2), command="again")
     assert "saturation" in capsys.readouterr().out
     for name in ("recovery.json", "baseline.png", "causes.png"):
         assert (tmp_path / "s" / name).stat().st_size > 0
+    answer = json.loads((tmp_path / "s/recovery.json").read_text())
+    assert [answer[key] for key in ("version", "date", "seed", "command")] == [version(), day(), GRID.seed, "again"]
 
 
 def test_a_cause_that_cannot_show_is_refused() -> None:

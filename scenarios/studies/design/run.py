@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.report.provenance import Provenance
 from scenarios.commands.outputs import JSON, PICTURE, TABLE, TOML, OutputFiles, json_text
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from scenarios.studies.design.check import Check, check_design, design_twin
@@ -80,12 +81,14 @@ def _plain(value: Any) -> Any:
 class Results:
     """What a study leaves for its reader: how many of the best designs, whether their map.
 
-    ``force``: also in place of files that the program did not write, or that were changed since.
+    ``force``: also in place of files that the program did not write, or that were changed since. ``command``: the
+    command line that makes them again.
     """
 
     best: int = 10
     plot: bool = True
     force: bool = False
+    command: str | None = None
 
 
 def run(
@@ -102,6 +105,7 @@ def run(
     from scenarios.studies.design.table import show
 
     require_within("best", results.best, 1, MOST_DESIGNS, whole=True)
+    made = Provenance.today(seed=seed, command=results.command)
     study = study_of(twin, space, demand, seed=seed)
     table, answer, best, picture = (output / name for name in ("designs.csv", "best.json", "best.toml", "map.png"))
     files = OutputFiles.checked(
@@ -119,7 +123,7 @@ def run(
         show(found, listed, study, check)
         contents: dict[Path | None, Any] = {
             table: _table(found, space),
-            answer: json_text(_answer(found, listed, study, check)),
+            answer: json_text(_answer(found, listed, study, check, made)),
             best: twin_text(design_twin(study, found["design"][winner], found["grade"][winner])),
         }
         if results.plot:
@@ -153,10 +157,13 @@ def _table(found: Mapping[str, Array], space: Space) -> str:
     return out.getvalue()
 
 
-def _answer(found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: Check) -> dict[str, Any]:
+def _answer(
+    found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: Check, made: Provenance
+) -> dict[str, Any]:
     """The best designs as plain values."""
     return {
         "schema": "halltwin.design/1",
+        **made.to_dict(),
         "demand": _plain(asdict(study.demand)),
         "designs": study.space.designs,
         "feasible": int(np.count_nonzero(feasible(found, study.demand))),

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.report.provenance import Provenance
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
@@ -88,9 +89,19 @@ def _mean(values: Any) -> float | None:
     return float(np.mean(values)) if np.size(values) else None
 
 
-def run(grid: Grid, output: Path, *, plot: bool, machines: Machines, force: bool = False) -> None:
-    """The command."""
+def run(
+    grid: Grid,
+    output: Path,
+    *,
+    plot: bool,
+    machines: Machines,
+    force: bool = False,
+    command: str | None = None,
+) -> None:
+    """The command; ``command`` is the line that makes its results again."""
     from scenarios.studies.recovery.table import show
+
+    made = Provenance.today(seed=grid.seed, command=command)
 
     answer = output / "recovery.json"
     pictures = {name: output / f"{name}.png" for name in ("baseline", "causes")} if plot else {}
@@ -99,7 +110,8 @@ def run(grid: Grid, output: Path, *, plot: bool, machines: Machines, force: bool
     with folder_of(grid, output) as folder:
         found = recover(grid, folder, machines)
         show(found)
-        contents: dict[Path | None, Any] = {answer: json_text({"schema": "halltwin.recovery/1", "cells": found})}
+        told = {"schema": "halltwin.recovery/1", **made.to_dict(), "cells": found}
+        contents: dict[Path | None, Any] = {answer: json_text(told)}
         if plot:
             from scenarios.studies.recovery.plot import map_figures
 

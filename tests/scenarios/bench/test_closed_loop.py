@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diagnosis.report.provenance import day, version
 from scenarios.bench.command import DEFAULT_TWIN, Options, run
 from twin.angles import wrap_deg
 from twin.errors import UserError
@@ -40,8 +41,10 @@ def test_the_closed_loop_names_the_hidden_effect_and_corrects_it(
     assert "saturation" not in read_preset(DEFAULT_TWIN).values
     pytest.importorskip("matplotlib")
     picture = tmp_path / "loop.png"
-    run(Options(output=tmp_path / "loop.csv", closed_loop=True, points=120, plot=picture))
+    asked = {"seed": 1, "fail_on": ["missed"], "command": "halltwin bench --closed-loop --points 120 --seed 1"}
+    run(Options(output=tmp_path / "loop.csv", closed_loop=True, points=120, plot=picture, **asked))
     report = json.loads((tmp_path / "loop-report.json").read_text())
+    assert [report[key] for key in ("version", "date", "seed", "command")] == [version(), day(), 1, asked["command"]]
     assert "saturation" in [cause["name"] for cause in report["causes"]]
     assert report["before"]["largest_deg"] > 0.8
     assert report["after"]["largest_deg"] < 0.2

@@ -148,13 +148,11 @@ def _files(options: Options) -> OutputFiles:
 
 def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> None:
     from scenarios.bench.buses import with_bench_faults
-    from scenarios.bench.closed_loop import lines, run_loop, summary
     from scenarios.bench.journal import Journal
     from scenarios.bench.measure import measure
-    from scenarios.commands.fail_on import BENCH, asked, in_loop, raise_found
+    from scenarios.commands.fail_on import BENCH, asked
     from scenarios.commands.file_lock import alone
     from scenarios.commands.interrupt import interruptible
-    from twin.extensions import effects_with
 
     if options.plot is not None and not options.closed_loop:
         raise UserError("--plot draws the closed loop; give --closed-loop, or draw the sweep with halltwin explain")
@@ -181,22 +179,29 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
             return
         # Noise is drawn anew for each pose, so both measurements may share a bench and a seed.
         with _bench(options, encoder, open_bus, faults, start=0):
-            job = replace(job, twin=_twin_name(options))
-            effects = effects_with(options.effect_files)
-            loop = run_loop(
-                job,
-                own_bus,
-                restart=options.restart,
-                effects=effects,
-                seed=options.seed,
-                command=options.command,
-                say=print,
-            )
-        for line in lines(loop):
-            print(line)
-        job.files.write({options.plot: lambda: _picture(loop)})
-        _tell_written(job)
-        raise_found(words, in_loop(summary(loop)))
+            _close_loop(options, replace(job, twin=_twin_name(options)), own_bus, words)
+
+
+def _close_loop(options: Options, job: Measurement, own_bus: Opener, words: Sequence[str]) -> None:
+    """Measure, explain, compensate, measure again; raise FoundError where what the words ask about was found."""
+    from scenarios.bench.closed_loop import lines, run_loop, summary
+    from scenarios.commands.fail_on import in_loop, raise_found
+    from twin.extensions import effects_with
+
+    loop = run_loop(
+        job,
+        own_bus,
+        restart=options.restart,
+        effects=effects_with(options.effect_files),
+        seed=options.seed,
+        command=options.command,
+        say=print,
+    )
+    for line in lines(loop):
+        print(line)
+    job.files.write({options.plot: lambda: _picture(loop)})
+    _tell_written(job)
+    raise_found(words, in_loop(summary(loop)))
 
 
 def _picture(loop: Loop) -> Any:

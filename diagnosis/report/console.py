@@ -51,7 +51,7 @@ def _sweep(sweep: Mapping[str, Any]) -> RenderableType:
 
 def _baseline(answer: Mapping[str, Any], *, wide: bool) -> RenderableType:
     rows = statements.factor_rows(answer)
-    table = _extended(rows) if answer["causes"] else _plain(rows, beside=3 if wide else 2)
+    table = _extended(rows) if rows[0].after else _plain(rows, beside=3 if wide else 2)
     said = filter(None, (statements.moved_words(answer), statements.senses_words(answer)))
     return Group(
         Text(statements.baseline_words(answer), "bold"),

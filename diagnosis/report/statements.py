@@ -143,23 +143,19 @@ class FactorRow(NamedTuple):
 
 
 def factor_rows(answer: Mapping[str, Any]) -> list[FactorRow]:
-    """The factors, in the order of the paper; ``after`` is empty where no cause was found."""
-    before, extended = answer["baseline"]["parameters"], answer["extended"]
+    """The factors, in the order of the paper; ``after`` is empty where no cause changes any of them."""
+    before = _values(answer["baseline"]["parameters"])
+    after = _values(answer["extended"]["parameters"])
+    # What touches single readings or their scatter alone leaves every factor as it is.
+    changed = bool(answer["causes"]) and before != after
     return [
-        FactorRow(
-            key,
-            label,
-            _value(before[key], key),
-            _value(extended["parameters"][key], key) if answer["causes"] else "",
-            UNITS[key],
-            _flag(answer, key),
-        )
+        FactorRow(key, label, before[key], after[key] if changed else "", UNITS[key], _flag(answer, key))
         for key, label in LABELS.items()
     ]
 
 
-def _value(parameter: Mapping[str, Any], key: str) -> str:
-    return with_unit(parameter, UNITS[key], SCALES[key])
+def _values(parameters: Mapping[str, Any]) -> dict[str, str]:
+    return {key: with_unit(parameters[key], UNITS[key], SCALES[key]) for key in LABELS}
 
 
 def _flag(answer: Mapping[str, Any], key: str) -> str:

@@ -65,10 +65,11 @@ def _interval(parameter: Mapping[str, Any], scale: float = 1.0) -> str:
 
 def factors(answer: Mapping[str, Any]) -> str:
     """The factors of the error model with their intervals, before the causes and, where there are any, with them."""
+    shown = factor_rows(answer)
     several = [answer["baseline"]["parameters"]]
-    if answer["causes"]:
+    if shown[0].after:
         several.append(answer["extended"]["parameters"])
-    flags = {row.key: row.flag for row in factor_rows(answer)}
+    flags = {row.key: row.flag for row in shown}
     rows = []
     for key, text in LABELS.items():
         cells = [cell for parameters in several for cell in _with_interval(parameters[key], SCALES[key])]

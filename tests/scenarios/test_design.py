@@ -30,7 +30,7 @@ from twin.motion import Motion
 DEFAULT = {"diameter_mm": "6", "height_mm": "2.5", "air_gap_mm": "2"}
 
 
-def study(*, sampling: str = "grid", count: int = 0, shape: str = "cylinder", **axes: str) -> DesignStudy:
+def study(*, sampling: str = "grid", count: int = 1, shape: str = "cylinder", **axes: str) -> DesignStudy:
     whole = {name: axes.get(name, DEFAULT.get(name, "0")) for name in AXES}
     space = space_of(whole, shape=shape, grades=("N35H",), bore_mm=2.0, sampling=sampling, count=count, seed=0)
     return study_of("imc-14bit", space, demand(), seed=0)
@@ -209,7 +209,7 @@ def test_what_cannot_be_is_refused() -> None:
         ("--tolerance", "tilt=90deg", "tolerance tilt is 90 deg, too large: sensor_tilt_"),
         ("--tolerance", "air_gap=400mm", "tolerance air_gap is 400 mm, too large: air_gap_mm is"),
         ("--mountings", "0", "mountings is 0"),
-        ("--count", "0", "designs is 0"),
+        ("--count", "0", "count is 0"),
         ("--max-error", "nan", "max-error is nan deg"),
     ],
 )

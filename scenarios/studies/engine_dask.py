@@ -6,12 +6,13 @@ The workers write their chunks themselves, so a cluster of several machines need
 from __future__ import annotations
 
 import contextlib
+import logging
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import Any
 
 from scenarios.studies.job import Job, do_chunk
-from scenarios.studies.machines import Machines, single_threaded
+from scenarios.studies.machines import Machines, single_threaded, unheard_interrupt
 from scenarios.studies.study_folder import StudyFolder
 from twin.errors import UserError
 
@@ -44,11 +45,15 @@ def _client(machines: Machines) -> Iterator[Any]:
         with client:
             yield client
         return
-    with (
-        LocalCluster(n_workers=machines.count, threads_per_worker=1, dashboard_address="127.0.0.1:0") as local,
-        Client(local) as client,
-    ):
-        yield client
+    with unheard_interrupt():
+        local = LocalCluster(n_workers=machines.count, threads_per_worker=1, dashboard_address="127.0.0.1:0")
+    with local, Client(local) as client:
+        try:
+            yield client
+        except KeyboardInterrupt:
+            # What Dask has to say about its workers' end is of no use to anyone.
+            logging.getLogger("distributed").setLevel(logging.CRITICAL)
+            raise
 
 
 def _rolling(client: Any, job: Job, folder: StudyFolder, waiting: Sequence[int]) -> Iterator[int]:

@@ -6,7 +6,6 @@ import contextlib
 import multiprocessing
 import os
 import signal
-import sys
 import threading
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -14,7 +13,7 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.connection import Connection
 
 from scenarios.studies.job import Job, do_chunk
-from scenarios.studies.machines import Machines, single_threaded
+from scenarios.studies.machines import Machines, single_threaded, unheard_interrupt
 from scenarios.studies.study_folder import StudyFolder
 from twin.errors import UserError
 
@@ -54,7 +53,7 @@ def _rolling(
     try:
         while True:
             for chunk in queue:
-                with _unheard_interrupt():
+                with unheard_interrupt():
                     running.add(executor.submit(do_chunk, job, folder, chunk))
                 if len(running) >= ahead:
                     break
@@ -68,19 +67,6 @@ def _rolling(
             f"{folder.path}: a worker process was killed (out of memory?); run the same command again to go on, "
             "with fewer --workers if it happens again"
         ) from None
-
-
-@contextlib.contextmanager
-def _unheard_interrupt() -> Iterator[None]:
-    """Processes started within never hear of Ctrl-C, which is the parent's to answer; it hears of it afterwards."""
-    if sys.platform == "win32":
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _leave_with_parent(heard: Connection) -> None:

@@ -11,8 +11,9 @@ from tests.mutations.parts import PARTS
 from tests.mutations.settings import settings
 from tests.mutations.signs import signs
 from tests.mutations.stages import STAGES
+from tests.mutations.studies import STUDIES
 
 
 def mutations() -> tuple[Mutation, ...]:
     """Every mutation, those by hand first."""
-    return (*BY_HAND, *NOISE, *DISCOVERY, *STAGES, *PARTS, *FILES, *settings(), *signs())
+    return (*BY_HAND, *NOISE, *DISCOVERY, *STAGES, *PARTS, *FILES, *STUDIES, *settings(), *signs())

@@ -60,7 +60,13 @@ def test_a_folder_that_was_hardly_begun_is_gone_on_with(tmp_path: Path, left: tu
 def test_only_what_is_surely_left_half_written_is_taken_away(tmp_path: Path) -> None:
     folder = study(tmp_path / "s").path
     own = ("chunks/.halltwin-0123456789abcdef.part", "done/.halltwin-fedcba9876543210.part")
-    mine = ("thesis.partial", "chunks/0.abc.partial", ".notes.part", "a/.halltwin-0123456789abcdef.part")
+    mine = (
+        "thesis.partial",
+        "chunks/.halltwin-notes.part",
+        "chunks/0.abc.partial",
+        ".notes.part",
+        "a/.halltwin-0123456789abcdef.part",
+    )
     (folder / "a").mkdir()
     for name in (*own, *mine):
         (folder / name).write_bytes(b"half")

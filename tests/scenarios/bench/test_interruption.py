@@ -18,7 +18,7 @@ import can
 import pytest
 
 from scenarios.bench.command import Options, run
-from scenarios.bench.journal import SCHEMA, running_path
+from scenarios.bench.journal import SCHEMA, finished_path, running_path
 from scenarios.bench.measure import Measurement
 from scenarios.bench.plan import Plan
 from scenarios.bench.sequence import Patience
@@ -62,6 +62,7 @@ def test_a_killed_run_goes_on(tmp_path: Path, undisturbed: tuple[Path, Path]) ->
     run(Options(output=sweep, twin=str(twin), points=64, both_directions=True))
     assert_same_readings(sweep, undisturbed[0])
     assert not journal.exists()
+    assert all(json.loads(line) for line in finished_path(sweep).read_text().splitlines())
 
 
 def test_a_journal_of_another_plan_is_not_continued(tmp_path: Path) -> None:

@@ -1,0 +1,84 @@
+"""Mutations of what keeps studies and bench from losing anything: lock, marks, journal, checks beforehand."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation
+
+_LOCK = "scenarios/commands/file_lock.py"
+_FOLDER = "scenarios/studies/study_folder.py"
+_JOURNAL = "scenarios/bench/journal.py"
+_STUDY_TESTS = "tests/scenarios/test_study_folder.py"
+_BENCH_TESTS = "tests/scenarios/bench/test_interruption.py"
+
+STUDIES: tuple[Mutation, ...] = (
+    Mutation(
+        "lock.held",
+        _LOCK,
+        "fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)",
+        "fcntl.flock(descriptor, fcntl.LOCK_UN)",
+        (f"{_STUDY_TESTS}::test_a_second_command_in_the_folder_is_refused_until_the_first_is_gone",),
+    ),
+    Mutation(
+        "study.damaged_chunk",
+        _FOLDER,
+        "if _digest(file) != digest] if wanted else None",
+        "if False] if wanted else None",
+        (f"{_STUDY_TESTS}::test_a_damaged_chunk_is_computed_anew",),
+    ),
+    Mutation(
+        "study.own_temporaries_alone",
+        _FOLDER,
+        "                if _OWN_UNFINISHED.fullmatch(left.name):\n                    _remove(left)",
+        "                _remove(left)",
+        (f"{_STUDY_TESTS}::test_only_what_is_surely_left_half_written_is_taken_away",),
+    ),
+    Mutation(
+        "study.hardly_begun",
+        _FOLDER,
+        "begun = item.name == _DONE and item.is_dir() and not any(item.iterdir())",
+        "begun = False",
+        (f"{_STUDY_TESTS}::test_a_folder_that_was_hardly_begun_is_gone_on_with",),
+    ),
+    Mutation(
+        "study.nothing_complete",
+        _FOLDER,
+        "if found == asked or self._complete():",
+        "if True:",
+        (f"{_STUDY_TESTS}::test_other_settings_are_taken_up_as_long_as_nothing_is_complete",),
+    ),
+    Mutation(
+        "design.mountable",
+        "scenarios/studies/design/run.py",
+        "    require_mountable(space, demand.tolerance)\n",
+        "",
+        ("tests/scenarios/test_design.py::test_a_mistake_in_an_option_is_one_line_and_makes_no_folder",),
+    ),
+    Mutation(
+        "journal.torn_line",
+        _JOURNAL,
+        "            self._file.truncate(self._size)\n            if not",
+        "            if not",
+        (f"{_BENCH_TESTS}::test_a_killed_run_goes_on",),
+    ),
+    Mutation(
+        "journal.without_a_reading",
+        _JOURNAL,
+        "    if not found:\n        return [], 0\n",
+        "",
+        (f"{_BENCH_TESTS}::test_a_journal_without_a_reading_blocks_nothing",),
+    ),
+    Mutation(
+        "journal.full_disk",
+        _JOURNAL,
+        "            if self._file.write(line) != len(line):\n",
+        "            if self._file.write(line) < 0:\n",
+        (f"{_BENCH_TESTS}::test_a_full_disk_is_one_line_and_room_lets_it_go_on",),
+    ),
+    Mutation(
+        "journal.closed_without_a_reading",
+        _JOURNAL,
+        "        if not self._file.closed and not self.readings:\n",
+        "        if False:\n",
+        (f"{_BENCH_TESTS}::test_a_mistake_in_an_option_is_one_line_and_leaves_nothing",),
+    ),
+)

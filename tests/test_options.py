@@ -50,6 +50,7 @@ RIGHT: dict[str, str] = {
     "--manifest": "0 36.9",
     "--timeout": "36.9",
     "--run-length": "36.9",
+    "simulate --max-size": "36.9",
     "compensate --tolerance": "0",
     "--most-causes": "0",
     "--min-yield": "0",

@@ -61,6 +61,10 @@ StudyFolder = Annotated[Path, written("Folder of the study; run again to go on."
 Force = Annotated[bool, written("Replace files that are there, whoever wrote them.", "--force", metavar=None)]
 
 # How it is run.
+MaxSize = Annotated[
+    str,
+    running("Most bytes of a sweep after decompression, e.g. 500MB; more is refused.", "--max-size", metavar="SIZE"),
+]
 Workers = Annotated[int | None, running("Worker processes; without it one for each core.", metavar="N")]
 Scheduler = Annotated[
     str | None,

@@ -11,6 +11,7 @@ from scenarios.cli.options import (
     BothDirections,
     EffectFiles,
     Force,
+    MaxSize,
     PictureFolder,
     Points,
     Seed,
@@ -43,11 +44,13 @@ def simulate(
     plot: Annotated[Path | None, written("Draw the trace: .png, .svg or .pdf.")] = None,
     force: Force = False,
     effects: EffectFiles = None,
+    max_size: MaxSize = "2GB",
     seed: Seed = 0,
 ) -> None:
     """Simulate a sweep from a twin, on a protocol or on a recorded motion."""
     from scenarios.commands.protocol import Protocol, numbers
     from scenarios.commands.simulate import Outputs, run
+    from twin.bounded_input import bytes_of
 
     protocol = Protocol(
         turns=turns,
@@ -61,6 +64,7 @@ def simulate(
         twin,
         Outputs(sweep=output, trace=trace, plot=plot, force=force),
         recorded=motion,
+        max_bytes=bytes_of(max_size),
         protocol=protocol,
         seed=seed,
         reference_lines=reference_lines,

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import EffectFiles, ErrorPlot, Force, Json, Seed, fail_on_option, written
+from scenarios.cli.options import EffectFiles, ErrorPlot, Force, Json, MaxSize, Seed, fail_on_option, written
 from scenarios.cli.reproduce import command_line
 
 
@@ -27,6 +27,7 @@ def explain(
     plot: ErrorPlot = None,
     force: Force = False,
     effects: EffectFiles = None,
+    max_size: MaxSize = "2GB",
     seed: Seed = 0,
     fail_on: Annotated[
         list[str] | None, fail_on_option("cause, the NAME of one, unexplained, or rejected (rows)")
@@ -34,9 +35,11 @@ def explain(
 ) -> None:
     """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""
     from scenarios.commands.explain import Outputs, run
+    from twin.bounded_input import bytes_of
 
     run(
         sweep,
+        max_bytes=bytes_of(max_size),
         twin=twin,
         outputs=Outputs(json=json, report=report, extended=extended, plot=plot, force=force),
         effect_files=effects or (),
@@ -59,6 +62,7 @@ def diagnose(
         written("Draw the swarm's convergence: .png, .svg or .pdf."),
     ] = None,
     force: Force = False,
+    max_size: MaxSize = "2GB",
     seed: Seed = 0,
     fail_on: Annotated[
         list[str] | None, fail_on_option("undetermined (factors), gross-errors, or rejected (rows)")
@@ -66,9 +70,11 @@ def diagnose(
 ) -> None:
     """Quantify the paper's error factors of one or many sweeps: values, intervals, what cannot be known."""
     from scenarios.commands.diagnose import run
+    from scenarios.commands.inputs import SweepFiles
+    from twin.bounded_input import bytes_of
 
     run(
-        sweeps,
+        SweepFiles(sweeps, bytes_of(max_size)),
         json_path=json,
         plot=plot,
         convergence=convergence,
@@ -104,6 +110,7 @@ def compensate(
     prefix: Annotated[str, written("Prefix of the C names.", metavar="NAME")] = "halltwin",
     force: Force = False,
     effects: EffectFiles = None,
+    max_size: MaxSize = "2GB",
     seed: Seed = 0,
     fail_on: Annotated[
         list[str] | None, fail_on_option("worse (the error is larger with the correction, on held-out readings too)")
@@ -111,12 +118,14 @@ def compensate(
 ) -> None:
     """Turn a sweep or a twin into a continuous correction, and measure it on readings it never saw."""
     from scenarios.commands.compensate import Outputs, run
+    from scenarios.commands.inputs import SweepFiles
+    from twin.bounded_input import bytes_of
 
     outputs = Outputs(header=header, table=table, points=points, toml=toml, plot=plot, prefix=prefix, force=force)
     run(
         source,
         outputs=outputs,
-        check=check or (),
+        check=SweepFiles(check or (), bytes_of(max_size)),
         temperature_c=temperature,
         tolerance_deg=tolerance,
         effect_files=effects or (),
@@ -143,14 +152,17 @@ def monitor(
         written("Draw the charts: .png, .svg or .pdf."),
     ] = None,
     force: Force = False,
+    max_size: MaxSize = "2GB",
     seed: Seed = 0,
     fail_on: Annotated[list[str] | None, fail_on_option("drift, or the NAME of a factor that drifts")] = None,
 ) -> None:
     """Chart the error factors over a series of sweeps: which one drifts, since which sweep, in which direction."""
+    from scenarios.commands.inputs import SweepFiles
     from scenarios.commands.monitor import run
+    from twin.bounded_input import bytes_of
 
     run(
-        sweeps,
+        SweepFiles(sweeps, bytes_of(max_size)),
         run_length=run_length,
         json_path=json,
         plot=plot,

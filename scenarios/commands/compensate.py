@@ -15,7 +15,7 @@ from diagnosis.correction.compensation import Correction, correction_of, to_dict
 from diagnosis.correction.compensation_c import header
 from diagnosis.correction.cross_validation import BeforeAfter, against, cross_validated
 from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
-from scenarios.commands.inputs import SweepsRead, read_sweeps, sweep_paths
+from scenarios.commands.inputs import SweepFiles, SweepsRead
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from twin.angles import TAU, Array, radians
@@ -29,6 +29,7 @@ from twin.sweep import Sweep
 _FEWEST_POINTS = 4
 _MOST_POINTS = 65536
 _COARSEST_DEG = 10.0
+_NONE = SweepFiles()
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def run(
     source: str | Path,
     *,
     outputs: Outputs,
-    check: Sequence[str] = (),
+    check: SweepFiles = _NONE,
     temperature_c: float = 25.0,
     tolerance_deg: float = 1e-3,
     effect_files: Sequence[Path] = (),
@@ -67,11 +68,11 @@ def run(
         raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
     require_within("temperature", temperature_c, COLDEST_C, HOTTEST_C, "C")
     require_within("tolerance", tolerance_deg, 0.0, _COARSEST_DEG, "deg")
-    checked_on = sweep_paths(check)
+    checked_on = check.paths()
     files = _files(outputs, inputs=[Path(source), *checked_on, *effect_files])
-    others = read_sweeps(checked_on)
-    sweep = None if is_twin(source) else Sweep.read(source)
-    if outputs.plot is not None and sweep is None and not check:
+    others = check.read(checked_on)
+    sweep = None if is_twin(source) else Sweep.read(source, max_bytes=check.max_bytes)
+    if outputs.plot is not None and sweep is None and not checked_on:
         raise UserError(f"{outputs.plot.name}: nothing to draw; give sweeps to --check the twin's correction on")
     if sweep is None:
         twin = read_twin_or_preset(source, effects=effects_with(effect_files))
@@ -86,12 +87,14 @@ def run(
         print(f"- {name}: not in the correction; a single angle reading cannot tell it")
     judged = _judge(correction, sweep, others, tolerance_deg, seed)
     for name, found, tested in judged:
-        for line in _lines(name, found, tested, other=bool(check)):
+        for line in _lines(name, found, tested, other=bool(checked_on)):
             print(line)
     for line in others.lines:
         print(line)
-    _write(files, outputs, correction, source=shown_name(source), judged=_with_own_zero(judged) if check else judged)
-    _say_where_worse(judged, fails=bool(check or words))
+    _write(
+        files, outputs, correction, source=shown_name(source), judged=_with_own_zero(judged) if checked_on else judged
+    )
+    _say_where_worse(judged, fails=bool(checked_on or words))
     others.raise_unusable()
 
 

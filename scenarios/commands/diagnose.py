@@ -8,14 +8,14 @@ from pathlib import Path
 
 from diagnosis import diagnose_many
 from scenarios.commands.fail_on import DIAGNOSE, asked, in_diagnoses, raise_found
-from scenarios.commands.inputs import read_sweeps, sweep_paths
+from scenarios.commands.inputs import SweepFiles
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.commands.progress import ended_by_interrupt, progress_line
 from scenarios.commands.terminal import terminal_width
 
 
 def run(
-    names: Sequence[str],
+    given: SweepFiles,
     *,
     json_path: Path | None = None,
     plot: Path | None = None,
@@ -27,9 +27,9 @@ def run(
 ) -> None:
     """Diagnose what the names stand for; print the answer; write JSON and pictures where asked."""
     words = asked(fail_on, DIAGNOSE)
-    paths = sweep_paths(names)
+    paths = given.paths()
     files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE), (convergence, PICTURE)], inputs=paths, force=force)
-    read = read_sweeps(paths)
+    read = given.read(paths)
     with ended_by_interrupt(), progress_line() as listener:
         found = diagnose_many(read.sweeps, seed=seed, progress=listener)
     found = replace(found, made=replace(found.made, command=command))

@@ -13,9 +13,11 @@ from diagnosis.report.page import page
 from scenarios.commands.fail_on import EXPLAIN, asked, in_explanation, raise_found
 from scenarios.commands.outputs import HTML, JSON, PICTURE, TOML, OutputFiles, json_text
 from scenarios.commands.progress import INTERRUPTED, ended_by_interrupt, progress_line
+from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.catalogue import unnamed
 from twin.extensions import effects_with
 from twin.files import twin_text
+from twin.sweep import Sweep
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +40,7 @@ def run(
     seed: int,
     fail_on: Sequence[str] = (),
     command: str | None = None,
+    max_bytes: int = LARGEST_SWEEP_BYTES,
 ) -> None:
     """The command: print the answer, write what was asked for. Raises UserError before anything is written."""
     words = _asked(fail_on, effect_files)
@@ -46,7 +49,7 @@ def run(
         inputs=[path, twin, *effect_files],
         force=outputs.force,
     )
-    found = _explained(path, twin=twin, effects=effect_files, seed=seed)
+    found = _explained(Sweep.read(path, max_bytes=max_bytes), twin=twin, effects=effect_files, seed=seed)
     found = replace(found, made=replace(found.made, command=command))
     answer = found.to_dict()
     try:
@@ -74,7 +77,7 @@ def _asked(given: Sequence[str], effect_files: Sequence[Path]) -> tuple[str, ...
     return asked(given, (*EXPLAIN, *causes))
 
 
-def _explained(path: Path, **given: Any) -> Explanation:
+def _explained(sweep: Sweep, **given: Any) -> Explanation:
     """The answer, with a line that says where the search stands; Ctrl-C gives the answer so far, twice none."""
     with ended_by_interrupt(), progress_line("Ctrl-C: the answer so far") as listener:
-        return explain(path, **given, progress=listener, on_interrupt="answer")
+        return explain(sweep, **given, progress=listener, on_interrupt="answer")

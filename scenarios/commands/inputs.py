@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import glob
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from scenarios.commands.fail_on import FoundError
+from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError, UserError
 from twin.shown_name import shown_name
 from twin.sweep import Sweep
@@ -55,8 +57,9 @@ class SweepsRead:
 
     @property
     def lines(self) -> list[str]:
-        """The files that were left out, as a person reads it."""
-        return [f"not used: {one.file}: {one.reason}" for one in self.unusable]
+        """Which files hold the same, and which were left out, as a person reads it."""
+        alike = [f"the same readings, not several measurements: {', '.join(names)}" for names in the_same(self.sweeps)]
+        return [*alike, *(f"not used: {one.file}: {one.reason}" for one in self.unusable)]
 
     def listed(self) -> list[dict[str, str]]:
         """The files that were left out, for the JSON."""
@@ -69,13 +72,38 @@ class SweepsRead:
             raise FoundError(f"{count} of {count + len(self.sweeps)} files could not be used; they are listed above")
 
 
-def read_sweeps(paths: Sequence[Path]) -> SweepsRead:
+def the_same(sweeps: Sequence[Sweep]) -> list[list[str]]:
+    """Names of sweeps that hold the very same readings, group by group."""
+    groups: dict[bytes, list[str]] = {}
+    for sweep in sweeps:
+        key = hashlib.sha256(sweep.reference_deg.tobytes() + sweep.measured_deg.tobytes()).digest()
+        groups.setdefault(key, []).append(shown_name(sweep.name))
+    return [names for names in groups.values() if len(names) > 1]
+
+
+@dataclass(frozen=True)
+class SweepFiles:
+    """Sweeps as they are named on the command line, and how many bytes each may hold after decompression."""
+
+    names: Sequence[str] = ()
+    max_bytes: int = LARGEST_SWEEP_BYTES
+
+    def paths(self) -> list[Path]:
+        """See :func:`sweep_paths`."""
+        return sweep_paths(self.names)
+
+    def read(self, paths: Sequence[Path]) -> SweepsRead:
+        """See :func:`read_sweeps`."""
+        return read_sweeps(paths, max_bytes=self.max_bytes)
+
+
+def read_sweeps(paths: Sequence[Path], *, max_bytes: int = LARGEST_SWEEP_BYTES) -> SweepsRead:
     """Read these files; one that is no sweep is left out and listed. Raises SweepError where none can be used."""
     sweeps, unusable = [], []
     first: SweepError | None = None
     for path in paths:
         try:
-            sweeps.append(Sweep.read(path))
+            sweeps.append(Sweep.read(path, max_bytes=max_bytes))
         except SweepError as error:
             first = first or error
             name = shown_name(path)

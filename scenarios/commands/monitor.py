@@ -12,7 +12,7 @@ from diagnosis.factors.control_chart import BOTH, WEIGHT, Chart
 from diagnosis.factors.series import FEWEST_SWEEPS, RUN_LENGTH, UNITS, MonitoredSeries, monitor, turns_of
 from diagnosis.report.provenance import Provenance
 from scenarios.commands.fail_on import MONITOR, asked, raise_found
-from scenarios.commands.inputs import read_sweeps, sweep_paths
+from scenarios.commands.inputs import SweepFiles, the_same
 from scenarios.commands.monitor_text import show, way
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from twin.errors import UserError
@@ -23,7 +23,7 @@ LONGEST_RUN = 1e6
 
 
 def run(
-    names: Sequence[str],
+    given: SweepFiles,
     *,
     run_length: float = RUN_LENGTH,
     json_path: Path | None = None,
@@ -38,9 +38,9 @@ def run(
     made = Provenance.today(seed=seed, command=command)
     if not 10.0 <= run_length <= LONGEST_RUN:
         raise UserError(f"run length is {run_length:g}; expected 10 to {LONGEST_RUN:g} sweeps between false alarms")
-    paths = sweep_paths(names)
+    paths = given.paths()
     files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE)], inputs=paths, force=force)
-    read = read_sweeps(paths)
+    read = given.read(paths)
     found = monitor(series(read.sweeps), rng=np.random.default_rng(seed), run_length=run_length)
     answer = {**to_dict(found, made), "unusable": read.listed()}
     try:
@@ -69,6 +69,10 @@ def series(read: Sequence[Sweep]) -> list[Sweep]:
     if len(sweeps) < FEWEST_SWEEPS:
         raise UserError(
             f"{len(sweeps)} sweeps; expected at least {FEWEST_SWEEPS}, as files or as turns of one file (column turn)"
+        )
+    for alike in the_same(sweeps):
+        raise UserError(
+            f"{' and '.join(alike)} hold the same readings, so nothing can drift; give each measurement once"
         )
     return sweeps
 

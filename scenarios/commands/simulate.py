@@ -11,6 +11,7 @@ from scenarios.commands.outputs import PICTURE, SWEEP, TABLE, OutputFiles
 from scenarios.commands.protocol import Protocol
 from scenarios.commands.trace import trace, trace_text
 from scenarios.commands.trace_plot import trace_figure
+from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.extensions import effects_with
 from twin.presets import read_twin_or_preset
 from twin.reference.encoder import Encoder
@@ -41,6 +42,7 @@ def run(
     seed: int,
     reference_lines: int | None = None,
     effect_files: Sequence[Path] = (),
+    max_bytes: int = LARGEST_SWEEP_BYTES,
 ) -> None:
     """Simulate on the protocol, or on the motion of a recorded sweep, and write what was asked for.
 
@@ -55,7 +57,7 @@ def run(
     if reference_lines is not None:
         chain = replace(chain, encoder=replace(chain.encoder or Encoder(), lines=reference_lines))
     # A recorded motion holds the reference's readings: the shaft is where its errors are undone.
-    motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded).motion())
+    motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded, max_bytes=max_bytes).motion())
     sweep = chain.simulate(motion, seed=seed)
     contents: dict[Path | None, Any] = {outputs.sweep: lambda: csv_text(sweep.columns)}
     if outputs.trace is not None or outputs.plot is not None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from scenarios.commands import compensate, diagnose, monitor
-from scenarios.commands.inputs import sweep_paths
+from scenarios.commands.inputs import SweepFiles, sweep_paths
 from twin.angles import TAU
 from twin.chain import Chain
 from twin.errors import UserError
@@ -43,7 +43,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_diagnose_one(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     target, picture, other = tmp_path / "a.json", tmp_path / "a.png", tmp_path / "b.svg"
     pytest.importorskip("matplotlib")
-    diagnose.run([str(folder / "sweep00.csv")], json_path=target, plot=picture, convergence=other)
+    diagnose.run(SweepFiles([str(folder / "sweep00.csv")]), json_path=target, plot=picture, convergence=other)
     shown = capsys.readouterr().out
     assert "gain ratio" in shown
     assert "would look the same" in shown
@@ -60,7 +60,7 @@ def test_diagnose_many_and_twice_the_same_bytes(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for name in ("a.json", "b.json"):
-        diagnose.run([str(folder)], json_path=tmp_path / name, seed=3)
+        diagnose.run(SweepFiles([str(folder)]), json_path=tmp_path / name, seed=3)
     assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
     assert len(json.loads((tmp_path / "a.json").read_text())["sweeps"]) == 24
     assert "sweep23.csv" in capsys.readouterr().out
@@ -77,7 +77,7 @@ def test_diagnose_uses_several_air_gaps(tmp_path: Path, capsys: pytest.CaptureFi
         measured = np.degrees(np.arctan2(y, x)) + 0.01 * rng.standard_normal(180)
         columns = {"reference_deg": np.degrees(angle), "measured_deg": measured, "vx": x, "vy": y}
         Sweep.from_columns(columns).write(tmp_path / f"{name}.csv")
-    diagnose.run([str(tmp_path)], json_path=tmp_path / "a.json")
+    diagnose.run(SweepFiles([str(tmp_path)]), json_path=tmp_path / "a.json")
     assert "air gaps: gain ratio and phase change" in capsys.readouterr().out
     laws = {law["part"]: law["best"] for law in json.loads((tmp_path / "a.json").read_text())["air_gaps"]}
     assert laws["gain mismatch and phase"] == "grows with the field"
@@ -110,7 +110,9 @@ def test_compensate_a_sweep(folder: Path, tmp_path: Path, capsys: pytest.Capture
 
 def test_compensate_a_twin_on_another_sweep(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_twin(tmp_path / "twin.toml", device())
-    compensate.run(tmp_path / "twin.toml", outputs=compensate.Outputs(), check=[str(folder / "sweep01.csv")])
+    compensate.run(
+        tmp_path / "twin.toml", outputs=compensate.Outputs(), check=SweepFiles([str(folder / "sweep01.csv")])
+    )
     line = next(text for text in capsys.readouterr().out.splitlines() if text.startswith("on sweep01.csv"))
     before, after = (float(part) for part in line.split("RMS")[1].split("deg")[0].split("->"))
     assert before > 0.3
@@ -128,7 +130,7 @@ def test_compensate_mistakes(folder: Path, tmp_path: Path) -> None:
 
 def test_monitor_names_the_factor_that_drifts(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("matplotlib")
-    monitor.run([str(folder)], json_path=tmp_path / "m.json", plot=tmp_path / "m.png")
+    monitor.run(SweepFiles([str(folder)]), json_path=tmp_path / "m.json", plot=tmp_path / "m.png")
     assert "drift: gain_ratio up" in capsys.readouterr().out
     first = json.loads((tmp_path / "m.json").read_text())["first"]
     assert first["factor"] == "gain_ratio"
@@ -146,12 +148,21 @@ def test_monitor_takes_the_turns_of_one_file(tmp_path: Path, capsys: pytest.Capt
     angle = np.tile(TAU * np.arange(40) / 40, 8)
     turn = np.repeat(np.arange(8), 40)
     device().simulate(Motion.from_angle(angle, turn=turn), seed=0).write(tmp_path / "turns.csv")
-    monitor.run([str(tmp_path / "turns.csv")])
+    monitor.run(SweepFiles([str(tmp_path / "turns.csv")]))
     assert "8 sweeps" in capsys.readouterr().out
 
 
 def test_monitor_mistakes(folder: Path) -> None:
     with pytest.raises(UserError, match="expected at least 5"):
-        monitor.run([str(folder / "sweep00.csv")])
+        monitor.run(SweepFiles([str(folder / "sweep00.csv")]))
     with pytest.raises(UserError, match="run length"):
-        monitor.run([str(folder)], run_length=2.0)
+        monitor.run(SweepFiles([str(folder)]), run_length=2.0)
+
+
+def test_the_same_readings_again_are_no_series(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Between identical files nothing scatters, so that the last digit would pass for a drift."""
+    names = [str(folder / "sweep00.csv")] * 5
+    with pytest.raises(UserError, match=r"sweep00\.csv and sweep00\.csv .* hold the same readings"):
+        monitor.run(SweepFiles(names))
+    diagnose.run(SweepFiles(names[:2]))
+    assert "the same readings, not several measurements: sweep00.csv, sweep00.csv" in capsys.readouterr().out

@@ -18,6 +18,9 @@ PEAKS = 8
 _FEW = 64
 """So few independent frequencies are all tried; a transform pays for more."""
 _LARGEST_GRID = 1 << 21
+_BINS_A_READING = 1024
+"""A clock that runs evenly takes four bins a reading, one with pauses more: a hundred readings over a year no more than
+this, so that they take no longer than a day's."""
 
 
 def line_shapes(
@@ -128,7 +131,7 @@ def _spectra(matched: Sequence[Array], fit: Fit, effect: Effect, clock: Array) -
     turning = np.exp(-1j * TAU * middle * clock)
     amplitudes = [(quadrature[k] - 1j * quadrature[k + 1]) * turning for k in range(0, len(quadrature) - 1, 2)]
     bins = 1 << int(np.ceil(np.log2(max(OVERSAMPLING * 2.0 * high * span, 64.0))))
-    bins = min(bins, _LARGEST_GRID)
+    bins = min(bins, _LARGEST_GRID, 1 << (_BINS_A_READING * clock.size - 1).bit_length())
     period = OVERSAMPLING * span
     place = (clock - clock.min()) / period * bins
     powers = []

@@ -31,18 +31,14 @@ class Failure:
 
 def batch(kind: str, numbers: Sequence[int], *, seed: int, plain: float) -> tuple[list[str], list[Failure]]:
     """Try some inputs one after the other: how each ended, and those that failed."""
-    from tests.fuzz.calls import FAILED, accepted, trial
+    from tests.fuzz.calls import FAILED, trial
     from tests.fuzz.trial import MemoryWatch
 
     resource.setrlimit(resource.RLIMIT_AS, (_ADDRESS_SPACE_GB << 30, resource.getrlimit(resource.RLIMIT_AS)[1]))
     watch = MemoryWatch(plain_mb=plain)
-    source, search = ("sweeps", True) if kind == "explain" else (kind, False)
     how, failures = [], []
     for number in numbers:
-        if search and not accepted(number, seed):
-            how.append("not readable")
-            continue
-        ended, ending, raw = trial(source, number, seed, search=search)
+        ended, ending, raw = trial(kind, number, seed)
         ended = watch.judged(ended)
         how.append(ended.how)
         if ended.how == FAILED:

@@ -28,20 +28,45 @@ def recorded() -> dict[str, bytes]:
 
 
 def mutated(rng: Generator) -> tuple[str, bytes]:
-    """The ending of a log and its bytes, with one to thirty places changed."""
+    """The ending of a log and its bytes: frames of it lost, doubled or moved, or one to thirty places changed."""
     ending = str(rng.choice(FORMATS))
-    raw = bytearray(recorded()[ending])
-    for _ in range(int(rng.integers(1, 30))):
-        place, change = int(rng.integers(0, len(raw) + 1)), rng.random()
-        if change < 0.5:
-            raw[place : place + 1] = bytes([int(rng.integers(0, 256))])
+    raw = recorded()[ending]
+    if ending != ".blf" and rng.random() < 0.7:
+        raw = _frames_changed(raw, rng)
+    if rng.random() < 0.5:
+        raw = _bytes_changed(raw, rng)
+    return ending, raw
+
+
+def _frames_changed(raw: bytes, rng: Generator) -> bytes:
+    """Lines, each of which is a frame, lost, doubled, moved, or with another digit."""
+    lines = raw.split(b"\n")
+    for _ in range(int(rng.integers(1, 20))):
+        k, to = (int(place) for place in rng.integers(0, len(lines), 2))
+        change = rng.random()
+        if change < 0.3:
+            del lines[k]
+        elif change < 0.5:
+            lines.insert(to, lines[k])
         elif change < 0.7:
-            raw[place : place + int(rng.integers(1, 40))] = b""
+            lines.insert(min(k + 1, to), lines.pop(k))
+        elif lines[k]:
+            place = int(rng.integers(0, len(lines[k])))
+            lines[k] = lines[k][:place] + bytes(rng.choice(list(b"0123456789ABCDEF"), 1)) + lines[k][place + 1 :]
+    return b"\n".join(lines)
+
+
+def _bytes_changed(raw: bytes, rng: Generator) -> bytes:
+    found = bytearray(raw)
+    for _ in range(int(rng.integers(1, 30))):
+        place, change = int(rng.integers(0, len(found) + 1)), rng.random()
+        if change < 0.5:
+            found[place : place + 1] = bytes([int(rng.integers(0, 256))])
+        elif change < 0.7:
+            found[place : place + int(rng.integers(1, 40))] = b""
         elif change < 0.9:
-            raw[place:place] = rng.choice([b"\n", b"0", b"F" * 20, b"-1 ", b"\x00" * 8, b"9" * 30, b"nan "])
+            found[place:place] = rng.choice([b"\n", b"0", b"F" * 20, b"-1 ", b"\x00" * 8, b"9" * 30, b"nan "])
         else:
-            start = int(rng.integers(0, len(raw) + 1))
-            raw[place:place] = raw[start : start + int(rng.integers(1, 400))]
-    if rng.random() < 0.1:
-        raw = raw[: int(rng.integers(0, len(raw) + 1))]
-    return ending, bytes(raw)
+            start = int(rng.integers(0, len(found) + 1))
+            found[place:place] = found[start : start + int(rng.integers(1, 400))]
+    return bytes(found[: int(rng.integers(0, len(found) + 1))] if rng.random() < 0.1 else found)

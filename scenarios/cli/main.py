@@ -27,9 +27,9 @@ app = typer.Typer(
 
 def _tell_version(asked: bool) -> None:
     if asked:
-        from importlib import metadata
+        from diagnosis.report.provenance import version
 
-        typer.echo(f"halltwin {metadata.version('halltwin')}")
+        print(f"halltwin {version()}")
         raise typer.Exit
 
 

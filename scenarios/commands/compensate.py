@@ -14,6 +14,7 @@ from diagnosis.correction.calibration import calibrate
 from diagnosis.correction.compensation import Correction, correction_of, to_dict
 from diagnosis.correction.compensation_c import header
 from diagnosis.correction.cross_validation import BeforeAfter, against, cross_validated
+from scenarios.commands.compensate_text import show
 from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
 from scenarios.commands.inputs import SweepFiles, SweepsRead
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
@@ -79,16 +80,8 @@ def run(
         correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)
     else:
         correction = _of_readings(tolerance_deg, seed)(*_angles(sweep))
-    print(
-        f"{shown_name(source)}: shaft = {correction.slope:+d} x reading {-np.degrees(correction.zero_rad):+.4f} deg + "
-        f"{correction.series.shape[1]} orders, the largest {_largest_deg(correction):.4f} deg"
-    )
-    for name in correction.left_out:
-        print(f"- {name}: not in the correction; a single angle reading cannot tell it")
     judged = _judge(correction, sweep, others, tolerance_deg, seed)
-    for name, found, tested in judged:
-        for line in _lines(name, found, tested, other=bool(checked_on)):
-            print(line)
+    show(shown_name(source), correction, [row for one in judged for row in _rows(*one, other=bool(checked_on))])
     for line in others.lines:
         print(line)
     _write(
@@ -130,13 +123,12 @@ def _judge(
     return [("on held-out blocks", found, sweep)]
 
 
-def _lines(name: str, found: BeforeAfter, tested: Sweep, *, other: bool) -> list[str]:
+def _rows(name: str, found: BeforeAfter, tested: Sweep, *, other: bool) -> list[tuple[str, BeforeAfter]]:
     """As it is and, where the reference may have found its zero anew, with each turn's own zero taken out."""
-    lines = [_line(name, found)]
-    turn = _turns(tested)
+    rows, turn = [(name, found)], _turns(tested)
     if other or np.unique(turn).size > 1:
-        lines.append(_line("  each turn's own zero taken out", found.per_turn(turn)))
-    return lines
+        rows.append(("  each turn's own zero taken out", found.per_turn(turn)))
+    return rows
 
 
 def _say_where_worse(judged: Sequence[tuple[str, BeforeAfter, Sweep]], *, fails: bool) -> None:
@@ -158,11 +150,6 @@ def _say_where_worse(judged: Sequence[tuple[str, BeforeAfter, Sweep]], *, fails:
 
 def _turns(sweep: Sweep) -> Array:
     return np.zeros(len(sweep)) if sweep.turn is None else sweep.turn
-
-
-def _line(name: str, found: BeforeAfter) -> str:
-    (rms, rms_after), (peak, peak_after) = found.rms_deg, found.peak_deg
-    return f"{name:34} RMS {rms:.4f} -> {rms_after:.4f} deg   largest {peak:.4f} -> {peak_after:.4f} deg"
 
 
 Judged = list[tuple[str, BeforeAfter, Sweep]]
@@ -212,8 +199,3 @@ def _table(correction: Correction, points: int) -> str:
     for row in rows:
         out.write(",".join(f"{value:.6f}" for value in row) + "\n")
     return out.getvalue()
-
-
-def _largest_deg(correction: Correction) -> float:
-    sizes = np.hypot(correction.series[0], correction.series[1])
-    return float(np.degrees(sizes.max())) if sizes.size else 0.0

@@ -8,6 +8,7 @@ from tests.mutations.files import FILES
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
 from tests.mutations.parts import PARTS
+from tests.mutations.scripts import SCRIPTS
 from tests.mutations.settings import settings
 from tests.mutations.signs import signs
 from tests.mutations.stages import STAGES
@@ -16,4 +17,4 @@ from tests.mutations.studies import STUDIES
 
 def mutations() -> tuple[Mutation, ...]:
     """Every mutation, those by hand first."""
-    return (*BY_HAND, *NOISE, *DISCOVERY, *STAGES, *PARTS, *FILES, *STUDIES, *settings(), *signs())
+    return (*BY_HAND, *NOISE, *DISCOVERY, *STAGES, *PARTS, *FILES, *STUDIES, *SCRIPTS, *settings(), *signs())

@@ -14,7 +14,7 @@ from tests.benchmarks.throughput import largest_difference_deg
 from twin.angles import wrap
 from twin.chain import Chain
 from twin.errors import UserError
-from twin.files import from_dict, to_dict
+from twin.files import from_dict, to_dict, write_twin
 from twin.presets import preset_names, read_preset, read_twin_or_preset
 from twin.sweep import Sweep
 
@@ -122,6 +122,17 @@ def test_draws_the_trace(tmp_path: Path) -> None:
         outputs = Outputs(sweep=tmp_path / "s.csv", plot=tmp_path / name)
         run("hall-misaligned", outputs, recorded=None, protocol=Protocol(), seed=0)
         assert (tmp_path / name).stat().st_size > 5_000
+
+
+def test_a_file_that_bears_a_presets_name_is_not_passed_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_twin(tmp_path / "imc-14bit", Chain().with_effect("zero", zero_deg=12.0))
+    with pytest.raises(UserError, match=r"imc-14bit: is a preset and also a file here; give the file as \./imc-14bit"):
+        read_twin_or_preset("imc-14bit")
+    assert read_twin_or_preset("./imc-14bit").values == {"zero": {"zero_deg": 12.0}}
+    # A study's folder of that name is none.
+    (tmp_path / "paper-encoder").mkdir()
+    assert to_dict(read_twin_or_preset("paper-encoder")) == to_dict(read_preset("paper-encoder"))
 
 
 @pytest.mark.parametrize(

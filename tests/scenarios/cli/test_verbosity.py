@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from importlib import metadata
 from pathlib import Path
 from unittest import mock
 
 import pytest
 from typer.main import get_command
 
+from diagnosis.report.provenance import version
 from scenarios.cli import main
 from scenarios.cli.main import app
 from tests import command_line
@@ -37,7 +37,7 @@ def test_no_two_options_of_a_command_share_a_name() -> None:
 
 
 def test_version_and_completion() -> None:
-    assert halltwin("--version").out == f"halltwin {metadata.version('halltwin')}\n"
+    assert halltwin("--version").out == f"halltwin {version()}\n"
     assert "--install-completion" in halltwin("-h").out
 
 
@@ -66,7 +66,7 @@ def test_verbose_says_on_stderr_what_is_done_and_leaves_the_answer_alone() -> No
     lines = told.err.splitlines()
     assert all(re.match(r" *\d+ ms  ", line) for line in lines)
     for said in (
-        rf"halltwin {re.escape(metadata.version('halltwin'))}, Python 3",
+        rf"halltwin {re.escape(version())}, Python 3",
         r"command: halltwin explain .*bench_sweep\.csv --verbose",
         r"read bench_sweep\.csv: 1440 rows, 0 rejected; .*reference_deg",
         r"seed 0; settings: .*false_alarm\w* 0\.01",

@@ -140,6 +140,17 @@ def test_a_design_is_its_own_twin_simulated(axes: dict[str, str]) -> None:
     assert check.field_mT == pytest.approx(check.magpylib_mT, rel=1e-6)
 
 
+@pytest.mark.parametrize("sampling", ["grid", "lhs", "sobol"])
+def test_a_design_does_not_depend_on_which_others_are_asked_for(sampling: str) -> None:
+    space = study(sampling=sampling, count=40, diameter_mm="4:9:1", air_gap_mm="1:3:0.5", height_mm="2,3").space
+    numbers = np.array([33, 5, 17])
+    for some, every in zip(space.table(numbers), space.table(), strict=True):
+        assert np.array_equal(some, every[numbers])
+    if sampling == "grid":
+        # The last axis that is varied, the air gap, runs fastest.
+        assert space.table()[0][:6, 3].tolist() == [1.0, 1.5, 2.0, 2.5, 3.0, 1.0]
+
+
 def test_the_study_gives_the_same_bytes_with_one_and_two_workers(tmp_path: Path) -> None:
     chosen = study(sampling="sobol", count=33, diameter_mm="4,10", air_gap_mm="1,3", magnet_tilt_deg="0,2")
     for count, name in ((2, "two"), (1, "one")):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,7 +11,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from scenarios.studies.design.field import Designs
-from twin.angles import TAU, Array
+from twin.angles import TAU, Array, IntArray
 from twin.errors import UserError
 from twin.limits import OutOfRangeError
 from twin.magnet.magnet import Magnet, Shape
@@ -73,12 +72,14 @@ class Space:
             return self.count
         return len(self.grades) * math.prod(len(self.axes[name]) for name in AXES)
 
-    def table(self) -> tuple[Array, Array]:
-        """All designs: columns of AXES (designs, 9), and which grade (designs,)."""
+    def table(self, numbers: IntArray | None = None) -> tuple[Array, Array]:
+        """Designs by number, or all of them: columns of AXES (designs, 9), and which grade (designs,)."""
+        chosen = np.arange(self.designs) if numbers is None else numbers
         if self.sampling == "grid":
-            rows = list(itertools.product(range(len(self.grades)), *(self.axes[name] for name in AXES)))
-            whole = np.array(rows, dtype=np.float64)
-            return whole[:, 1:], whole[:, 0]
+            sizes = (len(self.grades), *(len(self.axes[name]) for name in AXES))
+            which, *places = np.unravel_index(chosen, sizes)
+            columns = [np.asarray(self.axes[name])[place] for name, place in zip(AXES, places, strict=True)]
+            return np.stack(columns, axis=1), which.astype(np.float64)
         from scipy.stats import qmc
 
         rng, dimensions = np.random.default_rng(self.seed), len(AXES) + 1
@@ -90,7 +91,7 @@ class Space:
         low = np.array([min(self.axes[name]) for name in AXES])
         high = np.array([max(self.axes[name]) for name in AXES])
         which = np.minimum(np.floor(unit[:, -1] * len(self.grades)), len(self.grades) - 1)
-        return low + (high - low) * unit[:, :-1], which
+        return (low + (high - low) * unit[:, :-1])[chosen], which[chosen]
 
     def assemble(self, table: Array, which: Array) -> Designs:
         """The designs of these rows. A remanence of 0 stands for the grade's own."""

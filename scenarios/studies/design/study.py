@@ -75,11 +75,10 @@ class DesignStudy:
 
     def write(self, folder: StudyFolder, chunk: int) -> list[Path]:
         """See :class:`scenarios.studies.job.Job`."""
-        table, which = self.space.table()
-        rows = slice(chunk * self.chunk, min((chunk + 1) * self.chunk, len(table)))
-        numbers = np.arange(len(table))[rows]
-        designs = self.space.assemble(table[rows], which[rows])
-        return folder.save(chunk, {"design": table[rows], "grade": which[rows], **self.figures(designs, numbers)})
+        numbers = np.arange(chunk * self.chunk, min((chunk + 1) * self.chunk, self.space.designs))
+        table, which = self.space.table(numbers)
+        designs = self.space.assemble(table, which)
+        return folder.save(chunk, {"design": table, "grade": which, **self.figures(designs, numbers)})
 
     def figures(self, designs: Designs, numbers: IntArray) -> dict[str, Array]:
         """Columns (designs,) by name; ``numbers`` (designs,) are what the mounting errors are drawn from."""

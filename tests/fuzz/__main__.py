@@ -17,6 +17,7 @@ from tests.fuzz.batch import Failure, batch, plain_mb
 KINDS = {"sweeps": 20_000, "explain": 2_000, "twins": 5_000, "logs": 1_000, "options": 500}
 """How many of each are tried unless told otherwise."""
 _BATCH = 25
+_BATCHES_A_PROCESS = 40
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -52,10 +53,19 @@ def _tried(kind: str, count: int, asked: argparse.Namespace) -> int:
 
 def _outcomes(kind: str, numbers: range, asked: argparse.Namespace) -> Iterator[tuple[list[str], list[Failure]]]:
     batches = [list(numbers[k : k + _BATCH]) for k in range(0, len(numbers), _BATCH)]
-    # A process tries a few batches: the most memory that it ever held is that of one of them.
-    with ProcessPoolExecutor(asked.jobs, mp_context=get_context("spawn"), max_tasks_per_child=40) as pool:
+    with _pool(1) as pool:
         plain = pool.submit(plain_mb).result()
-        yield from pool.map(partial(batch, kind, seed=asked.seed, plain=plain), batches)
+    work = partial(batch, kind, seed=asked.seed, plain=plain)
+    # A process tries some batches: the most memory that it ever held is that of one of them. A pool's own way to
+    # replace its processes can leave it without any (max_tasks_per_child, CPython's issue 115634).
+    together = _BATCHES_A_PROCESS * asked.jobs
+    for start in range(0, len(batches), together):
+        with _pool(asked.jobs) as pool:
+            yield from pool.map(work, batches[start : start + together])
+
+
+def _pool(jobs: int) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(jobs, mp_context=get_context("spawn"))
 
 
 if __name__ == "__main__":

@@ -240,6 +240,8 @@ BAD_TWINS = {
     "a sense of 2": (HEAD + "sensor_sense = 2\n", ("sensor_sense", "2", "1 or -1")),
     "a magnet that is a number": (HEAD + "magnet = 3\n", ("magnet", "3", "table")),
     "a word for the magnet": (HEAD + '[magnet]\nshape = "blob"\n', ("magnet", "blob")),
+    "a size of another shape": (HEAD + f"[magnet]\nlength_mm = {'9' * 400}\n", ("length_mm", "from 0.1 to 200 mm")),
+    "no bore": (HEAD + "[magnet]\nbore_mm = nan\n", ("bore_mm is nan", "from 0 to 200 mm")),
     "an unknown part of the magnet": (HEAD + "[magnet]\nfoo = 3\n", ("magnet", "foo")),
 }
 

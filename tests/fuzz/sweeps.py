@@ -116,8 +116,8 @@ def _noisy(table: Table, rng: Generator) -> Table:
 
 
 def _wild(table: Table, rng: Generator) -> Table:
-    rows = _some_rows(table, rng)
-    table["measured_deg"][rows] += rng.uniform(-180.0, 180.0, rows.size)
+    rows, name = _some_rows(table, rng), "measured_deg" if "measured_deg" in table else _column(table, rng)
+    table[name][rows] += rng.uniform(-180.0, 180.0, rows.size)
     return table
 
 

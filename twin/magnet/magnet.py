@@ -42,11 +42,11 @@ class Magnet:
         if self.shape not in get_args(Shape):
             raise OutOfRangeError(f"shape is {self.shape!r}; expected one of {', '.join(get_args(Shape))}")
         grade(self.grade)
-        sizes = ["height_mm", *(["length_mm", "width_mm"] if self.shape == "block" else ["diameter_mm"])]
-        for name in sizes:
+        # Those of another shape too: they are read, handed on and written.
+        for name in ("height_mm", "diameter_mm", "length_mm", "width_mm"):
             require_within(name, getattr(self, name), SMALLEST_MM, LARGEST_MM, "mm")
-        if self.shape == "ring":
-            require_within("bore_mm", self.bore_mm, 0.0, 0.95 * float(np.min(self.diameter_mm)), "mm")
+        widest = 0.95 * float(np.min(self.diameter_mm)) if self.shape == "ring" else LARGEST_MM
+        require_within("bore_mm", self.bore_mm, 0.0, widest, "mm")
         if self.remanence_T is not None:
             require_within("remanence_T", self.remanence_T, 1e-3, LARGEST_T, "T")
         if self.percent_per_K is not None:

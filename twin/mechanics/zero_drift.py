@@ -13,8 +13,9 @@ from twin.motion import Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    elapsed = motion.time_s - motion.time_s[0]
-    duration = np.maximum(np.max(np.abs(elapsed)), 1e-12)
+    # From the earliest reading, which is the first unless the clock was set back meanwhile.
+    elapsed = motion.time_s - np.min(motion.time_s)
+    duration = np.maximum(np.max(elapsed), 1e-12)
     # The amplitude is what the zero moves by over this record, whatever the time constant.
     tau: Array = np.maximum(values["time_constant_s"], 1e-9)
     reach = -np.expm1(-duration / tau)

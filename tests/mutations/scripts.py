@@ -86,7 +86,7 @@ SCRIPTS: tuple[Mutation, ...] = (
             "series.directions_together",
             "if all(min(np.count_nonzero(way > 0), np.count_nonzero(way < 0)) >= FEWEST_ROWS for way in ways):",
             "if False:",
-            "::test_monitor[lag_deg-1]",
+            "::test_monitor",
         ),
     ),
     *of_one_file(

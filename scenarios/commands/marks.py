@@ -1,14 +1,16 @@
 """The mark by which the program knows a file that it wrote and that nobody has changed since.
 
-A mark is one sentence with the SHA-256 of all that the file holds besides: a comment in CSV, TOML, C, HTML, SVG and
-PDF, the entry ``written_by`` in JSON, a text chunk in PNG. A file that was edited, or that someone else wrote in the
-same format, bears no mark that fits: it is the user's.
+A mark is one sentence with the SHA-256 of all that the file holds besides: a comment in TOML, C, HTML, SVG and PDF, the
+entry ``written_by`` in JSON, a text chunk in PNG. CSV stays plain, because many programs read it that know no comments:
+its mark is an extended attribute of the file, where the system has those. A file that was edited, or that someone else
+wrote in the same format, bears no mark that fits: it is the user's.
 """
 
 from __future__ import annotations
 
-import gzip
+import contextlib
 import hashlib
+import os
 import re
 import struct
 import zlib
@@ -22,6 +24,8 @@ _DIGEST = re.compile(re.escape(_SAID) + b"([0-9a-f]{64})")
 _REACH = 512
 """Bytes at the beginning or the end of a file in which its mark lies."""
 _BLOCK = 1 << 20
+_PLAIN = (".csv", ".csv.gz")
+_ATTRIBUTE = "user.halltwin.sha256"
 
 
 @dataclass(frozen=True)
@@ -38,12 +42,10 @@ def _png_text(said: bytes) -> bytes:
     return struct.pack(">I", len(body) - 4) + body + struct.pack(">I", zlib.crc32(body))
 
 
-_CSV = _Form(lambda said: b"# " + said + b"\n")
 _C = _Form(lambda said: b"/* " + said + b" */\n")
 _XML = _Form(lambda said: b"<!-- " + said + b" -->\n", closing=b"")
 _FORMS = {
-    ".csv": _CSV,
-    ".toml": _CSV,
+    ".toml": _Form(lambda said: b"# " + said + b"\n"),
     ".h": _C,
     ".hh": _C,
     ".hpp": _C,
@@ -57,8 +59,10 @@ _FORMS = {
 
 
 def marked(path: Path, content: bytes) -> bytes:
-    """The content with its mark, in the format that the path's ending says; not yet compressed."""
-    form = _FORMS[_ending(path)]
+    """The content with its mark, in the format that the path's ending says; CSV as it is."""
+    if _is_plain(path):
+        return content
+    form = _FORMS[path.suffix.lower()]
     mark = form.entry(_SAID + hashlib.sha256(content).hexdigest().encode())
     if form.closing is None:
         return mark + content
@@ -67,19 +71,43 @@ def marked(path: Path, content: bytes) -> bytes:
     return content[: len(content) - len(form.closing)] + mark + form.closing
 
 
+def mark_written(path: Path, content: bytes) -> None:
+    """Mark a file that holds this content, where its format bears no mark and the system has extended attributes."""
+    if _is_plain(path) and hasattr(os, "setxattr"):
+        # Not every disk keeps them: without a mark the file counts as the user's.
+        with contextlib.suppress(OSError):
+            os.setxattr(path, _ATTRIBUTE, hashlib.sha256(content).hexdigest().encode())
+
+
 def is_own(path: Path) -> bool:
     """Whether a file bears a mark that fits its content. Raises OSError."""
-    form = _FORMS.get(_ending(path))
+    if _is_plain(path):
+        return _attribute_fits(path)
+    form = _FORMS.get(path.suffix.lower())
     if form is None:
         return False
-    try:
-        with path.open("rb") as raw:
-            return _fits(gzip.GzipFile(fileobj=raw) if path.suffix.lower() == ".gz" else raw, form)
-    except (EOFError, gzip.BadGzipFile, zlib.error):
+    with path.open("rb") as file:
+        return _fits(file, form)
+
+
+def _is_plain(path: Path) -> bool:
+    """Whether files with this ending hold nothing but what their readers ask for."""
+    return path.name.lower().endswith(_PLAIN)
+
+
+def _attribute_fits(path: Path) -> bool:
+    """Whether a file has the attribute that its content had when it was written."""
+    if not hasattr(os, "getxattr"):
         return False
+    try:
+        said = os.getxattr(path, _ATTRIBUTE)
+    except OSError:
+        return False
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest().encode() == said
 
 
-def _fits(file: BinaryIO | gzip.GzipFile, form: _Form) -> bool:
+def _fits(file: BinaryIO, form: _Form) -> bool:
     """Whether the mark stands where it belongs, and all else gives its digest; read block by block."""
     if form.closing is None:
         found = _DIGEST.search(file.read(_REACH))
@@ -108,7 +136,3 @@ def _fits(file: BinaryIO | gzip.GzipFile, form: _Form) -> bool:
 def _blocks(size: int) -> list[int]:
     whole, rest = divmod(max(size, 0), _BLOCK)
     return [_BLOCK] * whole + [rest]
-
-
-def _ending(path: Path) -> str:
-    return path.with_suffix("").suffix.lower() if path.suffix.lower() == ".gz" else path.suffix.lower()

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from scenarios.commands.inputs import ENDINGS
-from scenarios.commands.marks import is_own, marked
+from scenarios.commands.marks import is_own, mark_written, marked
 from twin.errors import UserError
 from twin.whole_file import check_writable, is_stream, target_of, write_together
 
@@ -117,6 +117,9 @@ class OutputFiles:
         self.check(made)
         with _folders_for(made) if self.folders else contextlib.nullcontext():
             write_together(made)
+        for path, content in made.items():
+            if self.formats[path].marked and not is_stream(path):
+                mark_written(path, content)
 
     def _packed(self, path: Path, content: Any) -> bytes:
         """The bytes of a file, with its mark, compressed where the name says so."""

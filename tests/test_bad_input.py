@@ -241,6 +241,7 @@ BAD_TWINS = {
     "a magnet that is a number": (HEAD + "magnet = 3\n", ("magnet", "3", "table")),
     "a word for the magnet": (HEAD + '[magnet]\nshape = "blob"\n', ("magnet", "blob")),
     "a size of another shape": (HEAD + f"[magnet]\nlength_mm = {'9' * 400}\n", ("length_mm", "from 0.1 to 200 mm")),
+    "a number as a word": (HEAD + '[magnet]\nwidth_mm = "5"\n', ("width_mm is '5'", "expected a number")),
     "no bore": (HEAD + "[magnet]\nbore_mm = nan\n", ("bore_mm is nan", "from 0 to 200 mm")),
     "an unknown part of the magnet": (HEAD + "[magnet]\nfoo = 3\n", ("magnet", "foo")),
 }

@@ -32,6 +32,10 @@ def from_table(kind: type[Part], content: Any, where: str) -> Part:
         if isinstance(value, bool) != isinstance(default, bool):
             kind_of = "true or false" if isinstance(default, bool) else "a number or a word, not true or false"
             raise OutOfRangeError(f"{key} is {shown(value)}; expected {kind_of}")
+        if isinstance(value, str) != isinstance(default, str):
+            raise OutOfRangeError(
+                f"{key} is {shown(value)}; expected a {'word' if isinstance(default, str) else 'number'}"
+            )
         whole = isinstance(default, int) and isinstance(value, float) and value.is_integer()
         values[key] = int(value) if whole else value
     return kind(**values)

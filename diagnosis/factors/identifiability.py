@@ -14,6 +14,7 @@ from diagnosis.factors.profile_likelihood import Profile, profile
 from diagnosis.factors.sentences import (
     TIED,
     said_of_any_sweep,
+    said_of_few_readings,
     said_of_the_mirror_solution,
     said_of_these_readings,
     said_of_weak_parameters,
@@ -68,6 +69,7 @@ def identifiability(
         sentences=(
             *said_of_any_sweep(fit, has_channels),
             *said_of_these_readings(covered, unseen, correlations),
+            *said_of_few_readings(fit),
             *said_of_weak_parameters(fit, profiles),
             *said_of_the_mirror_solution(fit),
         ),

@@ -12,6 +12,8 @@ from diagnosis.factors.profile_likelihood import Profile
 from twin.angles import Array
 from twin.baseline import FACTORS
 
+_FEW = 9
+"""Degrees of freedom from which a cause of three times the noise stands out of what is left: what explain asks for."""
 TIED = 0.9
 """Correlation from which two parameters are called nearly tied."""
 _WHAT = dict(zip(NAMES, (factor.label for factor in FACTORS), strict=True))
@@ -50,6 +52,21 @@ def said_of_these_readings(
                 for i, j in zip(rows, columns, strict=True)
             ]
     return tuple(said)
+
+
+def said_of_few_readings(fit: BaselineFit) -> tuple[str, ...]:
+    """How much wider so few readings make the intervals, and that they do not judge the error model itself."""
+    from scipy.special import stdtrit
+
+    freedom = max(fit.degrees_of_freedom, 1)
+    if freedom >= _FEW:
+        return ()
+    wider = float(stdtrit(freedom, 0.975) / stdtrit(np.inf, 0.975))
+    return (
+        f"few readings: beside six parameters {freedom} degree{'s' if freedom > 1 else ''} of freedom are left, which "
+        f"makes intervals {wider:.1f} times as wide as many readings of this scatter would; whether the error model "
+        "holds they cannot say",
+    )
 
 
 def said_of_weak_parameters(fit: BaselineFit, profiles: tuple[Profile, ...]) -> tuple[str, ...]:

@@ -47,7 +47,7 @@ def presets() -> tuple[str, ...]:
 
 
 def _value(rng: Generator, low: float, high: float) -> str:
-    return str(rng.choice(ODD_VALUES)) if rng.random() < 0.15 else repr(float(rng.uniform(low, high)))
+    return str(rng.choice(ODD_VALUES)) if rng.random() < 0.04 else repr(float(rng.uniform(low, high)))
 
 
 def _effects(rng: Generator) -> str:
@@ -61,7 +61,8 @@ def _effects(rng: Generator) -> str:
             if rng.random() < 0.7:
                 middle = rng.choice([declared.null, 0.5 * (declared.lower + declared.upper)])
                 reach = rng.choice([declared.typical, declared.upper - declared.lower])
-                value = _value(rng, middle - 0.6 * reach, middle + 0.6 * reach)
+                low, high = max(middle - reach, declared.lower - 0.01), min(middle + reach, declared.upper + 0.01)
+                value = _value(rng, low, high)
                 whole = declared.counts and len(value) < 30 and value.replace(".", "").isdigit()
                 lines.append(f"{param} = {round(float(value)) if whole else value}")
     return "\n".join(lines)
@@ -74,7 +75,8 @@ def _parts(rng: Generator) -> str:
     for table, kind in kinds:
         if rng.random() < 0.4:
             lines.append(f"[{table}]")
-            lines += [f"{one.name} = {_value(rng, -1.0, 5.0)}" for one in fields(kind) if rng.random() < 0.3]
+            numbers = [one.name for one in fields(kind) if not isinstance(one.default, str | bool)]
+            lines += [f"{name} = {_value(rng, 0.0, 3.0)}" for name in numbers if rng.random() < 0.2]
     if rng.random() < 0.3:
         lines += ["[reference]", f"lines = {_value(rng, 1, 1e4)}", f"index_deg = {_value(rng, -360, 360)}"]
     return "\n".join(lines)

@@ -112,6 +112,18 @@ def test_an_arc_is_said_to_be_an_arc() -> None:
     assert any("tied to one another" in words or "do not see" in words for words in found.sentences)
 
 
+@pytest.mark.parametrize(("readings", "said"), [(8, "2 degrees of freedom"), (7 + 7, "8 degrees"), (6 + 9, "")])
+def test_few_readings_are_said_to_be_few(readings: int, said: str) -> None:
+    """Student's t of two degrees of freedom is 4.30 at 97.5 %, the normal distribution 1.96."""
+    reference = turn(readings)
+    reading = measured(POINT, reference, noise=NOISE_RAD * np.random.default_rng(0).standard_normal(readings))
+    fit = fit_baseline(reference, reading, rng=np.random.default_rng(0), senses=(1, 1))
+    words = " ".join(one for one in identifiability(fit, reference, reading).sentences if "few readings" in one)
+    assert said in words
+    assert bool(words) == bool(said)
+    assert readings != 8 or "2.2 times as wide" in words
+
+
 def test_mechanical_equivalents_are_what_was_simulated() -> None:
     reference = turn(360)
     chain = Chain().with_effect("magnet_misalignment", off_axis_mm=0.4, direction_deg=30.0)

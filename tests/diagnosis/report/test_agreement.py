@@ -84,7 +84,7 @@ def terminal(found: Explanation) -> str:
 def report(found: Explanation) -> str:
     """What is read in the report, in one line: without pictures, with the signs of the terminal."""
     source = page(found.discovery, found.to_dict())
-    source = re.sub(r"<(style|svg|footer).*?</\1>", " ", source, flags=re.S)
+    source = re.sub(r'<(style|svg|footer).*?</\1>|<div class="legend">.*?</div>', " ", source, flags=re.S)
     text = html.unescape(re.sub(r"<[^>]+>", " ", re.sub(r"</?(data|small|span|code|a|b|wbr)\b[^>]*>", "", source)))
     return " ".join(text.replace("−", "-").replace("→", "->").split())
 
@@ -117,9 +117,9 @@ def half_widths(value: Any) -> Iterator[float]:
 
 
 def lengths(value: Any) -> Iterator[float]:
-    """Lengths of lists, places in them, and how many are left where the first few are told."""
+    """Lengths of lists, places in them, and how many are left where the first few are told; instances are numbered."""
     items = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
-    if isinstance(value, list):
+    if isinstance(value, list | dict):
         yield from (float(k) for k in range(len(value) + 1))
     yield from (length for item in items for length in lengths(item))
 
@@ -132,7 +132,8 @@ def check(found: Explanation) -> None:
         assert not OLD_NAMES.search(text), (where, OLD_NAMES.search(text))
         for words in stated(answer):
             assert " ".join(words.split()) in text, (where, words)
-        strays = list(figures_beside(without_declared(text.replace(answer["sweep"]["name"], "")), answer))
+        text = text.replace(answer["sweep"]["name"], "").replace(answer["noise"], "")
+        strays = list(figures_beside(without_declared(text), answer))
         assert not strays, (where, strays)
     check_chain(answer)
     lists = re.search(r"Not visible in this sweep(.*)", shown["report"])

@@ -15,7 +15,7 @@ from pathlib import Path
 from tests.kill_study.disks import can_mount, fill
 from tests.kill_study.kills import kill
 from tests.kill_study.pairs import pair
-from tests.kill_study.trials import COMMANDS, Command, Trial, write_encoder
+from tests.kill_study.trials import COMMANDS, Command, Trial, ended, write_encoder
 
 KINDS = {"kill": "kill -9", "disk": "full disk", "pair": "two at once"}
 
@@ -61,13 +61,15 @@ def _try_all(commands: Sequence[Command], work: Path, asked: argparse.Namespace,
     write_encoder(work)
     for command in commands:
         calm = work / f"{command.name}-calm"
+        process = command.start(calm)
+        command.wait_until_begun(process, calm)
         start = time.monotonic()
-        first = command.run(calm)
+        first = ended(process)
         seconds = time.monotonic() - start
         if first.code != 0:
             print(f"{command.name} fails undisturbed: {first.last_line}", file=sys.stderr)
             return False
-        print(f"    {command.name} takes {seconds:.1f} s undisturbed", flush=True)
+        print(f"    {command.name} works for {seconds:.1f} s undisturbed", flush=True)
         for number in range(asked.kills):
             kill(command, work, calm, number=number, seconds=seconds, tell=tell)
         if disks:

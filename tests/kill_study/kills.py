@@ -20,20 +20,16 @@ BEGINNING_S = 0.4
 def kill(command: Command, work: Path, calm: Path, *, number: int, seconds: float, tell: Tell) -> None:
     """Kill one run: even trials at its beginning, odd ones at any moment; by turns the group and the parent alone.
 
-    ``seconds`` is how long an undisturbed run takes.
+    ``seconds`` is how long an undisturbed run takes from its first file to its end.
     """
     rng = np.random.default_rng((number, *command.name.encode()))
     alone, early = number // 2 % 2 == 1, number % 2 == 0
     while True:
         place = work / f"kill-{number}"
         process = command.start(place)
+        command.wait_until_begun(process, place)
         start = time.monotonic()
-        if early:
-            while process.poll() is None and not command.begun(place):
-                time.sleep(0.001)
-            time.sleep(rng.uniform(0.0, BEGINNING_S))
-        else:
-            time.sleep(rng.uniform(0.0, seconds))
+        time.sleep(rng.uniform(0.0, BEGINNING_S if early else seconds))
         at = time.monotonic() - start
         if _killed(process, alone=alone):
             break
@@ -42,7 +38,7 @@ def kill(command: Command, work: Path, calm: Path, *, number: int, seconds: floa
         seconds *= 0.9
     complete = command.complete(place)
     outcome, good = resumed(command, place, calm)
-    done = f"{'parent' if alone else 'group'} killed after {at:.2f} s, {complete} complete"
+    done = f"{'parent' if alone else 'group'} killed {at:.2f} s after its first file, {complete} complete"
     tell(Trial(command.name, "kill", done, outcome, good))
     if good:
         shutil.rmtree(place)

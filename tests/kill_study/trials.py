@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +19,7 @@ ROOT = Path(__file__).parents[2]
 LONGEST_S = 300.0
 """No run takes so long, be the machine ever so busy: one that does is taken to hang."""
 STUDY, SWEEP, TWIN = "study", "sweep.csv", "encoder.toml"
-GENERATE = ("generate", "-n", "800", "--chunk", "40")
+GENERATE = ("generate", "-n", "1600", "--chunk", "40")
 RECOVER = (
     *("recover", "--cause", "baseline", "--cause", "clean", "--noise", "0.02,0.05"),
     *("--points", "36,48,60,72", "--turns", "1", "--fits", "20", "--sweeps", "1"),
@@ -64,6 +65,11 @@ class Command:
     def begun(self, place: Path) -> bool:
         """Whether it has begun to write."""
         return (place / STUDY if self.study else place / f"{SWEEP}.journal.jsonl").exists()
+
+    def wait_until_begun(self, process: subprocess.Popen[str], place: Path) -> None:
+        """Wait until a run has begun to write, or has ended."""
+        while process.poll() is None and not self.begun(place):
+            time.sleep(0.001)
 
     def complete(self, place: Path) -> int:
         """Chunks or readings that are complete."""

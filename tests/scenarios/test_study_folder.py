@@ -20,6 +20,12 @@ from twin.errors import UserError
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.fixture(scope="module")
+def calm(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """What an undisturbed run leaves."""
+    return content(study(tmp_path_factory.mktemp("study") / "calm").path)
+
+
 def started(path: Path, pause_s: float = 0.3) -> subprocess.Popen[str]:
     """A study in a process group of its own, once its first chunk is complete."""
     process = subprocess.Popen(
@@ -48,13 +54,14 @@ def started(path: Path, pause_s: float = 0.3) -> subprocess.Popen[str]:
     ],
     ids=str,
 )
-def test_a_folder_that_was_hardly_begun_is_gone_on_with(tmp_path: Path, left: tuple[str, ...]) -> None:
+def test_a_folder_that_was_hardly_begun_is_gone_on_with(
+    tmp_path: Path, left: tuple[str, ...], calm: dict[str, bytes]
+) -> None:
     (tmp_path / "s").mkdir()
     for name in left:
         (tmp_path / "s" / name).mkdir() if name.endswith("/") else (tmp_path / "s" / name).touch()
     study(tmp_path / "s")
-    study(tmp_path / "calm")
-    assert content(tmp_path / "s") == content(tmp_path / "calm")
+    assert content(tmp_path / "s") == calm
 
 
 def test_only_what_is_surely_left_half_written_is_taken_away(tmp_path: Path) -> None:
@@ -106,7 +113,9 @@ def test_other_settings_are_taken_up_as_long_as_nothing_is_complete(tmp_path: Pa
         study(tmp_path / "s", seed=3)
 
 
-def test_a_second_command_in_the_folder_is_refused_until_the_first_is_gone(tmp_path: Path) -> None:
+def test_a_second_command_in_the_folder_is_refused_until_the_first_is_gone(
+    tmp_path: Path, calm: dict[str, bytes]
+) -> None:
     first = started(tmp_path / "s")
     with pytest.raises(UserError, match="another halltwin is at work in this folder"):
         study(tmp_path / "s")
@@ -114,11 +123,10 @@ def test_a_second_command_in_the_folder_is_refused_until_the_first_is_gone(tmp_p
     os.kill(first.pid, signal.SIGKILL)
     first.wait()
     study(tmp_path / "s")
-    study(tmp_path / "calm")
-    assert content(tmp_path / "s") == content(tmp_path / "calm")
+    assert content(tmp_path / "s") == calm
 
 
-def test_ctrl_c_says_how_to_go_on_and_loses_nothing(tmp_path: Path) -> None:
+def test_ctrl_c_says_how_to_go_on_and_loses_nothing(tmp_path: Path, calm: dict[str, bytes]) -> None:
     first = started(tmp_path / "s", pause_s=0.5)
     # As a terminal does: to every process of the group.
     os.killpg(first.pid, signal.SIGINT)
@@ -129,8 +137,7 @@ def test_ctrl_c_says_how_to_go_on_and_loses_nothing(tmp_path: Path) -> None:
     assert "run the same command again to go on" in said
     assert not list((tmp_path / "s").rglob(".halltwin-*"))
     study(tmp_path / "s")
-    study(tmp_path / "calm")
-    assert content(tmp_path / "s") == content(tmp_path / "calm")
+    assert content(tmp_path / "s") == calm
 
 
 def test_a_disk_full_at_the_very_start_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

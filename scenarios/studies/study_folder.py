@@ -114,7 +114,6 @@ class StudyFolder:
             # Nothing is complete, so nothing is lost, and a mistake in the settings does not block their correction.
             for name in (_DONE, _CHUNKS, *stores):
                 shutil.rmtree(self.path / name, ignore_errors=True)
-            record.unlink()
         try:
             write_whole(record, text.encode())
         except OSError as error:

@@ -70,7 +70,8 @@ def rows_words(sweep: Mapping[str, Any]) -> str:
     if not wild:
         return rejected_words(sweep)
     listed = _listed(sweep["wild_rows"], wild)
-    return f"{rejected_words(sweep)}; {wild} {'stands' if wild == 1 else 'stand'} alone and not fitted ({listed})"
+    alone = "stands alone and is" if wild == 1 else "stand alone and are"
+    return f"{rejected_words(sweep)}; {wild} {alone} not fitted ({listed})"
 
 
 def rejected_words(sweep: Mapping[str, Any]) -> str:
@@ -189,7 +190,7 @@ def senses_words(answer: Mapping[str, Any]) -> str:
         text, _ = figure({**parameters[key], **_around(parameters[key], mirrored[key])}, SCALES[key])
         there.append(f"{LABELS[key]} {text} {UNITS[key]}")
     pair = f"s = {-senses['sensor']:+d}, h = {-senses['output']:+d}"
-    return f"Seen mirrored ({pair}), which fits as well, there are {' and '.join(there)}"
+    return f"The mirrored twin ({pair}) fits as well, with {' and '.join(there)}"
 
 
 def _around(parameter: Mapping[str, Any], value: float) -> dict[str, Any]:

@@ -196,6 +196,14 @@ def test_the_cases_show_what_they_are_for() -> None:
     wild = explained("wild rows").to_dict()["sweep"]
     assert wild["wild"] == len(wild["wild_rows"]) > 0
     assert wild["rejected"] == 1
+    senses, factors = (explained("wild rows").to_dict()[key] for key in ("senses", "extended"))
+    # Without a quadratic term the mirrored twin reads the same: offset y and phase change their sign, nothing else.
+    assert not senses["decided"]
+    for key, sign in (("Vx_over_Ax", 1.0), ("Vy_over_Ay", -1.0), ("gain_ratio", 1.0), ("beta_deg", -1.0)):
+        told = factors["parameters"][key]
+        assert senses["mirrored"][key] == pytest.approx(sign * told["value"], abs=told["high"] - told["low"])
+    assert "The mirrored twin (s = -1, h = -1) fits as well" in terminal(explained("wild rows"))
+    assert explained("clean").to_dict()["senses"]["decided"]
     assert explained("given twin").to_dict()["baseline"]["explained_percent"] < 0.0
     assert "makes the error larger" in terminal(explained("given twin"))
     assert explained("stopped").to_dict()["cut_short"]

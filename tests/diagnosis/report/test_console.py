@@ -174,9 +174,9 @@ def test_rows_that_no_fit_is_made_of_are_listed_and_a_cut_list_says_so() -> None
     sweep = an_answer()["sweep"]
     assert rows_words(sweep) == "2 rejected (rows 411, 1207: time_s missing or not finite)"
     sweep |= {"rejected": 0, "rejected_rows": {}, "wild": 113, "wild_rows": list(range(1, 101))}
-    assert rows_words(sweep) == "none rejected; 113 stand alone and not fitted (rows 1, 2, 3, 4, 5 and 108 more)"
+    assert rows_words(sweep) == "none rejected; 113 stand alone and are not fitted (rows 1, 2, 3, 4, 5 and 108 more)"
     sweep |= {"wild": 1, "wild_rows": [17]}
-    assert rows_words(sweep) == "none rejected; 1 stands alone and not fitted (row 17)"
+    assert rows_words(sweep) == "none rejected; 1 stands alone and is not fitted (row 17)"
     sweep |= {"wild": 0, "rejected": 130, "rejected_rows_left_out": 30}
     sweep["rejected_rows"] = {str(row): "vx missing" for row in range(1, 101)}
     assert rows_words(sweep) == "130 rejected (rows 1, 2, 3, 4, 5 and 95 more: vx missing; and 30 more)"
@@ -212,7 +212,7 @@ def test_a_mirrored_description_is_said_to_fit_as_well() -> None:
     assert senses_words(answer) == ""
     mirrored = {"Vy_over_Ay": 0.00712, "beta_deg": -0.1691}
     answer["senses"] = {"sensor": 1, "output": 1, "decided": False, "log_odds": 0.3, "mirrored": mirrored}
-    said = "Seen mirrored (s = -1, h = -1), which fits as well, there are offset y 0.712 % and phase -0.1691 deg"
+    said = "The mirrored twin (s = -1, h = -1) fits as well, with offset y 0.712 % and phase -0.1691 deg"
     assert senses_words(answer) == said
     assert said in " ".join(shown(answer, 160).split())
     answer["senses"] |= {"decided": True, "mirrored": None}

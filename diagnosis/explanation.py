@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from math import isnan
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -108,7 +109,8 @@ class Cause:
     def __repr__(self) -> str:
         told = ", ".join(f"{name}={estimate}" for name, estimate in self.parameters.items())
         shown = told if len(told) <= _LONGEST else f"{told[:_LONGEST]}..."
-        gain = f"held-out RMS {self.heldout_rms_deg_before:.4g} -> {self.heldout_rms_deg_after:.4g} deg"
+        before, after = self.heldout_rms_deg_before, self.heldout_rms_deg_after
+        gain = "not held out" if isnan(before) or isnan(after) else f"held-out RMS {before:.4g} -> {after:.4g} deg"
         return f"Cause({self.name}: {shown}; {gain})"
 
 
@@ -132,13 +134,11 @@ class Explanation:
 
         before, extended = self._answer["baseline"]["heldout_rms_deg"], self._answer["extended"]
         names = ", ".join(cause.name for cause in self.causes)
-        held = f"held-out RMS {plain(before)} deg"
-        if names:
+        held = "nothing held out" if before is None else f"held-out RMS {plain(before)} deg"
+        if names and extended["gain"] is not None:
             gain = f"{plain(extended['gain'])} times closer"
-            names, held = (
-                f": {names}",
-                f"held-out RMS {plain(before)} -> {plain(extended['heldout_rms_deg'])} deg, {gain}",
-            )
+            held = f"held-out RMS {plain(before)} -> {plain(extended['heldout_rms_deg'])} deg, {gain}"
+        names = f": {names}" if names else ""
         return f"Explanation({self.sweep.name!r}, {self.verdict}{names}; {held})"
 
     def _repr_html_(self) -> str:

@@ -115,6 +115,7 @@ def test_an_end_that_the_sweep_does_not_set_is_infinite() -> None:
     assert (found["lag_deg"].low, found["lag_deg"].high) == (-np.inf, np.inf)
     assert str(found["lag_deg"]).endswith("±∞ deg")
     assert str(found["memory_deg"]) == "not determined"
+    assert repr(Cause.of({**entry, "heldout_rms_deg_after": None})).endswith("; not held out)")
 
 
 def test_a_dict_that_is_changed_changes_no_answer() -> None:

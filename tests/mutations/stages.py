@@ -183,4 +183,24 @@ STAGES: tuple[Mutation, ...] = (
             "stages/test_answer.py::test_figures_are_those_of_single_readings",
         ),
     ),
+    *of_one_file(
+        f"{_D}/marks/row_numbers.py",
+        "tests/diagnosis/report",
+        (
+            "row_numbers.rejected_rows_are_counted",
+            " - sum(1 for rejected in sweep.rejected if rejected < number)",
+            "",
+            "test_answer.py::test_a_noisy_stretch_is_told_by_the_rows_of_the_file",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/report/fitted_rows.py",
+        "tests/diagnosis/report",
+        (
+            "fitted_rows.share_of_rows_set_aside",
+            "return rows if rows.any() else np.ones_like(rows)",
+            "return np.ones_like(rows)",
+            "test_agreement.py::test_the_cases_show_what_they_are_for",
+        ),
+    ),
 )

@@ -196,6 +196,8 @@ def test_the_cases_show_what_they_are_for() -> None:
     wild = explained("wild rows").to_dict()["sweep"]
     assert wild["wild"] == len(wild["wild_rows"]) > 0
     assert wild["rejected"] == 1
+    # Those about a reversal whose direction is inferred are not fitted either.
+    assert wild["fitted"] <= wild["used"] - wild["wild"]
     senses, factors = (explained("wild rows").to_dict()[key] for key in ("senses", "extended"))
     # Without a quadratic term the mirrored twin reads the same: offset y and phase change their sign, nothing else.
     assert not senses["decided"]

@@ -7,6 +7,7 @@ where these are absent, all but one, which says so.
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import time
 import warnings
@@ -24,6 +25,8 @@ if "numpy" in sys.modules and "OPENBLAS_NUM_THREADS" not in os.environ:
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Answers bear the day; a run of the tests may last beyond midnight.
 os.environ.setdefault("SOURCE_DATE_EPOCH", str(int(time.time())))
+# A shell lets what it runs in the background ignore Ctrl-C; tests send it to themselves.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

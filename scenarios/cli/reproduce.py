@@ -31,7 +31,8 @@ def _words(param: Any, value: Any) -> list[str]:
     """One parameter as it is typed."""
     values = [_without_folder(item) for item in (value if isinstance(value, list | tuple) else [value])]
     if param.param_type_name == "argument":
-        return values
+        # What begins with a hyphen would be taken for an option.
+        return [f"./{name}" if name.startswith("-") else name for name in values]
     if isinstance(value, bool):
         return [param.opts[0] if value else param.secondary_opts[0]]
     return [word for item in values for word in (param.opts[0], item)]

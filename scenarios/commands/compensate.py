@@ -16,7 +16,7 @@ from diagnosis.correction.compensation_c import header
 from diagnosis.correction.cross_validation import BeforeAfter, against, cross_validated
 from scenarios.commands.compensate_text import show
 from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
-from scenarios.commands.inputs import SweepFiles, SweepsRead
+from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from twin.angles import TAU, Array, radians
@@ -73,8 +73,7 @@ def run(
     files = _files(outputs, inputs=[Path(source), *checked_on, *effect_files])
     others = check.read(checked_on)
     sweep = None if is_twin(source) else Sweep.read(source, max_bytes=check.max_bytes)
-    if outputs.plot is not None and sweep is None and not checked_on:
-        raise UserError(f"{outputs.plot.name}: nothing to draw; give sweeps to --check the twin's correction on")
+    check_panels(outputs.plot, len(others.sweeps) if checked_on or sweep is None else 1)
     if sweep is None:
         twin = read_twin_or_preset(source, effects=effects_with(effect_files))
         correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)

@@ -40,6 +40,17 @@ def sweep_paths(names: Sequence[str]) -> list[Path]:
     return found
 
 
+def check_panels(picture: Path | None, sweeps: int) -> None:
+    """Refuse a picture of no sweep, or of more than can be told apart, before any work is done. Raises UserError."""
+    from diagnosis.report.diagnose_plot import MOST_PANELS
+
+    if picture is None or 1 <= sweeps <= MOST_PANELS:
+        return
+    if sweeps == 0:
+        raise UserError(f"{picture.name}: nothing to draw; give sweeps to --check the twin's correction on")
+    raise UserError(f"{picture.name}: {sweeps} sweeps do not fit in one picture; draw at most {MOST_PANELS}")
+
+
 @dataclass(frozen=True)
 class Unusable:
     """A file that is no sweep, and why not."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from scenarios.commands.compensate_plot import before_after_figure
 from scenarios.commands.monitor_plot import charts_figure
 from scenarios.commands.trace import trace
 from scenarios.commands.trace_plot import trace_figure
+from tests.command_line import halltwin
 from twin.angles import TAU
 from twin.chain import Chain
 from twin.motion import Motion
@@ -103,3 +105,16 @@ def test_figures_of_the_paper_have_units(number: int) -> None:
         assert all("[" in label for label in (axis.get_xlabel(), axis.get_ylabel()))
     plt.close(figure)
     assert paper.TITLES[number]
+
+
+@pytest.mark.parametrize("arguments", [("diagnose", "DATA"), ("compensate", "imc-14bit", "--check", "DATA")])
+def test_more_sweeps_than_a_picture_holds_are_refused_before_any_work(
+    arguments: tuple[str, ...], tmp_path: Path
+) -> None:
+    """Found out at the end, it would cost the answers to all sweeps."""
+    for k in range(17):
+        DEVICE.simulate(ONE, seed=k).write(tmp_path / f"s{k:02d}.csv")
+    given = [str(tmp_path) if word == "DATA" else word for word in arguments]
+    ended = halltwin(*given, "--plot", tmp_path / "p.png")
+    assert (ended.code, ended.out) == (2, "")
+    assert ended.err == "halltwin: p.png: 17 sweeps do not fit in one picture; draw at most 16\n"

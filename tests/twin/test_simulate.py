@@ -139,6 +139,10 @@ def test_a_file_that_bears_a_presets_name_is_not_passed_over(tmp_path: Path, mon
     ("call", "message"),
     [
         (lambda: read_twin_or_preset("nothing"), "nothing: is no preset (hall-12bit"),
+        (
+            lambda: read_twin_or_preset("imc-14bit.toml"),
+            "imc-14bit.toml: no such file; the preset is named imc-14bit",
+        ),
         (lambda: Protocol(points=0), "points is 0; expected a whole number from 8 to 1e+06"),
         (lambda: Protocol(speeds_rpm=(float("nan"),)), "speed-rpm is nan rpm; expected from 0 to 100000 rpm"),
         (lambda: numbers("temperatures", "25;60"), "temperatures is '25;60'; expected numbers with commas between"),

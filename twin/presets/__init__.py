@@ -44,6 +44,8 @@ def read_twin_or_preset(given: str | Path, *, effects: tuple[Effect, ...] = CATA
         raise TwinError(
             f"{name}: is no preset ({', '.join(preset_names())}); give one of them or a path ending in .toml"
         )
+    if name.removesuffix(".toml") in preset_names() and not Path(name).exists():
+        raise TwinError(f"{name}: no such file; the preset is named {name.removesuffix('.toml')}")
     return read_twin(given, effects=effects)
 
 

@@ -14,12 +14,14 @@ from diagnosis.report.answer import SCHEMA
 from diagnosis.report.wording import structure_words
 from scenarios.commands.effect_skeleton import skeleton
 from scenarios.commands.outputs import PYTHON, OutputFiles
+from twin.bounded_input import whole
 from twin.catalogue import find
 from twin.contract import check
 from twin.declaration import NAME
 from twin.effect import Effect
 from twin.errors import UserError
 from twin.extensions import RESERVED, effects_of, effects_with, unfit
+from twin.limits import shown
 
 _PLAIN = "structure of your own: a line of order 5 in the shaft angle, to begin with"
 
@@ -65,16 +67,15 @@ def _check_name(name: str) -> None:
 def origin_of(path: Path) -> Origin:
     """The strongest structure that an answer of ``halltwin explain`` leaves without a name. Raises UserError."""
     try:
-        answer = json.loads(path.read_text(encoding="utf-8"))
+        answer = json.loads(whole(path, expected="what explain --json wrote"))
         if answer["schema"] != SCHEMA:
-            raise UserError(f"{path.name}: schema is {answer['schema']!r}; expected {SCHEMA!r}")
+            raise UserError(f"{path.name}: schema is {shown(answer['schema'])}; expected {SCHEMA!r}")
         structures = [_figures(item) for item in answer["unexplained"]["structure"]]
         ranked = sorted(structures, key=_size_deg, reverse=True)
         words = structure_words(ranked[0]) if ranked else ""
         sweep = dict(answer["sweep"])
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read ({error.strerror}); give what explain --json wrote") from None
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    # What is no answer may hold numbers of any length, and lists in lists.
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
         if isinstance(error, UserError):
             raise
         raise UserError(f"{path.name}: is no answer of halltwin explain; give what explain --json wrote") from None

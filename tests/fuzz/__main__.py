@@ -17,6 +17,7 @@ from tests.fuzz.batch import Failure, batch, plain_mb
 KINDS = {"sweeps": 20_000, "explain": 2_000, "twins": 5_000, "logs": 1_000, "options": 500}
 """How many of each are tried unless told otherwise."""
 _BATCH = 25
+_TOLD = 1000
 _BATCHES_A_PROCESS = 40
 
 
@@ -46,6 +47,8 @@ def _tried(kind: str, count: int, asked: argparse.Namespace) -> int:
         counts.update(how)
         for failure in failures:
             print(f"{failure.keep(asked.output)}: {failure.said.strip().splitlines()[-1][:150]}", flush=True)
+        if sum(counts.values()) % _TOLD == 0:
+            print(f"{kind}: {sum(counts.values())} of {count}, {counts['failed']} failed", flush=True)
     told = ", ".join(f"{number} {how}" for how, number in sorted(counts.items()))
     print(f"{kind}: {sum(counts.values())} tried from number {asked.first}, {told}", flush=True)
     return counts["failed"]

@@ -81,3 +81,26 @@ def test_check_effect_finds_what_writes_to_its_motion(tmp_path: Path) -> None:
     ended = halltwin("check-effect", path)
     assert ended.code == 2
     assert "read-only" in "".join(ended.out.split("\n"))
+
+
+NO_ANSWERS = {
+    "nothing": b"",
+    "no text": bytes(range(256)),
+    "lists in lists": b"[" * 100_000,
+    "a list": b"[]",
+    "another schema": b'{"schema": ["halltwin.explain/1"]}',
+    "a number of many digits": (
+        b'{"schema": "halltwin.explain/1", "sweep": {}, "unexplained": {"structure": [{"kind": "order", "x_deg": '
+        + b"9" * 400
+        + b"}]}}"
+    ),
+}
+
+
+@pytest.mark.parametrize("case", NO_ANSWERS)
+def test_a_skeleton_needs_an_answer(case: str, tmp_path: Path) -> None:
+    path = tmp_path / "answer.json"
+    path.write_bytes(NO_ANSWERS[case])
+    told = refused("new-effect", "gear_wear", "--from", path, "-o", tmp_path / "gear_wear.py")
+    assert "answer.json" in told
+    assert not (tmp_path / "gear_wear.py").exists()

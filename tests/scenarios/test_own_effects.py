@@ -161,7 +161,7 @@ def test_names_that_are_taken(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (None, "cannot be read"),
+        (None, "no such file"),
         ("{", "is no answer"),
         ("[]", "is no answer"),
         ('{"schema": "halltwin.twin/1"}', "expected 'halltwin.explain/1'"),

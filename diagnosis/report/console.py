@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from rich.console import Console, Group, RenderableType
@@ -16,6 +16,7 @@ from diagnosis.report.statements import FactorRow
 from diagnosis.report.wording import chance
 
 _VERDICT_STYLE = {"adequate": "green", "explained": "green", "partly explained": "yellow", "unnamed": "yellow"}
+_HEADS = ("held-out RMS, deg", "false alarm")
 _WIDE = 120
 """Characters of a terminal on which three factors stand beside each other; no column moves further apart beyond."""
 
@@ -86,26 +87,27 @@ def _extended(rows: Iterable[FactorRow]) -> Table:
 def _causes(answer: Mapping[str, Any], *, width: int) -> RenderableType | None:
     if not answer["causes"]:
         return None
-    head = _columns(width)
-    head.add_row("", Text("What the simulation gets wrong", "bold"), "held-out RMS, deg", "false alarm")
+    said = [(statements.held_words(cause), chance(cause["false_alarm_probability"])) for cause in answer["causes"]]
+    widths = [max(map(len, column)) for column in zip(_HEADS, *said, strict=True)]
+    head = _columns(width, widths)
+    head.add_row("", Text("What the simulation gets wrong", "bold"), *_HEADS)
     parts: list[RenderableType] = [head]
     for number, cause in enumerate(answer["causes"], 1):
-        row = _columns(width)
-        held = statements.held_words(cause)
-        row.add_row(str(number), Text(cause["name"], "bold"), held, chance(cause["false_alarm_probability"]))
+        row = _columns(width, widths)
+        row.add_row(str(number), Text(cause["name"], "bold"), *said[number - 1])
         parts.append(row)
         parts.extend(Padding(Text(line), (0, 0, 0, 5)) for line in _details(answer, cause))
     return Group(*parts)
 
 
-def _columns(width: int) -> Table:
+def _columns(width: int, figures: Sequence[int]) -> Table:
     """Number, name, held-out RMS, chance: the same widths for every cause, so that they stand in columns."""
     table = Table.grid(padding=(0, 2, 0, 0))
     table.width = width
     table.add_column(justify="right", width=3)
     table.add_column(ratio=1)
-    table.add_column(width=18, no_wrap=True)
-    table.add_column(width=11, no_wrap=True)
+    table.add_column(width=figures[0] + 1, no_wrap=True)
+    table.add_column(width=figures[1], no_wrap=True)
     return table
 
 

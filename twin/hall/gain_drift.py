@@ -18,7 +18,11 @@ GAIN_DRIFT = Effect(
     name="gain_drift",
     stage="hall",
     acts_on="channels",
-    params={"percent_per_K": Param(unit="%/K", null=0.0, lower=-0.7, upper=0.7, doc="drift of Ay/Ax", typical=0.005)},
+    params={
+        "percent_per_K": Param(
+            unit="%/K", null=0.0, lower=-0.7, upper=0.7, doc="drift of the gain ratio", typical=0.005
+        )
+    },
     forward=forward,
     needs=frozenset({"temperature_c", "two temperatures"}),
     source="linear temperature coefficient of the sensitivity ratio; the paper's future work",

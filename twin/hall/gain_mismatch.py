@@ -22,7 +22,7 @@ GAIN_MISMATCH = Effect(
     name="gain_mismatch",
     stage="hall",
     acts_on="channels",
-    params={"ratio": Param(unit="1", null=1.0, lower=0.2, upper=5.0, doc="Ay/Ax", typical=0.003, scatter=0.01)},
+    params={"ratio": Param(unit="1", null=1.0, lower=0.2, upper=5.0, doc="gain ratio", typical=0.003, scatter=0.01)},
     forward=forward,
     source="paper, Eq. 1",
     signature="order 2, sin 2a",

@@ -25,14 +25,14 @@ OFFSET = Effect(
     # The plates and the front-end add volts, whatever the field is.
     params={
         "x_percent": Param(
-            unit="%", null=0.0, lower=-90.0, upper=90.0, doc="Vx/Ax", typical=0.2, field_power=-1.0, scatter=1.0
+            unit="%", null=0.0, lower=-90.0, upper=90.0, doc="offset x", typical=0.2, field_power=-1.0, scatter=1.0
         ),
         "y_percent": Param(
             unit="%",
             null=0.0,
             lower=-90.0,
             upper=90.0,
-            doc="Vy/Ay",
+            doc="offset y",
             typical=0.2,
             field_power=-1.0,
             mirror=-1,

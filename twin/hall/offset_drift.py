@@ -21,14 +21,14 @@ OFFSET_DRIFT = Effect(
     acts_on="channels",
     params={
         "x_percent_per_K": Param(
-            unit="%/K", null=0.0, lower=-1.0, upper=1.0, doc="drift of Vx/Ax", typical=0.003, field_power=-1.0
+            unit="%/K", null=0.0, lower=-1.0, upper=1.0, doc="drift of offset x", typical=0.003, field_power=-1.0
         ),
         "y_percent_per_K": Param(
             unit="%/K",
             null=0.0,
             lower=-1.0,
             upper=1.0,
-            doc="drift of Vy/Ay",
+            doc="drift of offset y",
             typical=0.003,
             field_power=-1.0,
             mirror=-1,

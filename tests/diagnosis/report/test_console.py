@@ -219,6 +219,18 @@ def test_a_mirrored_description_is_said_to_fit_as_well() -> None:
     assert senses_words(answer) == ""
 
 
+@pytest.mark.parametrize("width", [60, 80, 160])
+def test_no_figure_is_cut_by_its_column(width: int) -> None:
+    answer = an_answer()
+    answer["causes"][0] |= {"heldout_rms_deg_before": 0.00539123, "heldout_rms_deg_after": 0.000256123}
+    answer["causes"][1] |= {"heldout_rms_deg_before": 0.000256123, "heldout_rms_deg_after": 1.2345e-05}
+    answer["causes"][1]["false_alarm_probability"] = None
+    text = shown(answer, width)
+    for part in ("0.00539 -> 0.000256", "0.000256 -> 1.23e-05", "not determined"):
+        assert part in text
+    assert "…" not in text
+
+
 def test_single_readings_say_how_far_off_they_are() -> None:
     off = "off by 22.5 deg RMS, which no held-out figure counts"
     assert single_rows_words({"rows": [41, 201], "rows_rms_deg": 22.5}) == f"rows 41, 201: {off}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from diagnosis.discovery.fitting.joint_fit import evaluate, solve
+from diagnosis.discovery.marks.stairs import reblurred
 from diagnosis.discovery.search.iterate import searched, trusting
 from diagnosis.discovery.search.likelihood_ratio import settle
 from diagnosis.discovery.search.stepwise import Found
@@ -29,9 +30,11 @@ def stepwise(state: State) -> State:
 
 
 def _as_it_stands(state: State, found: Found) -> State:
-    """The state with what an unfinished search holds; of the radius nothing is taken on trust."""
-    fit = found.fit
-    if fit.weighting.radius_trusted:
-        weighting = replace(fit.weighting, radius_trusted=False)
-        fit, _ = settle(solve(evaluate(fit.chain, fit.free, fit.observations, weighting)))
+    """The state with what an unfinished search holds.
+
+    Of the radius nothing is taken on trust, and stairs are blurred by the noise that is left now.
+    """
+    weighting = replace(found.fit.weighting, radius_trusted=False)
+    fit = reblurred(evaluate(found.fit.chain, found.fit.free, found.fit.observations, weighting))
+    fit, _ = settle(solve(fit))
     return state.with_(fit, keys=found.keys, looked_at=found.looked_at)

@@ -189,6 +189,16 @@ def test_what_rests_on_a_trusted_radius_does_not_stand_when_stopped() -> None:
     assert not after.fit.weighting.radius_trusted
 
 
+def test_what_a_stopped_search_leaves_is_likened_behind_the_stairs_of_the_output() -> None:
+    """On a coarse grid the noise ahead of it is known only once the cause is: it is smaller than what that makes."""
+    made = Made(causes=(("saturation", 0.08), ("output_quantisation", 0.08)), points=120, turns=2)
+    listen, heard = when(one_is_held, stop)
+    found = explain(sweep_of(made), progress=listen)
+    assert found.discovery.cut_short == "stepwise"
+    assert any(one.stopped for one in heard)
+    assert found.to_dict()["extended"]["likeness_p"] is not None
+
+
 def test_a_pipeline_of_ones_own_is_watched_too() -> None:
     heard: list[Progress] = []
 

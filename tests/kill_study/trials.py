@@ -141,14 +141,16 @@ Tell = Callable[[Trial], None]
 
 
 def resumed(command: Command, place: Path, calm: Path) -> tuple[str, bool]:
-    """Run the command again after what was done to it, and hold what it left against an undisturbed run."""
+    """Run the command again after what was done to it, and hold what is there against an undisturbed run.
+
+    A bench that was complete when it was killed is refused: what was measured is not replaced.
+    """
     again = command.run(place)
-    if again.refused:
-        return f"refused: {again.last_line}", True
-    if again.code != 0:
+    if again.code != 0 and not again.refused:
         return f"exit {again.code}: {again.last_line}", False
     difference = command.difference(place, calm)
-    return difference or "resumed, equal", not difference
+    said = f"refused: {again.last_line}" if again.refused else "resumed, equal"
+    return f"{said}; {difference}" if difference else said, not difference
 
 
 def write_encoder(work: Path) -> None:
@@ -157,5 +159,6 @@ def write_encoder(work: Path) -> None:
 
 
 def files(place: Path) -> dict[str, bytes]:
-    """Every file below a folder."""
-    return {str(item.relative_to(place)): item.read_bytes() for item in sorted(place.rglob("*")) if item.is_file()}
+    """Every file below a folder, but the empty lock of a bench that was killed as it ended."""
+    found = {str(item.relative_to(place)): item.read_bytes() for item in sorted(place.rglob("*")) if item.is_file()}
+    return {name: content for name, content in found.items() if content or not name.endswith(f"{SWEEP}.lock")}

@@ -1,7 +1,8 @@
 """Mutations made from the settings: each default halved and doubled, and the test that has to notice.
 
 A budget that is doubled costs time and changes no answer that is not at the edge: it is halved alone. So is the length
-of a spike, because the median of nine neighbours shows none that is longer than four.
+of a spike, because the median of nine neighbours shows none that is longer than four. What the settings refuse is left
+out.
 """
 
 from __future__ import annotations
@@ -102,7 +103,7 @@ def _of(name: str, default: float) -> Iterator[Mutation]:
     whole = isinstance(default, int)
     for word, factor in (("halved", 0.5), ("doubled", 2.0)):
         value = max(round(factor * default), 1) if whole else factor * default
-        if factor > 1.0 and halved_alone(name):
+        if (factor > 1.0 and halved_alone(name)) or _refused(name, value):
             continue
         kind = "int" if whole else "float"
         text = _written(default)
@@ -113,6 +114,15 @@ def _of(name: str, default: float) -> Iterator[Mutation]:
             f"    {name}: {kind} = {value!r}\n",
             NOTICED_BY[name],
         )
+
+
+def _refused(name: str, value: float) -> bool:
+    """Whether no settings have this value: a program with such a default ends when it is imported."""
+    try:
+        DiscoverySettings(**{name: value})
+    except ValueError:
+        return True
+    return False
 
 
 def _written(value: float) -> str:

@@ -131,7 +131,7 @@ STAGES: tuple[Mutation, ...] = (
         (
             "stepwise.radius_never_trusted",
             "        found = trusting(state.fit, state.searched, state.step, kept_out, tell)\n",
-            "",
+            "        pass\n",
             "stages/test_stepwise.py::test_what_the_radius_shows_is_taken_for_causes_first",
         ),
         (

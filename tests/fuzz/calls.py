@@ -7,7 +7,6 @@ import json
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -85,13 +84,14 @@ def replayed(path: Path) -> None:
 
 def readable(rng: Generator) -> tuple[str, bytes]:
     """The first of some broken sweeps that the reader takes: what is refused at the door tries no search."""
-    path = scratch() / "asked.csv"
-    for _ in range(100):
-        raw = sweeps.mutated(rng)
-        path.write_bytes(raw)
-        with contextlib.suppress(Exception), within(LONGEST_S):
-            Sweep.read(path)
-            return ".csv", raw
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "asked.csv"
+        for _ in range(100):
+            raw = sweeps.mutated(rng)
+            path.write_bytes(raw)
+            with contextlib.suppress(Exception), within(LONGEST_S):
+                Sweep.read(path)
+                return ".csv", raw
     raise AssertionError("none of a hundred broken sweeps can be read")
 
 
@@ -104,12 +104,6 @@ KINDS: Mapping[str, Kind] = {
 }
 
 
-@cache
-def scratch() -> Path:
-    """A folder of this process for the input that is being tried."""
-    return Path(tempfile.mkdtemp(prefix="halltwin_fuzz_"))
-
-
 def content(kind: str, number: int, seed: int) -> tuple[str, bytes]:
     """The input of this number: the same for the same seed, whatever was drawn before."""
     return KINDS[kind].make(np.random.default_rng([seed, sorted(KINDS).index(kind), number]))
@@ -118,10 +112,10 @@ def content(kind: str, number: int, seed: int) -> tuple[str, bytes]:
 def trial(kind: str, number: int, seed: int) -> tuple[Ended, str, bytes]:
     """One input tried: how it ended, and the input as file ending and bytes."""
     ending, raw = content(kind, number, seed)
-    path = scratch() / f"input{ending}"
-    path.write_bytes(raw)
-    ended = tried(lambda: KINDS[kind].use(path))
-    return ended, ending, raw
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"input{ending}"
+        path.write_bytes(raw)
+        return tried(lambda: KINDS[kind].use(path)), ending, raw
 
 
 __all__ = ["ANSWERED", "FAILED", "KINDS", "REFUSED", "content", "trial"]

@@ -238,7 +238,8 @@ def mutated(rng: Generator) -> bytes:
     bank = bases()
     table = {name: values.copy() for name, values in bank[int(rng.integers(0, len(bank)))].items()}
     for _ in range(int(rng.integers(1, 4))):
-        table = NUMBERS[int(rng.integers(0, len(NUMBERS)))](table, rng)
+        if next(iter(table.values())).size:
+            table = NUMBERS[int(rng.integers(0, len(NUMBERS)))](table, rng)
     if rng.random() < 0.5:
         text = csv_text(table)
     else:

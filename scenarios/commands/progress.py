@@ -1,7 +1,6 @@
 """What a person sees while a command works: one line on stderr that comes after two seconds and goes at the end.
 
-On a terminal the line is live. Elsewhere, in a log, a plain line comes after half a minute and then each time the time
-has doubled. A quick answer shows neither, so that scripts stay quiet.
+The line is live, and shown on a terminal alone: scripts stay quiet, and a log gets its lines by ``--verbose``.
 """
 
 from __future__ import annotations
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
 INTERRUPTED = 130
 """Exit code of a command that Ctrl-C has ended or cut short, as of any program that an interrupt ends."""
 SHOWN_AFTER_S = 2.0
-LOGGED_AFTER_S = 30.0
 
 Clock = Callable[[], float]
 
@@ -36,13 +34,10 @@ def progress_line(
     """A listener that shows where a call stands; ``hint`` says what Ctrl-C does."""
     from rich.console import Console
 
-    if LOG.isEnabledFor(logging.INFO):
-        # --verbose says all of it already, line by line.
-        yield _nothing
-        return
     console = console or Console(file=sys.stderr, highlight=False, soft_wrap=True)
-    if not console.is_terminal or console.is_dumb_terminal:
-        yield _Log(console, clock).hear
+    # --verbose says all of it already, line by line.
+    if LOG.isEnabledFor(logging.INFO) or not console.is_terminal or console.is_dumb_terminal:
+        yield _nothing
         return
     line = _Live(console, hint, clock)
     try:
@@ -63,21 +58,6 @@ def ended_by_interrupt() -> Iterator[None]:
     except KeyboardInterrupt:
         print("halltwin: interrupted; nothing was written", file=sys.stderr)
         raise SystemExit(INTERRUPTED) from None
-
-
-class _Log:
-    """Plain lines, at times that double."""
-
-    def __init__(self, console: Console, clock: Clock) -> None:
-        self._console, self._clock = console, clock
-        self._began_s, self._next_s = clock(), LOGGED_AFTER_S
-
-    def hear(self, progress: Progress) -> None:
-        """Write a line if it is time for one."""
-        elapsed_s = self._clock() - self._began_s
-        if elapsed_s >= self._next_s:
-            self._next_s = 2.0 * elapsed_s
-            self._console.print(f"halltwin: after {duration(elapsed_s)}: {progress_words(progress)}", markup=False)
 
 
 class _Live:

@@ -62,13 +62,13 @@ def test_a_line_says_stage_count_hint_and_causes() -> None:
 # ---- where it is shown -------------------------------------------------------------------------------------------
 
 
-def test_a_log_gets_a_line_after_half_a_minute_and_each_time_the_time_has_doubled() -> None:
+def test_where_there_is_no_terminal_nothing_is_shown() -> None:
+    """However long it takes: what is on stderr of a script is an error."""
     out, clock = io.StringIO(), Clock()
     with progress_line(console=Console(file=out, force_terminal=False, soft_wrap=True), clock=clock) as listener:
-        for clock.now_s in (1.0, 29.0, 31.0, 40.0, 61.0, 63.0, 100.0, 130.0):
+        for clock.now_s in (1.0, 31.0, 3600.0):
             listener(Progress("stepwise", clock.now_s, causes=("hysteresis",)))
-    said = "searching for causes; held so far: hysteresis"
-    assert out.getvalue().splitlines() == [f"halltwin: after {t}: {said}" for t in ("31 s", "1 min 03 s", "2 min 10 s")]
+    assert out.getvalue() == ""
 
 
 def test_a_quick_answer_shows_no_line_on_a_terminal() -> None:

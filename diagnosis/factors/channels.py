@@ -16,7 +16,6 @@ from diagnosis.factors.mechanical import counter_rotating
 from twin.angles import Array
 
 NAMES = ("Vx", "Vy", "Ax", "Ay", "beta_rad", "quad")
-_STEPS = 30
 _SURE = 4.0
 
 
@@ -65,26 +64,17 @@ def output_sense(measured_rad: Array, vx: Array, vy: Array) -> int:
 
 def fit_curve(vx: Array, vy: Array) -> ChannelFit:
     """Least squares on the relative distance of the points (n,) from the curve."""
+    from scipy.optimize import least_squares
+
     values = np.array([np.mean(vx), np.mean(vy), np.sqrt(2) * np.std(vx), np.sqrt(2) * np.std(vy), 0.0, 0.0])
     scale = np.array([values[2], values[3], values[2], values[3], 1.0, 1.0])
-    for _ in range(_STEPS):
-        residual = _distance(values, vx, vy)
-        # Central differences: the distance is smooth, and this is no inner loop.
-        slopes = np.stack(
-            [
-                (_distance(values + step, vx, vy) - _distance(values - step, vx, vy)) / 2e-6
-                for step in 1e-6 * np.diag(scale)
-            ]
-        )
-        information = slopes @ slopes.T + 1e-12 * vx.size * np.eye(6)
-        move = -np.linalg.solve(information, slopes @ residual)
-        values = values + scale * move
-        if np.max(np.abs(move)) < 1e-12:
-            break
-    residual = _distance(values, vx, vy)
-    variance = float(residual @ residual) / max(vx.size - 6, 1)
-    covariance = variance * np.linalg.inv(information) * scale[:, None] * scale
-    return ChannelFit(values, covariance, float(np.sqrt(np.mean(residual**2))))
+    found = least_squares(
+        lambda moved: _distance(values + scale * moved, vx, vy), np.zeros(6), jac="3-point", xtol=1e-12, ftol=None
+    )
+    variance = 2.0 * float(found.cost) / max(vx.size - 6, 1)
+    # Few or wild points may leave some direction open: the pseudo-inverse gives it no weight.
+    covariance = variance * np.linalg.pinv(found.jac.T @ found.jac) * scale[:, None] * scale
+    return ChannelFit(values + scale * found.x, covariance, float(np.sqrt(np.mean(found.fun**2))))
 
 
 def _distance(values: Array, vx: Array, vy: Array) -> Array:

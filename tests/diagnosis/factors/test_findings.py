@@ -241,3 +241,13 @@ def test_many_agree_with_one() -> None:
         one = quantify_many([sweep])[0]
         assert many.sweep is sweep
         np.testing.assert_allclose(many.fit.point, one.fit.point, atol=1e-8)
+
+
+@pytest.mark.parametrize("wild", [12.0, -1e3, 1e9])
+def test_one_wild_reading_of_a_channel_among_few_ends_in_figures(wild: float) -> None:
+    """What it pulls at leaves some direction open; the figures stay finite."""
+    angle = np.arange(12) * np.pi / 6.0
+    x, y = np.cos(angle), np.sin(angle)
+    x[7] = wild
+    found = fit_curve(x, y)
+    assert np.all(np.isfinite([*found.values, *found.standard_errors, found.rms_relative]))

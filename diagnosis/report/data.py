@@ -12,6 +12,7 @@ from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import angle_error_deg
+from diagnosis.report.fitted_rows import fitted
 from twin.angles import TAU, Array, wrap
 from twin.effect import BoolArray
 from twin.motion import Motion
@@ -25,8 +26,8 @@ _MOST_BINS = float(1 << 21)
 class Readings:
     """Every used reading of a sweep, arrays (n,): where it was taken, its error, and what the twins leave of it [deg].
 
-    ``predicted_deg`` is the error as the baseline predicts it; ``plain`` marks readings that belong to no cause of
-    single readings.
+    ``predicted_deg`` is the error as the baseline predicts it; ``plain`` marks readings that the fits were made
+    of.
     """
 
     motion: Motion
@@ -48,7 +49,8 @@ class Readings:
 def readings(found: Discovery) -> Readings:
     """The readings of a sweep with what the baseline and the extended twin leave of them."""
     before = np.degrees(raw_residual(found.baseline, found.sweep))
-    error = angle_error_deg(found.baseline, found.sweep)
+    error, plain = angle_error_deg(found.baseline, found.sweep), fitted(found)
+    error = error - np.mean(error[plain])
     return Readings(
         motion=found.sweep.motion(),
         angle_deg=np.mod(found.sweep.reference_deg, 360.0),
@@ -56,7 +58,7 @@ def readings(found: Discovery) -> Readings:
         predicted_deg=error - before,
         before_deg=before,
         after_deg=np.degrees(raw_residual(found.fit, found.sweep)),
-        plain=~found.masked,
+        plain=plain,
     )
 
 

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import angle_error_deg
+from diagnosis.report.fitted_rows import fitted
 from diagnosis.report.plotting import DIRECTIONS, drawing
 from twin.angles import Array
 
@@ -16,16 +18,18 @@ if TYPE_CHECKING:
 
 
 def residual_figure(found: Discovery) -> Figure:
-    """Three panels over the reference angle [deg], directions apart. Raises UserError without matplotlib."""
-    sweep = found.sweep
-    observations = found.fit.observations
-    kept = observations.usable[observations.group] & ~found.masked
+    """Three panels over the reference angle [deg], directions apart. Raises UserError without matplotlib.
+
+    Of the readings that the fits were made of; how many are not drawn stands above.
+    """
+    sweep, kept = found.sweep, fitted(found)
     angle = np.mod(sweep.reference_deg, 360.0)[kept]
     way = sweep.motion().direction[kept]
+    error_deg = angle_error_deg(found.baseline, sweep)[kept]
     panels = (
-        ("as measured", angle_error_deg(found.baseline, sweep)[kept]),
-        ("left by the error model", np.degrees(found.baseline.residual[0])[observations.group][kept]),
-        ("left by the extended twin", np.degrees(found.fit.residual[0])[observations.group][kept]),
+        ("as measured", error_deg - np.mean(error_deg)),
+        ("left by the error model", np.degrees(raw_residual(found.baseline, sweep))[kept]),
+        ("left by the extended twin", np.degrees(raw_residual(found.fit, sweep))[kept]),
     )
     with drawing() as new_figure:
         figure = new_figure(figsize=(10.0, 3.2), layout="constrained")
@@ -38,7 +42,8 @@ def residual_figure(found: Discovery) -> Figure:
             axis.set_ylim(-limit, limit)
         axes[0].legend(loc="best", markerscale=2.5)
         named = ", ".join(cause.name for cause in found.causes) or "no cause"
-        figure.suptitle(f"{sweep.name}: {named}", fontsize=10)
+        apart = int(np.count_nonzero(~kept))
+        figure.suptitle(f"{sweep.name}: {named}" + (f"; {apart} readings not drawn" if apart else ""), fontsize=10)
     return figure
 
 

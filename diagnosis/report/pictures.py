@@ -57,9 +57,14 @@ def protocol(read: Readings) -> Plot:
 def error(read: Readings) -> Plot:
     """The measured error and the baseline's prediction of it."""
     layers = by_way(read, read.angle_deg, read.error_deg, "measured")
-    middles, means = binned(read.angle_deg, read.predicted_deg, angle_bins(len(read.angle_deg), each=2))
+    # Half a turn off, a reading's error and what is left of it may lie a turn apart.
+    angle, predicted = read.angle_deg[read.plain], read.predicted_deg[read.plain]
+    middles, means = binned(angle, predicted, angle_bins(len(angle), each=2))
     layers.append(Layer("line", *_without_gaps(middles, means), "baseline", "c-model"))
-    return Plot(ANGLE, Axis(_ERROR), layers, "error of the angle over the shaft angle, and the baseline's prediction")
+    limits = _limits(read.error_deg[read.plain])
+    return Plot(
+        ANGLE, Axis(_ERROR, limits), layers, "error of the angle over the shaft angle, and the baseline's prediction"
+    )
 
 
 def residual(read: Readings, values: Array, *, limits: tuple[float, float] | None = None) -> Plot:
@@ -75,7 +80,11 @@ def residual(read: Readings, values: Array, *, limits: tuple[float, float] | Non
 
 def residual_limits(read: Readings) -> tuple[float, float]:
     """One range for the residual before and after, so that they can be compared by eye."""
-    values = read.before_deg[read.plain]
+    return _limits(read.before_deg[read.plain])
+
+
+def _limits(values: Array) -> tuple[float, float]:
+    """The range of an axis that shows all of these values (n,)."""
     low, high = float(values.min()), float(values.max())
     margin = max(0.06 * (high - low), 1e-6)
     return low - margin, high + margin

@@ -172,6 +172,8 @@ def moved_words(answer: Mapping[str, Any]) -> str:
     if not answer["causes"]:
         return ""
     names = [LABELS[key] for key in answer["extended"]["moved"]]
+    if not names and answer["extended"]["parameters"] == answer["baseline"]["parameters"]:
+        return ""
     if not names:
         return "With the causes known, every factor stays within its interval"
     return f"With the causes known, {_and(names)} {'lies' if len(names) == 1 else 'lie'} outside of the interval before"

@@ -89,7 +89,7 @@ def run_loop(
             }
         )
         named = ", ".join(cause["name"] for cause in answer["causes"]) or "no cause beyond the paper's error model"
-        say(f"explained: {answer['verdict']}: {named}; correction of {correction.series.shape[1]} orders loaded")
+        say(f"{answer['verdict']}: {named}; correction of {correction.series.shape[1]} orders loaded")
         with contextlib.closing(Journal(second.output, second.plan, twin=second.twin, restart=anew)) as later:
             after = measure(second, later, open_bus, prepare=lambda sequence: sequence.load(correction), last=False)
             if not all(one.corrected for one in after.pretreated.kept):

@@ -59,6 +59,10 @@ class Unusable:
     reason: str
 
 
+_NAMED = 3
+"""Files that the last line names; what is printed before it lists all, with the reasons."""
+
+
 @dataclass(frozen=True, eq=False)
 class SweepsRead:
     """The sweeps of several files in their order, and the files that were left out."""
@@ -80,7 +84,8 @@ class SweepsRead:
         """Raise FoundError where a file was left out: the command has answered without it."""
         if self.unusable:
             count = len(self.unusable)
-            raise FoundError(f"{count} of {count + len(self.sweeps)} files could not be used; they are listed above")
+            names = ", ".join(one.file for one in self.unusable[:_NAMED]) + (", ..." if count > _NAMED else "")
+            raise FoundError(f"{count} of {count + len(self.sweeps)} files could not be used: {names}")
 
 
 def the_same(sweeps: Sequence[Sweep]) -> list[list[str]]:

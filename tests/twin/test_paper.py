@@ -32,7 +32,7 @@ def test_figure_9_envelope(iterations: int) -> None:
 def test_writes_the_table_and_every_figure_with_its_data(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     run(tmp_path)
-    assert (tmp_path / "table1.csv").read_text().splitlines()[1] == "factor,condition,printed,computed,unit,remark"
+    assert (tmp_path / "table1.csv").read_text().splitlines()[0] == "factor,condition,printed,computed,unit,remark"
     for number in FIGURES:
         for kind in ("csv", "svg", "png"):
             assert (tmp_path / f"fig{number}.{kind}").stat().st_size > 1_000

@@ -41,9 +41,16 @@ def white_rows(fit: Fit) -> Array:
     return np.where(fit.observations.usable, rows / max(sigma, 1e-300), 0.0)
 
 
+def _scatter_tells(fit: Fit) -> bool:
+    """Whether what is left of the rows in use is noise whose size can be judged: neither stairs nor a file's digits."""
+    left = fit.residual[0][fit.observations.usable]
+    smallest_rad = float(np.radians(fit.settings.smallest_rms_deg))
+    return left.size > 0 and float(np.mean(left**2)) > smallest_rad**2 and not stairs_rule(fit)
+
+
 def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
     """Which declared shapes of the variance gain over constant variance, each at its best strength."""
-    if stairs_rule(fit) or float(np.mean(fit.residual[0] ** 2)) < 1e-12:
+    if not _scatter_tells(fit):
         return []
     use = fit.observations.usable
     square = np.clip(white_rows(fit)[use] ** 2, 0.0, 36.0)
@@ -143,7 +150,7 @@ def _half_chi_square(gain: float) -> float:
 
 def bursts(fit: Fit) -> SpreadFinding | None:
     """The stretch of rows with the most outstanding variance, if its noise is clearly louder than that of the rest."""
-    if stairs_rule(fit) or float(np.mean(fit.residual[0] ** 2)) < 1e-12:
+    if not _scatter_tells(fit):
         return None
     use = fit.observations.usable
     stretch = _loudest_stretch(np.where(use, np.clip(white_rows(fit) ** 2, 0.0, 36.0), 0.0), use)

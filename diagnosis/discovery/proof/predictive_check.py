@@ -51,10 +51,11 @@ def likeness(fit: Fit, *, rng: np.random.Generator, noise: Noise | None = None) 
     None where there are too few readings, or nothing but digits is left.
     """
     use = fit.observations.usable
-    left = float(np.mean(fit.residual[0][use] ** 2))
+    if fit.rows < fit.settings.fewest_checked + len(fit.free):
+        return None
     smallest = float(np.radians(fit.settings.smallest_rms_deg))
     # Less than the noise ahead of the stairs: no reading lies near an edge, and only the file's digits are left.
-    if fit.rows < fit.settings.fewest_checked + len(fit.free) or left < max(smallest, 0.9 * fit.weighting.blur) ** 2:
+    if np.mean(fit.residual[0][use] ** 2) < max(smallest, 0.9 * fit.weighting.blur) ** 2:
         return None
     noise = noise or noise_of(fit)
     plan = _Plan.of(fit)
@@ -153,7 +154,8 @@ class _Plan:
             weights["speed"] = motion.speed_rad_s
         if "two temperatures" in motion.provides:
             weights["temperature"] = motion.temperature_c - np.mean(motion.temperature_c)
-        weights = {name: w[use][order] / np.sqrt(np.mean(w[use] ** 2)) for name, w in weights.items()}
+        # The rows in use may all be of one kind.
+        weights = {name: w[use][order] / np.sqrt(np.mean(w[use] ** 2)) for name, w in weights.items() if w[use].any()}
         turn = motion.turn if "two turns" in motion.provides else np.floor(motion.travel_rad / TAU).astype(np.int64)
         turn_starts: IntArray = np.flatnonzero(np.diff(turn[use], prepend=-1)).astype(np.int64)
         blocks: IntArray = np.unique(np.arange(_BLOCKS) * use.size // _BLOCKS)

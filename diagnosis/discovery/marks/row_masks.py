@@ -33,7 +33,9 @@ def mask_spikes(fit: Fit, step: float, also: BoolArray) -> Fit:
             # would change it.
             radius = fit.residual[1]
             alone = spikes(radius, motion, 0.0, settings)
-            usable &= ~alone & (np.abs(radius - np.median(radius)) < settings.fallen_out)
+            near = ~alone & (np.abs(radius - np.median(radius)) < settings.fallen_out)
+            # What most readings do is no falling out: such channels are as they are.
+            usable &= near | (2 * np.count_nonzero(near) < near.size)
         if np.array_equal(usable, fit.observations.usable):
             break
         fit = solve(evaluate(fit.chain, fit.free, fit.observations.masked(usable), fit.weighting))

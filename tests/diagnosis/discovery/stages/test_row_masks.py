@@ -125,3 +125,10 @@ def test_channels_that_fall_out_are_masked(case: Radius) -> None:
     change[list(case.rows)] = -case.fallen
     state = row_masks(with_radius(recorded(), change))
     assert tuple(np.flatnonzero(~state.fit.observations.usable)) == (case.rows if case.masked else ())
+
+
+def test_what_most_readings_do_is_no_falling_out() -> None:
+    """Channels whose amplitudes differ 20:1 are as they are; all of them set aside, nothing would be left to fit."""
+    turn = np.radians(recorded().sweep.reference_deg)
+    state = row_masks(with_radius(recorded(), 3.0 * np.cos(2.0 * turn)))
+    assert np.mean(state.fit.observations.usable) > 0.9

@@ -17,12 +17,12 @@ import shutil
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from diagnosis.report.provenance import version
 from scenarios.commands.file_lock import alone
 from scenarios.commands.interrupt import interruptible
 from scenarios.studies.identity import flat, read_record, refuse_other
@@ -32,14 +32,6 @@ from twin.whole_file import TEMPORARY, new_name, write_whole
 _IDENTITY, _LOCK, _DONE, _CHUNKS = "study.json", "study.lock", "done", "chunks"
 _OWN_UNFINISHED = re.compile(re.escape(TEMPORARY).replace(r"\*", "[0-9a-f]{16}"))
 _ZARR_UNFINISHED = re.compile(r".+\.[0-9a-f]{32}\.partial")
-
-
-def version() -> str:
-    """The version of the program that results are made by."""
-    try:
-        return metadata.version("halltwin")
-    except metadata.PackageNotFoundError:
-        return "source tree"
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from diagnosis.report.provenance import version
 from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
-from scenarios.studies.study_folder import StudyFolder, version
+from scenarios.studies.study_folder import StudyFolder
 from scenarios.studies.training.job import Training, settings_of
 from scenarios.studies.training.recipe import Recipe, parameter_names
 from scenarios.studies.training.store import STORE, create, tools

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from diagnosis.discovery.settings import UNLIKE
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
 from diagnosis.report.wording import figure, instances, parameter_line, plain, structure_words, with_unit
 
@@ -31,7 +32,6 @@ _LACKS = {
 _ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two speeds|both directions": "moving shaft"}
 """A want that goes without saying where the second one is wanted too."""
 
-_UNLIKE = 0.01
 _SEARCHED = "of these {used} were searched, in stretches spread over the record"
 
 
@@ -272,8 +272,8 @@ def likeness_words(extended: Mapping[str, Any]) -> str:
     p = extended.get("likeness_p")
     if p is None:
         return ""
-    if p < _UNLIKE:
-        return f"simulated sweeps do not match (p < {_UNLIKE:g}: {extended['likeness_worst']})"
+    if p < UNLIKE:
+        return f"simulated sweeps do not match (p < {UNLIKE:g}: {extended['likeness_worst']})"
     return f"simulated sweeps match (p = {plain(p, 2)})"
 
 

@@ -7,11 +7,12 @@ out.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import fields
 
 from diagnosis.discovery.settings import DiscoverySettings
-from tests.mutations.mutation import Mutation
+from tests.mutations.mutation import ROOT, Mutation
 
 _FILE = "diagnosis/discovery/settings.py"
 _D = "tests/diagnosis/discovery"
@@ -105,13 +106,13 @@ def _of(name: str, default: float) -> Iterator[Mutation]:
         value = max(round(factor * default), 1) if whole else factor * default
         if (factor > 1.0 and halved_alone(name)) or _refused(name, value):
             continue
-        kind = "int" if whole else "float"
-        text = _written(default)
+        # The range that stands behind the default stays as it is.
+        line = f"    {name}: {'int' if whole else 'float'} = {_kind(name)}("
         yield Mutation(
             f"settings.{name}_{word}",
             _FILE,
-            f"    {name}: {kind} = {text}\n",
-            f"    {name}: {kind} = {value!r}\n",
+            f"{line}{_written(default)}",
+            f"{line}{value!r}",
             NOTICED_BY[name],
         )
 
@@ -123,6 +124,13 @@ def _refused(name: str, value: float) -> bool:
     except ValueError:
         return True
     return False
+
+
+def _kind(name: str) -> str:
+    """The function that declares a setting: default and range."""
+    found = re.search(rf"^    {name}: \w+ = (\w+)\(", (ROOT / _FILE).read_text(encoding="utf-8"), re.MULTILINE)
+    assert found is not None, f"{name} is declared in another way"
+    return found[1]
 
 
 def _written(value: float) -> str:

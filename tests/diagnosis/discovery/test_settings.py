@@ -22,20 +22,24 @@ NAMES = [one.name for one in fields(PLAIN)]
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 10**400, "4", None, True, [4]], ids=repr)
 def test_what_is_no_number_is_refused_by_name(name: str, value: Any) -> None:
-    with pytest.raises(ValueError, match=f"^{name} is .*; expected a (whole )?number from [0-9e.+-]+ to [0-9e.+-]+$"):
+    with pytest.raises(
+        ValueError, match=f"^{name} is .*; expected a (whole )?number from [0-9e.+-]+ to (below )?[0-9e.+-]+$"
+    ):
         DiscoverySettings(**{name: value})
 
 
 @pytest.mark.parametrize(
     ("name", "value", "expected"),
     [
-        *(("false_alarm_probability", value, "a number from 1e-300 to 1") for value in (0.0, 1.0, -0.1, 2.0)),
+        *(("false_alarm_probability", value, "a number from 1e-300 to below 1$") for value in (0.0, 1.0, -0.1, 2.0)),
         *((name, value, "a whole number from") for name in WHOLE for value in (0, -1, 2.5, 4.0)),
         *((name, -0.1, "a number from") for name in NAMES if name not in WHOLE and not name.endswith("_log_p")),
         *((name, 0.0, "a number from -10000 to -1e-09") for name in NAMES if name.endswith("_log_p")),
         # One fold holds nothing out.
         ("folds", 1, "a whole number from 2 to 100"),
         ("folds", 10**6, "a whole number from 2 to 100"),
+        # Of 99 sweeps the smallest p is 0.01, which is not below 0.01: none could be called unlike.
+        ("predictive_sweeps", 99, "a whole number from 100 to 10000"),
         # What may grow by chance does not shrink.
         ("heldout_slack", 0.99, "a number from 1 to 1000"),
         # More than all.
@@ -45,6 +49,25 @@ def test_what_is_no_number_is_refused_by_name(name: str, value: Any) -> None:
 def test_what_cannot_be_is_refused_by_name(name: str, value: Any, expected: str) -> None:
     with pytest.raises(ValueError, match=f"^{name} is {value}; expected {expected}"):
         DiscoverySettings(**{name: value})
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_range_that_a_message_tells_is_the_one_that_is_allowed(name: str) -> None:
+    with pytest.raises(ValueError, match=f"^{name} is nan") as refused:
+        DiscoverySettings(**{name: np.nan})
+    low, high = str(refused.value).rpartition(" from ")[2].split(" to ")
+    kind = int if name in WHOLE else float
+    least, most = kind(float(low)), kind(float(high.removeprefix("below ")))
+    others = {"fewest_simulated": 16, "most_simulated": 10_000}
+    assert getattr(DiscoverySettings(**{**others, name: least}), name) == least
+    if high.startswith("below "):
+        most = np.nextafter(most, -np.inf)
+    assert getattr(DiscoverySettings(**{**others, name: most}), name) == most
+
+
+@pytest.mark.parametrize("policy", [1e-300, np.nextafter(1.0, 0.0)])
+def test_the_ends_of_the_policy_have_a_logarithm(policy: float) -> None:
+    assert np.isfinite(DiscoverySettings(false_alarm_probability=policy).effect_log_p(1000))
 
 
 def test_the_fewest_are_at_most_as_many_as_the_most() -> None:

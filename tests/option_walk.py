@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 from typer.models import OptionInfo
 
-from scenarios.cli.main import app
+from scenarios.cli.app import app
 
 ODD = ("nan", "inf", "-inf", "-1", "0", "1e308", "36.9", "")
 """What a number may be by mistake."""

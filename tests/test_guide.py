@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.cli.main import app
+from scenarios.cli.app import app
 from tests.command_line import halltwin
 from tests.pages import GUIDE, PAGES, ROOT, block, figures, lines, part, words
 

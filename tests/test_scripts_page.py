@@ -8,7 +8,7 @@ from diagnosis.factors.series import UNITS
 from scenarios.cli.main import CRASHED
 from scenarios.cli.streams import READER_GONE
 from scenarios.commands.fail_on import BENCH, COMPENSATE, DIAGNOSE, EXPLAIN, MONITOR
-from scenarios.commands.progress import INTERRUPTED
+from scenarios.commands.interrupt import INTERRUPTED
 from tests.pages import GUIDE
 from twin.catalogue import CATALOGUE
 from twin.presets import preset_names

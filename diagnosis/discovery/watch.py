@@ -6,7 +6,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
 from diagnosis.progress import Listener, Progress
@@ -15,11 +15,8 @@ from twin.log import LOG
 S = TypeVar("S")
 
 
-class Stopped(BaseException):
-    """The search is to end where it stands.
-
-    No Exception: an effect of one's own that catches those does not keep the search going.
-    """
+class Stopped(KeyboardInterrupt):
+    """The search is to end where it stands: an interrupt, which all code that guards others' code lets pass."""
 
 
 class Watch:
@@ -50,21 +47,30 @@ class Watch:
         self._stage = stage
         if as_it_stands is not None:
             self._as_it_stands = as_it_stands
-        if self._listener is None:
-            return
-        elapsed_s = time.monotonic() - self._began_s
+        if self._searching and self.stopped_in is not None:
+            # Code of the user's own has caught what was raised in it.
+            raise Stopped
         try:
-            self._listener(Progress(stage, elapsed_s, causes=tuple(causes), stopped=self._asked_to_stop))
+            self._tell()
         except StopIteration:
             self.stop()
 
+    def _tell(self) -> None:
+        """Tell the listener where the search stands."""
+        if self._listener is not None:
+            elapsed_s = time.monotonic() - self._began_s
+            self._listener(Progress(self._stage, elapsed_s, causes=self._told[1], stopped=self._asked_to_stop))
+
     def stop(self) -> None:
         """End the search where it stands, do not begin it; where it is over already, change nothing."""
-        self._asked_to_stop = True
         if self.stopped_in is None and not self._over:
             self.stopped_in = self._stage
+        if not self._asked_to_stop:
+            self._asked_to_stop = True
+            # At once: what is left to do takes seconds, in which a person asks whether the word was heard.
+            with suppress(StopIteration):
+                self._tell()
         if self._searching:
-            self._searching = False
             raise Stopped
 
     def until_stopped(self, search: Callable[[S], S], state: S) -> S:
@@ -77,6 +83,7 @@ class Watch:
             found = search(state)
             self._searching, self._over = False, True
         except Stopped:
+            self._searching = False
             found = self._as_it_stands()
         return found
 

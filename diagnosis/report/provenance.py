@@ -41,6 +41,16 @@ def version() -> str:
         return "not installed"
 
 
+def check_day() -> None:
+    """Refuse a day that is none, once for all that read it: modules of scipy and matplotlib do so as they are loaded.
+
+    An empty one counts as unset. Raises UserError.
+    """
+    if not os.environ.get(EPOCH):
+        os.environ.pop(EPOCH, None)
+    day()
+
+
 def day() -> str:
     """Today in UTC as YYYY-MM-DD: no time of day, so that the same input gives the same bytes all day long.
 

@@ -1,72 +1,20 @@
-"""The command line: every command in the order of the help text, and what a mistake of the user's looks like."""
+"""Where the program begins and ends: the exit code, and the one line that a mistake or an interrupt ends with.
+
+Little is loaded before the work is watched over, so that Ctrl-C is a line at any time.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import sys
-from typing import Annotated
-
-import typer
 
 from scenarios.cli import streams
-from scenarios.cli.bench import bench
-from scenarios.cli.effects import causes, check_effect, new_effect
-from scenarios.cli.simulation import hardware, paper, simulate, spinning
-from scenarios.cli.studies import design, generate, recover
-from scenarios.cli.sweeps import compensate, diagnose, explain, monitor
-from scenarios.cli.verbosity import with_verbosity
-
-app = typer.Typer(
-    name="halltwin",
-    no_args_is_help=True,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    pretty_exceptions_enable=False,
-)
-
-
-def _tell_version(asked: bool) -> None:
-    if asked:
-        from diagnosis.report.provenance import version
-
-        print(f"halltwin {version()}")
-        raise typer.Exit
-
-
-@app.callback()
-def halltwin(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Print the version.")
-    ] = False,
-) -> None:
-    """A digital twin of a Hall angle sensor that says what its own simulation gets wrong, and why.
-
-    Exit code 0: answered. 1: answered, and what --fail-on names was found, or some of the files could not be used.
-    2: the input cannot be used.
-    """
-
 
 CRASHED = 70
 """Exit code of a fault of the program's own, EX_SOFTWARE of sysexits.h: with Python's 1 it would pass for an answer."""
-
-for command in (
-    explain,
-    causes,
-    simulate,
-    diagnose,
-    spinning,
-    paper,
-    compensate,
-    monitor,
-    hardware,
-    bench,
-    new_effect,
-    check_effect,
-    generate,
-    design,
-    recover,
-):
-    app.command()(with_verbosity(command))
+_DAY = "SOURCE_DATE_EPOCH"
+"""See ``check_day`` in ``diagnosis/report/provenance.py``, which need not be loaded where it is not set."""
 
 
 def main() -> None:
@@ -91,12 +39,14 @@ def main() -> None:
 def _run() -> tuple[int, str]:
     """Exit code of the command, and the line to end with; empty where nothing is to be said."""
     try:
-        app()
+        _command()
     except SystemExit as ended:
         if streams.reader_is_gone(ended.__context__):
             return streams.READER_GONE, ""
+        if _by_interrupt(ended):
+            return _ending(KeyboardInterrupt())
         return (ended.code if isinstance(ended.code, int) else int(ended.code is not None)), ""
-    except Exception as error:
+    except (Exception, KeyboardInterrupt) as error:
         code, said = _ending(error)
         if code == CRASHED:
             sys.excepthook(type(error), error, error.__traceback__)
@@ -104,8 +54,32 @@ def _run() -> tuple[int, str]:
     return 0, ""
 
 
-def _ending(error: Exception) -> tuple[int, str]:
+def _command() -> None:
+    """Run what the command line asks for."""
+    if _DAY in os.environ:
+        from diagnosis.report.provenance import check_day
+
+        check_day()
+    from scenarios.cli import app
+
+    app.app()
+
+
+def _by_interrupt(ended: BaseException | None) -> bool:
+    """Whether an exit comes of an interrupt before or after the command itself, which typer has made an exit of."""
+    while ended is not None and not isinstance(ended, KeyboardInterrupt):
+        ended = ended.__context__
+    return ended is not None
+
+
+def _ending(error: Exception | KeyboardInterrupt) -> tuple[int, str]:
     """Exit code and message of what ended a command."""
+    from scenarios.commands.interrupt import INTERRUPTED, NOTHING_WRITTEN, Interrupted
+
+    if isinstance(error, KeyboardInterrupt):
+        return INTERRUPTED, NOTHING_WRITTEN
+    if isinstance(error, Interrupted):
+        return INTERRUPTED, str(error)
     # twin loads numpy, which --help need not wait for.
     from scenarios.commands.fail_on import FoundError
     from twin.errors import UserError

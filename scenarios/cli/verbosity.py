@@ -42,7 +42,9 @@ def with_verbosity(command: Callable[..., None]) -> Callable[..., None]:
     def run(*, quiet: bool, verbose: bool, **options: Any) -> None:
         if quiet and verbose:
             raise typer.BadParameter("--quiet and --verbose exclude each other; give one of them")
-        with _silence() if quiet else _told() if verbose else _as_is():
+        from scenarios.commands.interrupt import interruptible
+
+        with interruptible(), _silence() if quiet else _told() if verbose else _as_is():
             command(**options)
 
     # typer asks a function for its signature and its annotations, and gives each parameter by name.

@@ -10,7 +10,7 @@ from diagnosis import diagnose_many
 from scenarios.commands.fail_on import DIAGNOSE, asked, in_diagnoses, raise_found
 from scenarios.commands.inputs import SweepFiles, check_panels
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
-from scenarios.commands.progress import ended_by_interrupt, progress_line
+from scenarios.commands.progress import progress_line
 from scenarios.commands.terminal import terminal_width
 
 
@@ -31,7 +31,7 @@ def run(
     files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE), (convergence, PICTURE)], inputs=paths, force=force)
     read = given.read(paths)
     check_panels(plot, len(read.sweeps))
-    with ended_by_interrupt(), progress_line() as listener:
+    with progress_line() as listener:
         found = diagnose_many(read.sweeps, seed=seed, progress=listener)
     found = replace(found, made=replace(found.made, command=command))
     answer = {**found.to_dict(), "unusable": read.listed()}

@@ -11,8 +11,9 @@ from diagnosis import Explanation, explain
 from diagnosis.report.console import show
 from diagnosis.report.page import page
 from scenarios.commands.fail_on import EXPLAIN, asked, in_explanation, raise_found
+from scenarios.commands.interrupt import INTERRUPTED
 from scenarios.commands.outputs import HTML, JSON, PICTURE, TOML, OutputFiles, json_text
-from scenarios.commands.progress import INTERRUPTED, ended_by_interrupt, progress_line
+from scenarios.commands.progress import progress_line
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.catalogue import unnamed
 from twin.extensions import effects_with
@@ -79,5 +80,5 @@ def _asked(given: Sequence[str], effect_files: Sequence[Path]) -> tuple[str, ...
 
 def _explained(sweep: Sweep, **given: Any) -> Explanation:
     """The answer, with a line that says where the search stands; Ctrl-C gives the answer so far, twice none."""
-    with ended_by_interrupt(), progress_line("Ctrl-C: the answer so far") as listener:
+    with progress_line("Ctrl-C: the answer so far") as listener:
         return explain(sweep, **given, progress=listener, on_interrupt="answer")

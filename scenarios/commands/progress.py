@@ -20,8 +20,6 @@ from twin.log import LOG
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
-INTERRUPTED = 130
-"""Exit code of a command that Ctrl-C has ended or cut short, as of any program that an interrupt ends."""
 SHOWN_AFTER_S = 2.0
 
 Clock = Callable[[], float]
@@ -37,7 +35,7 @@ def progress_line(
     console = console or Console(file=sys.stderr, highlight=False, soft_wrap=True)
     # --verbose says all of it already, line by line.
     if LOG.isEnabledFor(logging.INFO) or not console.is_terminal or console.is_dumb_terminal:
-        yield _nothing
+        yield _Stop(console).hear
         return
     line = _Live(console, hint, clock)
     try:
@@ -46,18 +44,17 @@ def progress_line(
         line.end()
 
 
-def _nothing(progress: Progress) -> None:
-    """Hear it and show nothing."""
+class _Stop:
+    """Where there is no live line: one line as soon as the search is stopped, and nothing else."""
 
+    def __init__(self, console: Console) -> None:
+        self._console, self._said = console, False
 
-@contextmanager
-def ended_by_interrupt() -> Iterator[None]:
-    """An interrupt (Ctrl-C) that no answer comes of ends the command with one line."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        print("halltwin: interrupted; nothing was written", file=sys.stderr)
-        raise SystemExit(INTERRUPTED) from None
+    def hear(self, progress: Progress) -> None:
+        """Say once that the word to stop was heard."""
+        if progress.stopped and not self._said:
+            self._said = True
+            self._console.print("halltwin: stopping: the answer so far follows; Ctrl-C again ends at once")
 
 
 class _Live:

@@ -16,14 +16,13 @@ import numpy as np
 import pytest
 import typer
 
-from scenarios.cli import main
-from scenarios.cli.main import app
+from scenarios.cli import app as command_line
 from scenarios.commands import paper
 from scenarios.commands.marks import is_own
 from tests.command_line import csv_text, halltwin, sweep_angles
 from twin.whole_file import TEMPORARY
 
-COMMAND_LINE = typer.main.get_command(app)
+COMMAND_LINE = typer.main.get_command(command_line.app)
 FOREIGN = b"time_s,reference_deg,measured_deg\n0,1,2\n# somebody's own\n"
 
 
@@ -99,7 +98,7 @@ def folder(read: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copytree(read, tmp_path, dirs_exist_ok=True)
     monkeypatch.setattr(paper, "FIGURES", {3: paper.FIGURES[3]})
     # Built once: building it takes longer than a refusal.
-    monkeypatch.setattr(main, "app", COMMAND_LINE)
+    monkeypatch.setattr(command_line, "app", COMMAND_LINE)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -174,7 +173,7 @@ def paths_of(callback: Callable[..., Any]) -> set[str]:
 
 
 def test_every_command_that_writes_has_force_and_is_in_the_table() -> None:
-    for command in app.registered_commands:
+    for command in command_line.app.registered_commands:
         assert command.callback is not None
         name = command.name or command.callback.__name__.replace("_", "-")
         writes = paths_of(command.callback)

@@ -91,7 +91,8 @@ def test_what_a_stopped_search_holds_is_finished_and_proven() -> None:
         assert found.verdict == "partly explained"
         assert "noise" in found.extended.values
         after = [one.stage for one in heard if one.stopped]
-        assert after == [stage.__name__ for stage in PIPELINE[PIPELINE.index(held_out_selection) :]]
+        # At once in the stage that is stopped, then as what it holds is finished.
+        assert after == ["stepwise", *(stage.__name__ for stage in PIPELINE[PIPELINE.index(held_out_selection) :])]
 
 
 def test_a_search_stopped_before_it_began_finds_nothing_and_is_not_adequate() -> None:
@@ -128,7 +129,7 @@ def test_a_second_interrupt_ends_at_once() -> None:
 
     with pytest.raises(KeyboardInterrupt):
         explain(sweep_of(TWO), progress=again, on_interrupt="answer")
-    assert [one.stage for one in heard if one.stopped] == ["held_out_selection"]
+    assert [one.stage for one in heard if one.stopped] == ["stepwise"]
 
 
 def test_an_interrupt_raises_unless_the_answer_is_asked_for() -> None:
@@ -177,6 +178,21 @@ def test_an_effect_that_catches_every_exception_does_not_keep_the_search_going()
     after = until_still(lambda state: state.with_(looked_at=1), stubborn)(start)
     assert after.looked_at == 1
     assert not issubclass(Stopped, Exception)
+
+
+def test_an_effect_that_swallows_the_word_to_stop_keeps_the_search_going_no_longer_than_the_stage() -> None:
+    watch = Watch()
+    held: list[State] = []
+
+    def stubborn(state: State) -> State:
+        with contextlib.suppress(BaseException):
+            watch.stop()
+        held.append(state)
+        watch.told("next", (), lambda: held[0])
+        raise AssertionError("the search goes on")
+
+    start = start_of(TWO)
+    assert watch.until_stopped(stubborn, start) is start
 
 
 def test_what_rests_on_a_trusted_radius_does_not_stand_when_stopped() -> None:

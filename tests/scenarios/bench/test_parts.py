@@ -18,7 +18,7 @@ from scenarios.bench.messages import checksum, messages, with_counter
 from scenarios.bench.plan import Plan
 from scenarios.bench.progress import curve
 from scenarios.bench.stepper import Stepper
-from scenarios.cli.main import app
+from scenarios.cli.app import app
 from twin.angles import TAU
 from twin.errors import UserError
 from twin.link.frames import crc8, spi_words

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from typer.main import get_command
 
-from scenarios.cli.main import app
+from scenarios.cli.app import app
 from tests.command_line import halltwin
 
 ROOT = Path(__file__).parents[3]
@@ -23,7 +23,7 @@ def loaded_by(statement: str) -> set[str]:
 
 
 def test_help_waits_for_nothing_but_typer() -> None:
-    own = loaded_by("import scenarios.cli.main") - loaded_by("import os, pathlib, typing, typer")
+    own = loaded_by("import scenarios.cli.app") - loaded_by("import os, pathlib, typing, typer")
     assert {name for name in own if name != "scenarios" and not name.startswith("scenarios.cli")} == set()
 
 

@@ -12,7 +12,8 @@ from unittest import mock
 
 import pytest
 
-from scenarios.cli.main import app, main
+from scenarios.cli.app import app
+from scenarios.cli.main import main
 from scenarios.cli.streams import READER_GONE
 from tests.pages import ROOT
 

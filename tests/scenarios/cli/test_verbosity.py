@@ -10,8 +10,9 @@ import pytest
 from typer.main import get_command
 
 from diagnosis.report.provenance import version
-from scenarios.cli import main
-from scenarios.cli.main import app
+from scenarios.cli import app as commands
+from scenarios.cli.app import app
+from scenarios.cli.main import CRASHED
 from tests import command_line
 from tests.command_line import halltwin
 from tests.pages import ROOT
@@ -112,8 +113,8 @@ def test_a_usage_error_is_two_lines_and_the_reason(arguments: tuple[str | Path, 
 def test_a_fault_of_the_program_is_told_from_an_answer(capsys: pytest.CaptureFixture[str]) -> None:
     """Its traceback is shown, and the exit code is neither that of a finding nor that of a mistake of the user's."""
     with (
-        mock.patch.object(main, "app", side_effect=ZeroDivisionError("a fault")),
+        mock.patch.object(commands, "app", side_effect=ZeroDivisionError("a fault")),
         pytest.raises(AssertionError, match="ZeroDivisionError: a fault"),
     ):
         halltwin("causes")
-    assert command_line.CRASHED == main.CRASHED == 70
+    assert command_line.CRASHED == CRASHED == 70

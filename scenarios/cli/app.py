@@ -1,0 +1,62 @@
+"""The command line: every command, in the order of the help text."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from scenarios.cli.bench import bench
+from scenarios.cli.effects import causes, check_effect, new_effect
+from scenarios.cli.simulation import hardware, paper, simulate, spinning
+from scenarios.cli.studies import design, generate, recover
+from scenarios.cli.sweeps import compensate, diagnose, explain, monitor
+from scenarios.cli.verbosity import with_verbosity
+
+app = typer.Typer(
+    name="halltwin",
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+)
+
+
+def _tell_version(asked: bool) -> None:
+    if asked:
+        from diagnosis.report.provenance import version
+
+        print(f"halltwin {version()}")
+        raise typer.Exit
+
+
+@app.callback()
+def halltwin(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """A digital twin of a Hall angle sensor that says what its own simulation gets wrong, and why.
+
+    Exit code 0: answered. 1: answered, and what --fail-on names was found, or some of the files could not be used.
+    2: the input cannot be used.
+    """
+
+
+for command in (
+    explain,
+    causes,
+    simulate,
+    diagnose,
+    spinning,
+    paper,
+    compensate,
+    monitor,
+    hardware,
+    bench,
+    new_effect,
+    check_effect,
+    generate,
+    design,
+    recover,
+):
+    app.command()(with_verbosity(command))

@@ -1,4 +1,7 @@
-"""One thread for the linear algebra of a diagnosis: its matrices are small, and threads cost more than they bring."""
+"""What a diagnosis computes with: one thread for its linear algebra, and numpy's own way with what overflows.
+
+Its matrices are small, and threads cost more than they bring.
+"""
 
 from __future__ import annotations
 
@@ -37,16 +40,21 @@ class _Limit:
 
 
 _LIMIT = _Limit()
+_NUMPYS_OWN: Any = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
+"""Where the caller has numpy raise, an exponential that vanishes would end the search."""
 
 
 @contextmanager
 def one_blas_thread() -> Iterator[None]:
-    """Run the body with BLAS on one thread; afterwards it has as many as before.
+    """Run the body with BLAS on one thread and numpy's own error handling; afterwards both are as before.
 
     Calls may be nested and may run in several threads of Python at once.
     """
+    import numpy as np
+
     _LIMIT.hold()
     try:
-        yield
+        with np.errstate(**_NUMPYS_OWN):
+            yield
     finally:
         _LIMIT.release()

@@ -76,10 +76,8 @@ def _ending(error: Exception | KeyboardInterrupt) -> tuple[int, str]:
     """Exit code and message of what ended a command."""
     from scenarios.commands.interrupt import INTERRUPTED, NOTHING_WRITTEN, Interrupted
 
-    if isinstance(error, KeyboardInterrupt):
-        return INTERRUPTED, NOTHING_WRITTEN
-    if isinstance(error, Interrupted):
-        return INTERRUPTED, str(error)
+    if isinstance(error, KeyboardInterrupt | Interrupted):
+        return INTERRUPTED, str(error) or NOTHING_WRITTEN
     # twin loads numpy, which --help need not wait for.
     from scenarios.commands.fail_on import FoundError
     from twin.errors import UserError

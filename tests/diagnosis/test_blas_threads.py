@@ -76,3 +76,11 @@ def test_the_public_calls_work_on_one_thread(
     call(Chain().simulate(Motion.from_angle(np.radians(np.arange(0.0, 360.0, 10.0)))))
     assert within == [{1}]
     assert threads() == {2}
+
+
+def test_an_answer_does_not_depend_on_what_the_caller_has_numpy_do_about_underflow() -> None:
+    motion = Motion.from_angle(np.linspace(0.0, 12.0, 96))
+    sweep = Chain().with_effect("saturation", k_percent=0.8).with_effect("noise", rms_deg=0.02).simulate(motion, seed=1)
+    calm = explain(sweep).to_dict()
+    with np.errstate(all="raise"):
+        assert explain(sweep).to_dict() == calm

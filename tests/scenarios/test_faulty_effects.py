@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,8 @@ from twin.motion import Motion
 
 DATA = Path(__file__).parents[2] / "scenarios/data"
 SWEEP, GEAR = DATA / "gear_sweep.csv", DATA / "gear_mesh.py"
+SEARCHED = 1440
+"""Readings of the sweep: the search calls the effect a thousand times with as many, the checks with others."""
 
 
 def refused(*arguments: str | Path) -> str:
@@ -104,3 +107,32 @@ def test_a_skeleton_needs_an_answer(case: str, tmp_path: Path) -> None:
     told = refused("new-effect", "gear_wear", "--from", path, "-o", tmp_path / "gear_wear.py")
     assert "answer.json" in told
     assert not (tmp_path / "gear_wear.py").exists()
+
+
+def test_an_interrupt_within_an_effect_gives_the_answer_so_far(tmp_path: Path) -> None:
+    path = tmp_path / "gear_mesh.py"
+    source = GEAR.read_text().replace("def forward(", "def right(", 1)
+    path.write_text(
+        source.replace(
+            "EFFECT = ",
+            f"""
+def forward(signal, motion, values, rng):
+    import signal as signals
+    global CALLS
+    if len(motion) == {SEARCHED}:
+        CALLS += 1
+        if CALLS == 300:
+            signals.raise_signal(signals.SIGINT)
+    return right(signal, motion, values, rng)
+
+
+CALLS = 0
+EFFECT = """,
+            1,
+        )
+    )
+    ended = halltwin("explain", SWEEP, "--effects", path, "--json", tmp_path / "answer.json")
+    assert ended.code == 130
+    assert ended.err.startswith("halltwin: stopping: the answer so far follows")
+    assert ended.err.count("\n") == 1
+    assert json.loads((tmp_path / "answer.json").read_text())["cut_short"]["stage"]

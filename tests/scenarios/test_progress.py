@@ -59,6 +59,14 @@ def test_a_line_says_stage_count_hint_and_causes() -> None:
     assert [duration(s) for s in (0.4, 59.9, 61.0, 3725.0)] == ["0 s", "59 s", "1 min 01 s", "62 min 05 s"]
 
 
+def test_without_a_terminal_the_word_to_stop_is_answered_at_once_and_once() -> None:
+    out = io.StringIO()
+    with progress_line(console=Console(file=out, force_terminal=False, soft_wrap=True)) as listener:
+        for _ in range(3):
+            listener(Progress("final_fit", 3.0, stopped=True))
+    assert out.getvalue() == "halltwin: stopping: the answer so far follows; Ctrl-C again ends at once\n"
+
+
 # ---- where it is shown -------------------------------------------------------------------------------------------
 
 

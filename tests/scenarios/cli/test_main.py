@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 from typer.main import get_command
 
 from scenarios.cli.app import app
+from scenarios.commands import causes
 from tests.command_line import halltwin
 
 ROOT = Path(__file__).parents[3]
@@ -48,3 +50,62 @@ def test_every_value_has_a_placeholder_and_a_unit_is_said_in_words_too(command: 
         for part in placeholder.split(":")[0].split(",")[:1]:
             if part in UNITS:
                 assert f" {UNITS[part]}" in str(option.help), f"{command} {option.name}"
+
+
+# ---- Ctrl-C ------------------------------------------------------------------------------------------------------
+
+INTERRUPTED_AT = """
+import signal, sys
+from scenarios.cli.main import main
+
+
+class Finder:
+    def find_spec(name, path=None, target=None):
+        if name == {module!r}:
+            signal.raise_signal(signal.SIGINT)
+
+
+sys.meta_path.insert(0, Finder)
+sys.argv = ["halltwin", "simulate", "-o", {output!r}]
+main()
+"""
+
+
+@pytest.mark.parametrize("module", ["typer", "scenarios.cli.sweeps", "numpy", "twin.chain", "twin.sweep_file"])
+def test_an_interrupt_while_modules_are_loaded_is_one_line(module: str, tmp_path: Path) -> None:
+    code = INTERRUPTED_AT.format(module=module, output=str(tmp_path / "sweep.csv"))
+    ended = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout) == (130, "")
+    assert ended.stderr == "halltwin: interrupted; nothing was written\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("options", [(), ("--quiet",)], ids=str)
+def test_an_interrupt_is_told_whatever_the_command_does(
+    options: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(**given: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(causes, "run", interrupted)
+    ended = halltwin("causes", *options)
+    assert (ended.code, ended.out, ended.err) == (130, "", "halltwin: interrupted; nothing was written\n")
+
+
+# ---- the day -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("day", ["abc", "1.5", " ", "9" * 30])
+def test_a_day_that_is_none_is_refused_by_every_command(day: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", day)
+    ended = halltwin("causes")
+    assert (ended.code, ended.out, ended.err.count("\n")) == (2, "", 1)
+    assert "SOURCE_DATE_EPOCH is" in ended.err
+
+
+def test_an_empty_day_counts_as_unset() -> None:
+    """As modules of scipy read it too, which are loaded on the way, a process of its own is needed."""
+    command = [sys.executable, "-m", "scenarios.cli.main", "diagnose", "scenarios/data/bench_sweep.csv"]
+    environment = {**os.environ, "SOURCE_DATE_EPOCH": ""}
+    ended = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (0, "")

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from scenarios.commands.interrupt import INTERRUPTED, Interrupted
 from scenarios.studies.engine import run_study
 from scenarios.studies.job import Job
 from scenarios.studies.machines import Machines
@@ -74,4 +75,9 @@ def content(path: Path) -> dict[str, bytes]:
 
 
 if __name__ == "__main__":
-    study(Path(sys.argv[1]), pause_s=float(sys.argv[2]))
+    try:
+        study(Path(sys.argv[1]), pause_s=float(sys.argv[2]))
+    except Interrupted as interrupted:
+        # As the command line ends.
+        print(interrupted, file=sys.stderr)
+        raise SystemExit(INTERRUPTED) from None

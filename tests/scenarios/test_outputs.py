@@ -22,6 +22,7 @@ from scenarios.commands.marks import is_own
 from tests.command_line import csv_text, halltwin, sweep_angles
 from twin.whole_file import TEMPORARY
 
+COMMANDS = command_line.app.registered_commands
 COMMAND_LINE = typer.main.get_command(command_line.app)
 FOREIGN = b"time_s,reference_deg,measured_deg\n0,1,2\n# somebody's own\n"
 
@@ -173,7 +174,7 @@ def paths_of(callback: Callable[..., Any]) -> set[str]:
 
 
 def test_every_command_that_writes_has_force_and_is_in_the_table() -> None:
-    for command in command_line.app.registered_commands:
+    for command in COMMANDS:
         assert command.callback is not None
         name = command.name or command.callback.__name__.replace("_", "-")
         writes = paths_of(command.callback)

@@ -9,6 +9,7 @@ from typing import Any
 
 from twin import adc, concentrator, cordic, empirical, hall, link, magnet, mechanics, reference
 from twin.effect import Effect
+from twin.known_names import nearest
 
 STAGES = ("mechanics", "magnet", "concentrator", "hall", "adc", "cordic", "empirical", "link", "reference")
 _ACTS_ON = ("shaft", "field", "channels", "angle", "reference")
@@ -58,8 +59,8 @@ def find(key: str, effects: tuple[Effect, ...] = CATALOGUE) -> Effect:
     for effect in effects:
         if effect.name == name:
             return effect
-    known = ", ".join(sorted(effect.name for effect in effects))
-    raise KeyError(f"no effect named '{name}'; known: {known}")
+    known = sorted(effect.name for effect in effects)
+    raise KeyError(f"no effect named '{name}'{nearest(name, known)}; known: {', '.join(known)}")
 
 
 def _pickled(effect: Effect) -> str | tuple[Any, ...]:

@@ -11,6 +11,7 @@ import numpy as np
 from twin.angles import Array, channels_of, wrap
 from twin.catalogue import CATALOGUE, base_name, find
 from twin.effect import ActsOn, Effect, Parameters
+from twin.known_names import nearest
 from twin.limits import OutOfRangeError, shown
 from twin.magnet.assembly import Assembly
 from twin.motion import Motion
@@ -106,7 +107,8 @@ class Chain:
         effect = find(key, self.effects)
         for name, value in params.items():
             if name not in effect.params:
-                raise KeyError(f"{key} has no parameter '{name}'; it has {', '.join(effect.params)}")
+                meant = nearest(name, effect.params)
+                raise KeyError(f"{key} has no parameter '{name}'{meant}; it has {', '.join(effect.params)}")
             param = effect.params[name]
             array = _numbers(value)
             if not np.all((array >= param.lower) & (array <= param.upper)):

@@ -20,6 +20,7 @@ from twin.catalogue import CATALOGUE, base_name, find
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.errors import UserError
+from twin.known_names import nearest
 from twin.limits import shown
 from twin.magnet.assembly import assembly_from, assembly_table
 from twin.parts import Parts, parts_from, parts_table
@@ -129,7 +130,8 @@ def _check_params(effect: Effect, params: Any) -> None:
         raise ValueError(f"found {shown(params)}; expected a table of parameters: {', '.join(effect.params)}")
     for name, value in params.items():
         if name not in effect.params:
-            raise ValueError(f"has no parameter '{name}'; it has {', '.join(effect.params)}")
+            meant = nearest(name, effect.params)
+            raise ValueError(f"has no parameter '{name}'{meant}; it has {', '.join(effect.params)}")
         several = effect.params[name].role == "per turn"
         for item in value if several and isinstance(value, list) and value else [value]:
             if isinstance(item, bool) or not isinstance(item, int | float):

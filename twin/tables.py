@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from twin.known_names import nearest
 from twin.limits import OutOfRangeError, shown
 
 Part = TypeVar("Part")
@@ -24,7 +25,7 @@ def from_table(kind: type[Part], content: Any, where: str) -> Part:
     values = {}
     for key, value in content.items():
         if key not in known:
-            raise OutOfRangeError(f"{where} has no '{key}'; it has {', '.join(known)}")
+            raise OutOfRangeError(f"{where} has no '{key}'{nearest(key, known)}; it has {', '.join(known)}")
         default = known[key].default
         if isinstance(value, list | Mapping):
             raise OutOfRangeError(f"{key} is {shown(value)}; expected a single value")

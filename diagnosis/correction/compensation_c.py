@@ -6,11 +6,14 @@ quarter turns (Q30); the series is summed by Clenshaw's recurrence, two products
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from diagnosis.correction.compensation import Correction
 from twin.angles import TAU, Array
 from twin.errors import UserError
+from twin.limits import shown
 
 _TURN = 2.0**32
 _Q30 = 2.0**30
@@ -89,13 +92,21 @@ static inline uint16_t {prefix}_correct_u16(uint16_t measured)
 """
 
 
+def check_prefix(prefix: str) -> None:
+    """Refuse a prefix that no C name can begin with. Raises UserError."""
+    if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", prefix):
+        raise UserError(
+            f"prefix is {shown(prefix)}, which begins no C name; expected letters A to Z, digits and underscores, "
+            "no digit first"
+        )
+
+
 def header(correction: Correction, *, source: str, prefix: str = "halltwin") -> str:
     """The text of the header. ``source`` goes into its comment; ``prefix`` names its functions.
 
     Raises UserError where the correction is too large for its words.
     """
-    if not prefix.isidentifier():
-        raise UserError(f"prefix {prefix!r} is no C name; expected letters, digits and underscores")
+    check_prefix(prefix)
     words = np.round(correction.series / TAU * _TURN)
     orders = words.shape[1]
     if np.sum(np.arange(1, orders + 1) * np.abs(words)) >= _LARGEST_SUM:

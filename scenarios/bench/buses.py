@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, cast
 
 from scenarios.bench.faults import Bus, Fault, FaultyBus, Opener
+from scenarios.commands.once import check_once
 from twin.errors import UserError
 
 _OWN_DEFAULTS: dict[str, dict[str, Any]] = {
@@ -43,6 +44,7 @@ def parse_options(pairs: Sequence[str]) -> dict[str, Any]:
         key, sign, value = pair.partition("=")
         if not sign or not key:
             raise UserError(f"bus option {pair!r}: expected KEY=VALUE, e.g. bitrate=500000")
+        check_once("--bus-option", [*found, key])
         found[key] = _plain(value)
     return found
 

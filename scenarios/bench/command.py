@@ -11,6 +11,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from scenarios.bench.hidden import DEFAULT_TWIN, HIDDEN, hidden_encoder
+from scenarios.commands.once import check_once
 from twin.errors import UserError
 
 if TYPE_CHECKING:
@@ -19,10 +21,6 @@ if TYPE_CHECKING:
     from scenarios.bench.measure import Measured, Measurement
     from scenarios.commands.outputs import OutputFiles
     from twin.chain import Chain
-
-DEFAULT_TWIN = "paper-encoder"
-HIDDEN = "saturation:k_percent=2"
-"""What the encoder of the closed loop hides unless told otherwise: a disk near saturation, which the preset lacks."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,28 +73,12 @@ def run(options: Options) -> None:
         _replay(options)
         return
     faults = [fault for text in options.faults for fault in parse(text)]
+    check_once("--fault", (f"{fault.kind}:{fault.node}" for fault in faults))
     open_bus = Interface(options.interface, options.channel, parse_options(options.bus_options)).opener()
     if options.serve is not None:
         _serve(options, open_bus, faults)
         return
     _measure(options, open_bus, faults)
-
-
-def hidden_encoder(twin: str | None, hide: Sequence[str], effect_files: Sequence[Path] = ()) -> Chain:
-    """The encoder on the virtual bench: a twin, and effects EFFECT:PARAMETER=VALUE[,...] that it hides."""
-    from twin.extensions import effects_with
-    from twin.presets import read_twin_or_preset
-
-    chain = read_twin_or_preset(twin or DEFAULT_TWIN, effects=effects_with(effect_files))
-    for text in hide:
-        key, _, given = text.partition(":")
-        try:
-            params = {name: float(value) for name, _, value in (part.partition("=") for part in given.split(","))}
-            chain = chain.with_effect(key, **params)
-        except (KeyError, ValueError) as error:
-            said = error.args[0] if error.args else error
-            raise UserError(f"--hide {text}: {said}; expected EFFECT:PARAMETER=VALUE, e.g. {HIDDEN}") from None
-    return chain
 
 
 def _measurement(options: Options) -> Measurement:

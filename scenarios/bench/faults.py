@@ -13,6 +13,7 @@ import numpy as np
 
 from scenarios.bench.messages import messages, with_byte_flipped, with_counter
 from twin.errors import UserError
+from twin.known_names import nearest
 from twin.limits import require_within
 
 NODES = ("stepper", "reference", "hall", "chamber")
@@ -57,10 +58,10 @@ def parse(text: str) -> tuple[Fault, ...]:
     kind, _, node = head.partition(":")
     kinds = (*_SHARES, *_HALL, *_ONCE)
     if kind not in kinds:
-        raise UserError(f"fault {text!r}: unknown kind; expected one of {', '.join(kinds)}")
+        raise UserError(f"fault {text!r}: unknown kind{nearest(kind, kinds)}; expected one of {', '.join(kinds)}")
     known = ("hall",) if kind in _HALL else (*NODES, "bench") if kind in (*_SHARES, "bus_off") else NODES
     if node and node not in known:
-        raise UserError(f"fault {text!r}: unknown node; expected one of {', '.join(known)}")
+        raise UserError(f"fault {text!r}: unknown node{nearest(node, known)}; expected one of {', '.join(known)}")
     if not node and kind in _ONCE:
         raise UserError(f"fault {text!r}: says not whose; expected {kind}:NODE, one of {', '.join(known)}")
     try:

@@ -68,7 +68,11 @@ def generate(
         speeds_rpm=speed_rpm or [0.0],
         temperatures_c=numbers("temperatures", temperatures),
     )
-    ranges = Ranges(strength_deg=interval("strength", strength), noise_deg=interval("noise", noise), most=most_causes)
+    ranges = Ranges(
+        strength_deg=interval("strength", strength, example="0.02:0.3"),
+        noise_deg=interval("noise", noise, example="0.003:0.05"),
+        most=most_causes,
+    )
     recipe = recipe_of(twin, protocol=protocol, ranges=ranges, causes=cause or (), seed=seed)
     job = Training(recipe=recipe, sweeps=sweeps, chunk=chunk, channels=channels)
     run(job, output, Machines(workers=workers, scheduler=scheduler))

@@ -12,7 +12,7 @@ import numpy as np
 
 from diagnosis.correction.calibration import calibrate
 from diagnosis.correction.compensation import Correction, correction_of, to_dict
-from diagnosis.correction.compensation_c import header
+from diagnosis.correction.compensation_c import check_prefix, header
 from diagnosis.correction.cross_validation import BeforeAfter, against, cross_validated
 from scenarios.commands.compensate_text import show
 from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
@@ -20,6 +20,7 @@ from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from twin.angles import TAU, Array, radians
+from twin.chain import Chain
 from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.limits import require_within
@@ -69,16 +70,18 @@ def run(
         raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
     require_within("temperature", temperature_c, COLDEST_C, HOTTEST_C, "C")
     require_within("tolerance", tolerance_deg, 0.0, _COARSEST_DEG, "deg")
+    check_prefix(outputs.prefix)
+    effects = effects_with(effect_files)
+    twin = read_twin_or_preset(source, effects=effects) if is_twin(source) else Chain(effects=effects)
     checked_on = check.paths()
     files = _files(outputs, inputs=[Path(source), *checked_on, *effect_files])
     others = check.read(checked_on)
     sweep = None if is_twin(source) else Sweep.read(source, max_bytes=check.max_bytes)
     check_panels(outputs.plot, len(others.sweeps) if checked_on or sweep is None else 1)
-    if sweep is None:
-        twin = read_twin_or_preset(source, effects=effects_with(effect_files))
-        correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)
-    else:
+    if sweep is not None:
         correction = _of_readings(tolerance_deg, seed)(*_angles(sweep))
+    else:
+        correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)
     judged = _judge(correction, sweep, others, tolerance_deg, seed)
     show(shown_name(source), correction, [row for one in judged for row in _rows(*one, other=bool(checked_on))])
     for line in others.lines:

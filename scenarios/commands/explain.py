@@ -16,8 +16,10 @@ from scenarios.commands.outputs import HTML, JSON, PICTURE, TOML, OutputFiles, j
 from scenarios.commands.progress import progress_line
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.catalogue import unnamed
+from twin.effect import Effect
 from twin.extensions import effects_with
 from twin.files import twin_text
+from twin.presets import read_twin_or_preset
 from twin.sweep import Sweep
 
 
@@ -44,13 +46,16 @@ def run(
     max_bytes: int = LARGEST_SWEEP_BYTES,
 ) -> None:
     """The command: print the answer, write what was asked for. Raises UserError before anything is written."""
-    words = _asked(fail_on, effect_files)
+    effects = effects_with(effect_files)
+    words = _asked(fail_on, effects)
     files = OutputFiles.checked(
         [(outputs.json, JSON), (outputs.report, HTML), (outputs.extended, TOML), (outputs.plot, PICTURE)],
         inputs=[path, twin, *effect_files],
         force=outputs.force,
     )
-    found = _explained(Sweep.read(path, max_bytes=max_bytes), twin=twin, effects=effect_files, seed=seed)
+    # Before a long recording is read: a name that is none needs no waiting for.
+    held = None if twin is None else read_twin_or_preset(twin, effects=effects)
+    found = _explained(Sweep.read(path, max_bytes=max_bytes), twin=held, effects=effect_files, seed=seed)
     found = replace(found, made=replace(found.made, command=command))
     answer = found.to_dict()
     try:
@@ -70,11 +75,9 @@ def run(
     raise_found(words, in_explanation(answer))
 
 
-def _asked(given: Sequence[str], effect_files: Sequence[Path]) -> tuple[str, ...]:
+def _asked(given: Sequence[str], effects: Sequence[Effect]) -> tuple[str, ...]:
     """What is to be failed on: kinds of findings, and causes by name, one's own among them."""
-    if not given:
-        return ()
-    causes = [effect.name for effect in effects_with(effect_files) if not effect.baseline and not unnamed(effect.name)]
+    causes = [effect.name for effect in effects if not effect.baseline and not unnamed(effect.name)]
     return asked(given, (*EXPLAIN, *causes))
 
 

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from twin.errors import UserError
+from twin.known_names import nearest
 
 
 class FoundError(Exception):
@@ -22,7 +23,7 @@ def asked(given: Sequence[str], known: Iterable[str]) -> tuple[str, ...]:
     listed = list(dict.fromkeys(known))
     for word in words:
         if word not in listed:
-            raise UserError(f"--fail-on is {word!r}; expected among {', '.join(listed)}")
+            raise UserError(f"--fail-on is {word!r}{nearest(word, listed)}; expected among {', '.join(listed)}")
     return words
 
 

@@ -6,14 +6,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from scenarios.commands.once import check_once
 from twin.errors import UserError
+from twin.known_names import nearest
 
 
-def interval(name: str, text: str) -> tuple[float, float]:
-    """``low:high`` as two numbers in order; one number alone is both. Raises UserError."""
+def interval(name: str, text: str, *, example: str) -> tuple[float, float]:
+    """``low:high`` as two numbers in order; one number alone is both. Raises UserError with an example of it."""
     parts = _numbers(text, ":")
     if parts is None or len(parts) not in (1, 2) or parts[0] > parts[-1]:
-        raise UserError(f"{name} is {text!r}; expected low:high, e.g. -40:125")
+        raise UserError(f"{name} is {text!r}; expected low:high, e.g. {example}")
     return parts[0], parts[-1]
 
 
@@ -46,10 +48,11 @@ def with_units(name: str, text: str, units: Mapping[str, str]) -> dict[str, floa
     for part in filter(None, (piece.strip() for piece in text.split(","))):
         key, _, value = (piece.strip() for piece in part.partition("="))
         if key not in units:
-            raise UserError(f"{name} has no '{key}'; expected among {', '.join(units)}")
+            raise UserError(f"{name} has no '{key}'{nearest(key, units)}; expected among {', '.join(units)}")
         numbers = _numbers(value.removesuffix(units[key]), ":")
         if numbers is None or len(numbers) != 1 or numbers[0] < 0.0:
             raise UserError(f"{name}: {key} is '{value}'; expected a number in {units[key]}, 0 or more")
+        check_once(name, [*found, key])
         found[key] = numbers[0]
     return found
 

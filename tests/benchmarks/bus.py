@@ -18,9 +18,9 @@ import can
 import numpy as np
 
 from scenarios.bench.buses import Interface
-from scenarios.bench.command import hidden_encoder
 from scenarios.bench.faults import Bus, FaultyBus, Opener
 from scenarios.bench.hall_node import HallNode
+from scenarios.bench.hidden import hidden_encoder
 from scenarios.bench.journal import Journal
 from scenarios.bench.measure import Measurement, measure
 from scenarios.bench.messages import SEQUENCES, messages

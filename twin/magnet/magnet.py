@@ -8,6 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from twin.angles import Array
+from twin.known_names import nearest
 from twin.limits import OutOfRangeError, require_within
 from twin.magnet.materials import REFERENCE_C, grade
 
@@ -40,7 +41,10 @@ class Magnet:
 
     def __post_init__(self) -> None:
         if self.shape not in get_args(Shape):
-            raise OutOfRangeError(f"shape is {self.shape!r}; expected one of {', '.join(get_args(Shape))}")
+            shapes = get_args(Shape)
+            raise OutOfRangeError(
+                f"shape is {self.shape!r}{nearest(self.shape, shapes)}; expected one of {', '.join(shapes)}"
+            )
         grade(self.grade)
         # Those of another shape too: they are read, handed on and written.
         for name in ("height_mm", "diameter_mm", "length_mm", "width_mm"):

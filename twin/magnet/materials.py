@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from twin.known_names import nearest
 from twin.limits import OutOfRangeError
 
 REFERENCE_C = 20.0
@@ -38,4 +39,6 @@ def grade(name: str) -> Grade:
     try:
         return GRADES[name]
     except KeyError:
-        raise OutOfRangeError(f"grade is {name!r}; expected one of {', '.join(GRADES)}") from None
+        raise OutOfRangeError(
+            f"grade is {name!r}{nearest(name, GRADES)}; expected one of {', '.join(GRADES)}"
+        ) from None

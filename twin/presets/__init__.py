@@ -11,6 +11,7 @@ from twin.catalogue import CATALOGUE
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.files import TwinError, from_dict, read_twin
+from twin.known_names import nearest
 from twin.log import LOG
 
 
@@ -24,7 +25,7 @@ def preset_names() -> tuple[str, ...]:
 def read_preset(name: str, *, effects: tuple[Effect, ...] = CATALOGUE) -> Chain:
     """The preset with this name. Raises TwinError with the known names."""
     if name not in preset_names():
-        raise TwinError(f"no preset named '{name}'; known: {', '.join(preset_names())}")
+        raise TwinError(f"no preset named '{name}'{nearest(name, preset_names())}; known: {', '.join(preset_names())}")
     content = resources.files(__name__).joinpath(f"{name}.toml").read_text(encoding="utf-8")
     return from_dict(tomllib.loads(content), name=f"preset {name}", effects=effects)
 
@@ -42,7 +43,8 @@ def read_twin_or_preset(given: str | Path, *, effects: tuple[Effect, ...] = CATA
         return read_preset(name, effects=effects)
     if not Path(name).suffix and not Path(name).exists():
         raise TwinError(
-            f"{name}: is no preset ({', '.join(preset_names())}); give one of them or a path ending in .toml"
+            f"{name}: is no preset{nearest(name, preset_names())}; "
+            f"give one of {', '.join(preset_names())}, or a path ending in .toml"
         )
     if name.removesuffix(".toml") in preset_names() and not Path(name).exists():
         raise TwinError(f"{name}: no such file; the preset is named {name.removesuffix('.toml')}")

@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from typing import cast, get_args
 
 from scenarios.commands.intervals import interval, values, with_units
+from scenarios.commands.once import check_once
 from scenarios.studies.design.space import MOST_DESIGNS, TOLERANCES, Sampling, Space
 from scenarios.studies.design.study import Demand
 from twin.errors import UserError
+from twin.known_names import nearest
 from twin.limits import require_within
 from twin.magnet.magnet import Shape
 
@@ -25,7 +27,9 @@ def space_of(
 ) -> Space:
     """The space. Raises UserError."""
     if shape not in get_args(Shape):
-        raise UserError(f"shape is {shape!r}; expected one of {', '.join(get_args(Shape))}")
+        shapes = get_args(Shape)
+        raise UserError(f"shape is {shape!r}{nearest(shape, shapes)}; expected one of {', '.join(shapes)}")
+    check_once("--grade", grades)
     require_within("count", count, 1, MOST_DESIGNS, whole=True)
     return Space(
         axes={name: values(name, text) for name, text in axes.items()},
@@ -44,8 +48,8 @@ def demand_of(
     """The demand. Raises UserError."""
     return Demand(
         max_error_deg=max_error_deg,
-        window_mT=interval("window", window),
-        temperature_c=interval("temperature", temperature),
+        window_mT=interval("window", window, example="30:90"),
+        temperature_c=interval("temperature", temperature, example="-40:125"),
         tolerance=with_units("tolerance", tolerance, TOLERANCES),
         mountings=mountings,
         min_yield=min_yield,

@@ -13,6 +13,7 @@ import numpy as np
 from scenarios.studies.design.field import Designs
 from twin.angles import TAU, Array, IntArray
 from twin.errors import UserError
+from twin.known_names import nearest
 from twin.limits import OutOfRangeError
 from twin.magnet.magnet import Magnet, Shape
 from twin.magnet.materials import grade
@@ -61,7 +62,10 @@ class Space:
 
     def __post_init__(self) -> None:
         if self.sampling not in get_args(Sampling):
-            raise UserError(f"sampling is {self.sampling!r}; expected one of {', '.join(get_args(Sampling))}")
+            words = get_args(Sampling)
+            raise UserError(
+                f"sampling is {self.sampling!r}{nearest(self.sampling, words)}; expected one of {', '.join(words)}"
+            )
         for name in self.grades:
             grade(name)
 

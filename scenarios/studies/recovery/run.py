@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.report.provenance import Provenance
+from scenarios.commands.once import check_once
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.studies.engine import run_study
 from scenarios.studies.machines import Machines
@@ -18,8 +19,9 @@ from scenarios.studies.recovery.cells import BASELINE, CLEAN, PARAMETERS, Cell, 
 from scenarios.studies.study_folder import StudyFolder
 from scenarios.studies.training.draw import drawable
 from twin.angles import Array
-from twin.catalogue import find
+from twin.catalogue import CATALOGUE, find
 from twin.errors import UserError
+from twin.known_names import nearest
 from twin.limits import require_within
 
 Summary = list[dict[str, Any]]
@@ -33,13 +35,15 @@ def check(grid: Grid) -> None:
     require_within("turns", list(grid.turns), 1, 1000, whole=True)
     require_within("fits", grid.fits, 2, 100_000, whole=True)
     require_within("sweeps", grid.sweeps, 1, 100_000, whole=True)
+    check_once("--cause", grid.causes)
     for cell in grid.cells():
         if cell.cause in (BASELINE, CLEAN):
             continue
         visible = [name for name in drawable(cell.motion()) if find(name).roles("strength")]
         if cell.cause not in visible:
+            meant = nearest(cell.cause, (BASELINE, CLEAN, *(effect.name for effect in CATALOGUE)))
             raise UserError(
-                f"cause {cell.cause!r} does not show at {cell.points} points and {cell.turns} turns; expected "
+                f"cause {cell.cause!r}{meant} does not show at {cell.points} points and {cell.turns} turns; expected "
                 f"{BASELINE}, {CLEAN} or among {', '.join(visible)}"
             )
 

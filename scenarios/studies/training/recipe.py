@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from scenarios.commands.once import check_once
 from scenarios.commands.protocol import Protocol
 from scenarios.studies.training.draw import Draw, Ranges, draw, drawable, stripped, uniforms_needed
 from scenarios.studies.training.row_chain import row_chain
@@ -21,6 +22,7 @@ from twin.chain import Chain
 from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.files import from_dict, to_dict
+from twin.known_names import nearest
 from twin.limits import require_within
 from twin.motion import Motion
 from twin.presets import read_twin_or_preset
@@ -91,7 +93,11 @@ def recipe_of(twin: str, *, protocol: Protocol, ranges: Ranges, causes: Sequence
     visible = drawable(protocol.motion(), effects)
     for name in causes:
         if name not in visible:
-            raise UserError(f"cause {name!r} cannot be drawn with this protocol; expected among {', '.join(visible)}")
+            meant = nearest(name, (effect.name for effect in effects))
+            raise UserError(
+                f"cause {name!r}{meant} cannot be drawn with this protocol; expected among {', '.join(visible)}"
+            )
+    check_once("--cause", causes)
     chosen = tuple(name for name in visible if name in causes) if causes else visible
     for name, (low, high) in (("strength", ranges.strength_deg), ("noise", ranges.noise_deg)):
         require_within(name, [low, high], 1e-6, 5.0, "deg")

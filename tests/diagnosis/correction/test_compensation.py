@@ -116,7 +116,7 @@ def test_compiled_header_is_the_python_correction(chain: Chain, tmp_path: Path) 
 
 
 def test_header_refuses_what_does_not_fit() -> None:
-    with pytest.raises(UserError, match="no C name"):
+    with pytest.raises(UserError, match="begins no C name"):
         header(correction_of(Chain()), source="", prefix="3d")
     huge = Correction(1, 0.0, np.full((2, 60), 0.5), (), 0.0)
     with pytest.raises(UserError, match="too large"):

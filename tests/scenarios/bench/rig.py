@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.bench.buses import Interface, with_bench_faults
-from scenarios.bench.command import hidden_encoder
 from scenarios.bench.faults import parse
+from scenarios.bench.hidden import hidden_encoder
 from scenarios.bench.journal import Journal
 from scenarios.bench.measure import Measured, Measurement, measure
 from scenarios.bench.plan import Plan

@@ -11,8 +11,9 @@ from typer.testing import CliRunner
 
 from diagnosis.correction.compensation import Correction
 from scenarios.bench.buses import parse_options
-from scenarios.bench.command import Options, hidden_encoder, run
+from scenarios.bench.command import Options, run
 from scenarios.bench.hall_node import check_playable, corrected_word, spi_frame
+from scenarios.bench.hidden import hidden_encoder
 from scenarios.bench.loading import ACTIVE, RECEIVING, REFUSED, Loader, items, numbers
 from scenarios.bench.messages import checksum, messages, with_counter
 from scenarios.bench.plan import Plan

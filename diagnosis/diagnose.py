@@ -10,7 +10,7 @@ from diagnosis.input_checks import SweepLike, as_sweep, checked_seed
 from diagnosis.progress import Count, Listener
 
 
-def diagnose(sweep: SweepLike, *, robust: bool = True, seed: int = 0) -> Diagnosis:
+def diagnose(sweep: SweepLike, *, robust: bool = True, seed: int = 0, band_deg: float | None = None) -> Diagnosis:
     """Quantify the paper's error factors of a sweep, and say what each figure is worth.
 
     What ``halltwin diagnose`` does for one sweep: a particle swarm finds the valley, least squares its floor; then
@@ -25,6 +25,9 @@ def diagnose(sweep: SweepLike, *, robust: bool = True, seed: int = 0) -> Diagnos
         Leave isolated gross errors out of the fit, as the paper's pretreatment does.
     seed : int, optional
         Seed of the swarm, 0 or more: the same sweep and seed give the same answer, bit for bit.
+    band_deg : float, optional
+        Delta E of the paper's Eq. 7 [deg]: particles whose error leaves this band are discarded (Eq. 11), and the
+        answer says how many, and whether the fitted curve keeps the band. Without it none is discarded.
 
     Returns
     -------
@@ -59,11 +62,16 @@ def diagnose(sweep: SweepLike, *, robust: bool = True, seed: int = 0) -> Diagnos
     >>> x.low < 0.008 < x.high
     True
     """
-    return diagnose_many([sweep], robust=robust, seed=seed)[0]
+    return diagnose_many([sweep], robust=robust, seed=seed, band_deg=band_deg)[0]
 
 
 def diagnose_many(
-    sweeps: Iterable[SweepLike], *, robust: bool = True, seed: int = 0, progress: Listener | None = None
+    sweeps: Iterable[SweepLike],
+    *,
+    robust: bool = True,
+    seed: int = 0,
+    band_deg: float | None = None,
+    progress: Listener | None = None,
 ) -> Diagnoses:
     """Quantify the paper's error factors of many sweeps; those of equal length in one swarm.
 
@@ -75,6 +83,8 @@ def diagnose_many(
         Leave isolated gross errors out of the fits.
     seed : int, optional
         Seed of the swarm, 0 or more.
+    band_deg : float, optional
+        Delta E [deg] of the discard rule, as in :func:`diagnose`.
     progress : callable, optional
         Called with a :class:`diagnosis.Progress` as the sweeps are read, fitted and judged.
 
@@ -88,7 +98,7 @@ def diagnose_many(
     twin.SweepError
         Where one of the sweeps cannot be used, as in :func:`diagnose`.
     twin.errors.UserError
-        Where there is no sweep.
+        Where there is no sweep, or the band is none.
 
     Examples
     --------
@@ -107,8 +117,11 @@ def diagnose_many(
     from diagnosis.factors.findings import quantify_many
     from diagnosis.report.provenance import Provenance
     from twin.errors import UserError
+    from twin.limits import require_within
     from twin.sweep import Sweep
 
+    if band_deg is not None:
+        require_within("band", band_deg, 1e-6, 180.0, "deg")
     rng = np.random.default_rng(checked_seed(seed))
     made = Provenance.today(seed=checked_seed(seed))
     if isinstance(sweeps, str | os.PathLike | Sweep) or hasattr(sweeps, "keys"):
@@ -119,5 +132,6 @@ def diagnose_many(
     if not read:
         raise UserError("found no sweep; give at least one")
     with one_blas_thread():
-        found = quantify_many(read, rng=rng, robust=robust, count=count)
+        band_rad = None if band_deg is None else float(np.radians(band_deg))
+        found = quantify_many(read, rng=rng, robust=robust, band_rad=band_rad, count=count)
     return Diagnoses(tuple(Diagnosis(one, made) for one in found), made)

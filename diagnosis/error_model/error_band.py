@@ -23,7 +23,12 @@ _REACH = 4.0
 
 
 def delta_e_rad(chain: Chain, *, immeasurable_rad: float = 0.0) -> float:
-    """Eq. 7: quantisation + reference (Eq. 3) + immeasurable + largest CORDIC error [rad].
+    """Eq. 7: quantisation + reference (Eq. 3) + immeasurable + largest CORDIC error [rad]."""
+    return sum(band_terms_rad(chain, immeasurable_rad=immeasurable_rad).values())
+
+
+def band_terms_rad(chain: Chain, *, immeasurable_rad: float = 0.0) -> dict[str, float]:
+    """The terms of Eq. 7 [rad] by name: quantisation, reference, noise, cordic, immeasurable.
 
     The printed sum mixes an RMS with maxima. Eq. 11 compares the band with every single angle, so here every term is a
     largest deviation: half a step of each grid, four standard deviations of each random term.
@@ -41,7 +46,8 @@ def delta_e_rad(chain: Chain, *, immeasurable_rad: float = 0.0) -> float:
     noise = _REACH * np.radians(of(NOISE, "rms_deg"))
     iterations = of(CORDIC_TRUNCATION, "iterations")
     cordic = np.arctan(2.0 ** (1.0 - iterations)) if iterations else 0.0
-    return float(quantisation + reference + noise + cordic + immeasurable_rad)
+    terms = {"quantisation": quantisation, "reference": reference, "noise": noise, "cordic": cordic}
+    return {**{name: float(size) for name, size in terms.items()}, "immeasurable": immeasurable_rad}
 
 
 def outside(readings: Readings, band_rad: float) -> Callable[[Array], NDArray[np.bool_]]:

@@ -13,6 +13,7 @@ from diagnosis.error_model.model import Readings
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors import channels
 from diagnosis.factors.air_gaps import GapSweep, Law, laws
+from diagnosis.factors.band_check import BandCheck, band_check
 from diagnosis.factors.channels import Added
 from diagnosis.factors.identifiability import Identifiability, identifiability
 from diagnosis.factors.mechanical import Mechanical, mechanical
@@ -34,6 +35,8 @@ class Findings:
     added: Added | None
     repeated: str | None
     """What repeated readings did to the intervals, in words."""
+    band: BandCheck | None = None
+    """What the discard rule did, where a band was given."""
 
     def __repr__(self) -> str:
         return f"Findings({self.sweep.name!r}, {self.fit!r})"
@@ -60,10 +63,12 @@ def quantify_many(
     *,
     rng: np.random.Generator | None = None,
     robust: bool = True,
+    band_rad: float | None = None,
     count: Count | None = None,
 ) -> list[Findings]:
     """Fit and judge many sweeps; those of equal length and senses in one batched swarm.
 
+    ``band_rad`` is the Delta E that the swarm discards particles by (Eq. 11); None: none is discarded.
     ``count`` tells how many are fitted, and then how many are judged.
     """
     count = count or Count(len(sweeps))
@@ -78,10 +83,10 @@ def quantify_many(
         for start in range(0, len(indices), BATCH):
             batch = indices[start : start + BATCH]
             reference, measured = (np.stack([angles[i][side] for i in batch]) for side in (0, 1))
-            fitted = fit_equal(reference, measured, rng=rng, senses=senses, robust=robust)
+            fitted = fit_equal(reference, measured, rng=rng, senses=senses, robust=robust, band_rad=band_rad)
             fits.update(zip(batch, fitted, strict=True))
             count.of("error_model", len(fits), None)
-    return [count.of("judging", i + 1, _findings(sweep, fits[i])) for i, sweep in enumerate(sweeps)]
+    return [count.of("judging", i + 1, _findings(sweep, fits[i], band_rad)) for i, sweep in enumerate(sweeps)]
 
 
 def gap_laws(found: Sequence[Findings]) -> tuple[Law, ...]:
@@ -105,12 +110,13 @@ def _follows(reference: Array, measured: Array, sense: int) -> float:
     return float(np.abs(np.mean(np.exp(1j * (measured - sense * reference)))))
 
 
-def _findings(sweep: Sweep, fit: BaselineFit) -> Findings:
+def _findings(sweep: Sweep, fit: BaselineFit, band_rad: float | None) -> Findings:
     has_channels = sweep.vx is not None and sweep.vy is not None
     added = channels.added(fit, sweep.vx, sweep.vy) if sweep.vx is not None and sweep.vy is not None else None
     fit, repeated = between_angles(fit, sweep.reference_deg)
     words = identifiability(fit, radians(sweep.reference_deg), radians(sweep.measured_deg), has_channels=has_channels)
-    return Findings(sweep, fit, words, added, repeated)
+    band = None if band_rad is None else band_check(fit, band_rad)
+    return Findings(sweep, fit, words, added, repeated, band)
 
 
 def curve_deg(fit: BaselineFit, shaft_deg: Array) -> Array:

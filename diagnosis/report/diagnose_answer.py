@@ -49,6 +49,8 @@ def one_sweep(found: Findings) -> dict[str, Any]:
         "mechanical": dict(vars(found.mechanical)),
         "sentences": list(found.sentences),
     }
+    if found.band is not None:
+        answer["band"] = dict(vars(found.band))
     if found.added is not None:
         curve = found.added.curve
         answer["channels"] = {

@@ -37,6 +37,8 @@ def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:
         "senses": f"s = {senses['sensor']:+d}, h = {senses['output']:+d}",
         "range": _range_words(sweep["search"]),
     }
+    if "band" in sweep:
+        facts["band"] = band_words(sweep["band"], particles)
     return [
         *_wrapped(f"{sweep['sweep']}   {rows_words(sweep)}", width, 2),
         "",
@@ -48,6 +50,18 @@ def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:
         "",
         *_listed(sweep["sentences"], width),
     ]
+
+
+def band_words(band: Mapping[str, Any], particles: int) -> str:
+    """What the discard rule did, and whether the fitted curve keeps the band."""
+    out = band["readings_outside"]
+    keeps = "every reading" if not out else f"all readings but {out}"
+    discarded = f"{band['particles_discarded']} of {particles} particles discarded (Eq. 11)"
+    return (
+        f"Delta E {_deg(band['delta_e_deg'])} (Eq. 7); {discarded}; {keeps} within it of the fitted curve, "
+        f"the farthest {_deg(band['largest_deg'])} off"
+        + ("; Eq. 7 rejects these factors: more acts than they, which halltwin explain looks for" if out else "")
+    )
 
 
 def rows_words(sweep: Mapping[str, Any]) -> str:

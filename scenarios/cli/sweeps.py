@@ -61,6 +61,14 @@ def diagnose(
         Path | None,
         written("Draw the swarm's convergence: .png, .svg or .pdf."),
     ] = None,
+    band: Annotated[
+        str | None,
+        typer.Option(
+            metavar="deg|TWIN",
+            help="Discard particles that leave this band (Eq. 11): Delta E in deg, or a twin or preset that it is "
+            "computed from (Eq. 7).",
+        ),
+    ] = None,
     force: Force = False,
     max_size: MaxSize = "2GB",
     seed: Seed = 0,
@@ -69,17 +77,15 @@ def diagnose(
     ] = None,
 ) -> None:
     """Quantify the paper's error factors of one or many sweeps: values, intervals, what cannot be known."""
-    from scenarios.commands.diagnose import run
+    from scenarios.commands.diagnose import Outputs, run
     from scenarios.commands.inputs import SweepFiles
     from twin.bounded_input import bytes_of
 
     run(
         SweepFiles(sweeps, bytes_of(max_size)),
-        json_path=json,
-        plot=plot,
-        convergence=convergence,
-        force=force,
+        outputs=Outputs(json=json, plot=plot, convergence=convergence, force=force),
         seed=seed,
+        band=band,
         fail_on=fail_on or (),
         command=command_line(context),
     )

@@ -43,7 +43,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_diagnose_one(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     target, picture, other = tmp_path / "a.json", tmp_path / "a.png", tmp_path / "b.svg"
     pytest.importorskip("matplotlib")
-    diagnose.run(SweepFiles([str(folder / "sweep00.csv")]), json_path=target, plot=picture, convergence=other)
+    outputs = diagnose.Outputs(json=target, plot=picture, convergence=other)
+    diagnose.run(SweepFiles([str(folder / "sweep00.csv")]), outputs=outputs)
     shown = capsys.readouterr().out
     assert "gain ratio" in shown
     assert "would look the same" in shown
@@ -60,7 +61,7 @@ def test_diagnose_many_and_twice_the_same_bytes(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for name in ("a.json", "b.json"):
-        diagnose.run(SweepFiles([str(folder)]), json_path=tmp_path / name, seed=3)
+        diagnose.run(SweepFiles([str(folder)]), outputs=diagnose.Outputs(json=tmp_path / name), seed=3)
     assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
     assert len(json.loads((tmp_path / "a.json").read_text())["sweeps"]) == 24
     assert "sweep23.csv" in capsys.readouterr().out
@@ -77,7 +78,7 @@ def test_diagnose_uses_several_air_gaps(tmp_path: Path, capsys: pytest.CaptureFi
         measured = np.degrees(np.arctan2(y, x)) + 0.01 * rng.standard_normal(180)
         columns = {"reference_deg": np.degrees(angle), "measured_deg": measured, "vx": x, "vy": y}
         Sweep.from_columns(columns).write(tmp_path / f"{name}.csv")
-    diagnose.run(SweepFiles([str(tmp_path)]), json_path=tmp_path / "a.json")
+    diagnose.run(SweepFiles([str(tmp_path)]), outputs=diagnose.Outputs(json=tmp_path / "a.json"))
     assert "air gaps: gain ratio and phase change" in capsys.readouterr().out
     laws = {law["part"]: law["best"] for law in json.loads((tmp_path / "a.json").read_text())["air_gaps"]}
     assert laws["gain mismatch and phase"] == "grows with the field"

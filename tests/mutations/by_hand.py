@@ -67,20 +67,34 @@ ERROR_MODEL: tuple[Mutation, ...] = (
     Mutation(
         "error_band.reference",
         _BAND,
-        "float(quantisation + reference + noise + cordic + immeasurable_rad)",
-        "float(quantisation + noise + cordic + immeasurable_rad)",
+        '"reference": reference, "noise": noise',
+        '"reference": 0.0, "noise": noise',
         (f"{_SWARM_TESTS}::test_delta_e_is_the_largest_deviation_of_a_simulated_sweep",),
     ),
     Mutation(
         "error_band.noise",
         _BAND,
-        "float(quantisation + reference + noise + cordic + immeasurable_rad)",
-        "float(quantisation + reference + cordic + immeasurable_rad)",
+        '"reference": reference, "noise": noise',
+        '"reference": reference, "noise": 0.0',
         (f"{_SWARM_TESTS}::test_delta_e_is_the_largest_deviation_of_a_simulated_sweep",),
     ),
 )
 
 FACTORS: tuple[Mutation, ...] = (
+    Mutation(
+        "band_check.counts_nothing",
+        "diagnosis/factors/band_check.py",
+        "np.count_nonzero(apart > band_rad)",
+        "np.count_nonzero(apart > np.pi)",
+        ("tests/diagnosis/factors/test_band_check.py::test_what_the_model_lacks_leaves_the_band_and_is_counted",),
+    ),
+    Mutation(
+        "findings.no_band_reaches_the_swarm",
+        "diagnosis/factors/findings.py",
+        "robust=robust, band_rad=band_rad)",
+        "robust=robust)",
+        ("tests/diagnosis/factors/test_band_check.py::test_a_device_keeps_its_own_band_and_particles_are_discarded",),
+    ),
     Mutation(
         "air_gaps.falls_twice",
         _GAPS,

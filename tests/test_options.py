@@ -42,6 +42,7 @@ WORDS = frozenset(
 """Options that take no number."""
 RIGHT: dict[str, str] = {
     "--seed": "0",
+    "--band": "36.9",
     "--speed-rpm": "0 36.9",
     "bench --speed-rpm": "0",
     "--temperatures": "-1 0 36.9",

@@ -4,13 +4,26 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from diagnosis.diagnosed import Diagnoses, Diagnosis
-from diagnosis.input_checks import SweepLike, as_sweep, checked_seed
+from diagnosis.input_checks import SweepLike, TwinLike, as_sweep, as_twin, checked_seed
 from diagnosis.progress import Count, Listener
 
+if TYPE_CHECKING:
+    from diagnosis.factors.mirror import KnownSense
+    from twin.chain import Chain
 
-def diagnose(sweep: SweepLike, *, robust: bool = True, seed: int = 0, band_deg: float | None = None) -> Diagnosis:
+
+def diagnose(
+    sweep: SweepLike,
+    *,
+    robust: bool = True,
+    seed: int = 0,
+    band_deg: float | None = None,
+    twin: TwinLike | None = None,
+    output_sense: int | None = None,
+) -> Diagnosis:
     """Quantify the paper's error factors of a sweep, and say what each figure is worth.
 
     What ``halltwin diagnose`` does for one sweep: a particle swarm finds the valley, least squares its floor; then
@@ -28,6 +41,12 @@ def diagnose(sweep: SweepLike, *, robust: bool = True, seed: int = 0, band_deg: 
     band_deg : float, optional
         Delta E of the paper's Eq. 7 [deg]: particles whose error leaves this band are discarded (Eq. 11), and the
         answer says how many, and whether the fitted curve keeps the band. Without it none is discarded.
+    twin : str, os.PathLike or Chain, optional
+        A twin file, a preset's name or a chain: which way its output counts is taken from it, where the sweep holds
+        no raw channels.
+    output_sense : {1, -1}, optional
+        Which way the output counts: +1 where it is atan2(y, x) of the channels, -1 where it is minus that. Without
+        it, channels and a twin, the quadratic term decides, or both solutions are given.
 
     Returns
     -------
@@ -62,7 +81,7 @@ def diagnose(sweep: SweepLike, *, robust: bool = True, seed: int = 0, band_deg: 
     >>> x.low < 0.008 < x.high
     True
     """
-    return diagnose_many([sweep], robust=robust, seed=seed, band_deg=band_deg)[0]
+    return diagnose_many([sweep], robust=robust, seed=seed, band_deg=band_deg, twin=twin, output_sense=output_sense)[0]
 
 
 def diagnose_many(
@@ -71,6 +90,8 @@ def diagnose_many(
     robust: bool = True,
     seed: int = 0,
     band_deg: float | None = None,
+    twin: TwinLike | None = None,
+    output_sense: int | None = None,
     progress: Listener | None = None,
 ) -> Diagnoses:
     """Quantify the paper's error factors of many sweeps; those of equal length in one swarm.
@@ -85,6 +106,10 @@ def diagnose_many(
         Seed of the swarm, 0 or more.
     band_deg : float, optional
         Delta E [deg] of the discard rule, as in :func:`diagnose`.
+    twin : str, os.PathLike or Chain, optional
+        As in :func:`diagnose`.
+    output_sense : {1, -1}, optional
+        As in :func:`diagnose`.
     progress : callable, optional
         Called with a :class:`diagnosis.Progress` as the sweeps are read, fitted and judged.
 
@@ -126,6 +151,7 @@ def diagnose_many(
     made = Provenance.today(seed=checked_seed(seed))
     if isinstance(sweeps, str | os.PathLike | Sweep) or hasattr(sweeps, "keys"):
         raise UserError("found a single sweep where several are expected; give a list of sweeps, or call diagnose")
+    told = _told(output_sense, as_twin(twin))
     wanted = list(sweeps)
     count = Count(len(wanted), progress)
     read = [count.of("reading", done, as_sweep(sweep)) for done, sweep in enumerate(wanted, 1)]
@@ -133,5 +159,17 @@ def diagnose_many(
         raise UserError("found no sweep; give at least one")
     with one_blas_thread():
         band_rad = None if band_deg is None else float(np.radians(band_deg))
-        found = quantify_many(read, rng=rng, robust=robust, band_rad=band_rad, count=count)
+        found = quantify_many(read, rng=rng, robust=robust, band_rad=band_rad, count=count, told=told)
     return Diagnoses(tuple(Diagnosis(one, made) for one in found), made)
+
+
+def _told(output_sense: int | None, twin: Chain | None) -> KnownSense | None:
+    """Which way the output counts, by the user or a twin. Raises UserError for a sense that is none."""
+    from diagnosis.factors.mirror import KnownSense
+    from twin.errors import UserError
+
+    if output_sense is not None:
+        if output_sense not in (1, -1):
+            raise UserError(f"output_sense is {output_sense!r}; expected 1 or -1")
+        return KnownSense(int(output_sense), "option")
+    return None if twin is None else KnownSense(twin.output_sense, "twin")

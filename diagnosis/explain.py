@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from diagnosis.explanation import Explanation
-from diagnosis.input_checks import SweepLike, as_sweep, checked_seed
+from diagnosis.input_checks import SweepLike, TwinLike, as_sweep, as_twin, checked_seed
 from diagnosis.progress import Listener
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ OwnEffects: TypeAlias = "str | os.PathLike[str] | Effect | Sequence[str | os.Pat
 def explain(
     sweep: SweepLike,
     *,
-    twin: str | os.PathLike[str] | Chain | None = None,
+    twin: TwinLike | None = None,
     effects: OwnEffects = (),
     settings: DiscoverySettings | None = None,
     seed: int = 0,
@@ -118,7 +118,7 @@ def explain(
     _check_settings(settings)
     _check_on_interrupt(on_interrupt)
     searched = _searched(effects, twin)
-    given = _given(twin, searched)
+    given = as_twin(twin, effects=searched)
     read = as_sweep(sweep)
     used = vars(settings or DiscoverySettings()).items()
     LOG.info("seed %d; settings: %s", seed, ", ".join(f"{name} {value}" for name, value in used))
@@ -180,7 +180,7 @@ def _check_on_interrupt(on_interrupt: str) -> None:
         raise UserError(f"on_interrupt is {on_interrupt!r}; expected 'raise' or 'answer'")
 
 
-def _searched(own: OwnEffects, twin: str | os.PathLike[str] | Chain | None) -> tuple[Effect, ...]:
+def _searched(own: OwnEffects, twin: TwinLike | None) -> tuple[Effect, ...]:
     """The catalogue with the installed effects, one's own, and those that a given chain brings along."""
     from twin.catalogue import in_order
     from twin.chain import Chain
@@ -194,22 +194,3 @@ def _searched(own: OwnEffects, twin: str | os.PathLike[str] | Chain | None) -> t
     known = {effect.name for effect in effects}
     brought = [effect for effect in twin.effects if effect.name not in known] if isinstance(twin, Chain) else []
     return in_order((*effects, *brought)) if brought else effects
-
-
-def _given(twin: str | os.PathLike[str] | Chain | None, effects: tuple[Effect, ...]) -> Chain | None:
-    """The twin that the sweep is held against, with these effects. Raises UserError where it is none."""
-    from dataclasses import replace
-
-    from twin.chain import Chain
-    from twin.errors import UserError
-    from twin.presets import read_twin_or_preset
-
-    if twin is None:
-        return None
-    if isinstance(twin, Chain):
-        return replace(twin, effects=effects)
-    if not isinstance(twin, str | os.PathLike):
-        raise UserError(
-            f"twin is of the type {type(twin).__name__}; expected the path of a twin file, a preset's name, or a Chain"
-        )
-    return read_twin_or_preset(os.fspath(twin), effects=effects)

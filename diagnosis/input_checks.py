@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 if TYPE_CHECKING:
     from twin.angles import Array
+    from twin.chain import Chain
+    from twin.effect import Effect
     from twin.sweep import Sweep
 
 _MISSING = frozenset({"NoneType", "NAType", "NaTType"})
@@ -31,6 +33,8 @@ class Columns(Protocol):
 
 SweepLike: TypeAlias = "str | os.PathLike[str] | Sweep | Columns"
 """What :func:`diagnosis.explain` and :func:`diagnosis.diagnose` take as a sweep."""
+TwinLike: TypeAlias = "str | os.PathLike[str] | Chain"
+"""What they take as a twin: a twin file, a preset's name, or a chain."""
 
 
 def as_sweep(source: SweepLike) -> Sweep:
@@ -84,6 +88,26 @@ def as_sweep(source: SweepLike) -> Sweep:
                 "expected one for each reading, NaN where there is none"
             )
     return Sweep.from_columns(columns, name=name)
+
+
+def as_twin(twin: TwinLike | None, *, effects: tuple[Effect, ...] | None = None) -> Chain | None:
+    """The twin that is meant, with these effects, None: the catalogue's. Raises UserError where it is none."""
+    from dataclasses import replace
+
+    from twin.catalogue import CATALOGUE
+    from twin.chain import Chain
+    from twin.errors import UserError
+    from twin.presets import read_twin_or_preset
+
+    if twin is None:
+        return None
+    if isinstance(twin, Chain):
+        return twin if effects is None else replace(twin, effects=effects)
+    if not isinstance(twin, str | os.PathLike):
+        raise UserError(
+            f"twin is of the type {type(twin).__name__}; expected the path of a twin file, a preset's name, or a Chain"
+        )
+    return read_twin_or_preset(os.fspath(twin), effects=CATALOGUE if effects is None else effects)
 
 
 def checked_seed(seed: int) -> int:

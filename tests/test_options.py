@@ -58,6 +58,7 @@ RIGHT: dict[str, str] = {
     "--max-error": "36.9",
     "--window": "0 36.9",
     "--bore": "0 36.9",
+    "--output-sense": "-1",
     "--remanence": "0",
     **dict.fromkeys(("--diameter", "--height", "--air-gap"), "36.9"),
     **dict.fromkeys(("--off-axis", "--tilt", "--magnet-off-axis", "--magnet-tilt", "--stray"), "-1 0 36.9"),

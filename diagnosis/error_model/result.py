@@ -28,11 +28,6 @@ class Senses:
     sigma: float
     other: Array | None
 
-    @property
-    def matters(self) -> bool:
-        """Whether the data decide between the two pairs (3 standard errors)."""
-        return self.sigma > 3.0
-
 
 @dataclass(frozen=True)
 class SearchRange:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,12 +17,16 @@ from diagnosis.factors.band_check import BandCheck, band_check
 from diagnosis.factors.channels import Added
 from diagnosis.factors.identifiability import Identifiability, identifiability
 from diagnosis.factors.mechanical import Mechanical, mechanical
+from diagnosis.factors.mirror import By, KnownSense, Mirror, judged
 from diagnosis.factors.repeats import between_angles
+from diagnosis.factors.senses import known_senses
+from diagnosis.factors.sentences import said_of_the_mirror_solution
 from diagnosis.progress import Count
 from twin.angles import Array, radians
 from twin.sweep import Sweep
 
 DEFAULT_SEED = 0
+Senses = tuple[int, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +39,8 @@ class Findings:
     added: Added | None
     repeated: str | None
     """What repeated readings did to the intervals, in words."""
+    mirror: Mirror
+    """Whether the mirror image of the fit, with both senses swapped, is a solution too."""
     band: BandCheck | None = None
     """What the discard rule did, where a band was given."""
 
@@ -50,7 +56,8 @@ class Findings:
     def sentences(self) -> tuple[str, ...]:
         """What can and cannot be known, and what the channels added."""
         channels_say = () if self.added is None else self.added.sentences
-        return self.identifiability.sentences + channels_say + (() if self.repeated is None else (self.repeated,))
+        repeated = () if self.repeated is None else (self.repeated,)
+        return self.identifiability.sentences + said_of_the_mirror_solution(self.mirror) + channels_say + repeated
 
     @property
     def glitch_rows(self) -> tuple[int, ...]:
@@ -65,28 +72,72 @@ def quantify_many(
     robust: bool = True,
     band_rad: float | None = None,
     count: Count | None = None,
+    told: KnownSense | None = None,
 ) -> list[Findings]:
     """Fit and judge many sweeps; those of equal length and senses in one batched swarm.
 
-    ``band_rad`` is the Delta E that the swarm discards particles by (Eq. 11); None: none is discarded.
-    ``count`` tells how many are fitted, and then how many are judged.
+    ``band_rad`` is the Delta E that the swarm discards particles by (Eq. 11); None: none is discarded. ``count`` tells
+    how many are fitted, and then how many are judged; ``told`` in which sense the output counts.
     """
     count = count or Count(len(sweeps))
     rng = rng or np.random.default_rng(DEFAULT_SEED)
-    groups: dict[tuple[int, tuple[int, int] | None], list[int]] = {}
     angles = [(radians(sweep.reference_deg), radians(sweep.measured_deg)) for sweep in sweeps]
-    for index, sweep in enumerate(sweeps):
-        senses = senses_from_channels(sweep, *angles[index])
-        groups.setdefault((len(sweep), senses), []).append(index)
+    known = [known_senses(sweep, *pair, told) for sweep, pair in zip(sweeps, angles, strict=True)]
+    fits = _fitted(angles, [senses for senses, _ in known], rng=rng, robust=robust, band_rad=band_rad, count=count)
+    found = [
+        count.of("judging", i + 1, _judged(sweep, fits[i], known[i][1], band_rad)) for i, sweep in enumerate(sweeps)
+    ]
+    undecided = [i for i, one in enumerate(found) if not one.mirror.decided]
+    swapped: list[Senses | None] = [(-fits[i].senses.sensor, -fits[i].senses.output) for i in undecided]
+    others = _fitted([angles[i] for i in undecided], swapped, rng=rng, robust=robust, band_rad=band_rad)
+    for i, other in zip(undecided, others, strict=True):
+        found[i] = _both(found[i], fits[i], other, band_rad)
+    return found
+
+
+def _fitted(
+    angles: Sequence[tuple[Array, Array]],
+    senses: Sequence[Senses | None],
+    *,
+    rng: np.random.Generator,
+    robust: bool,
+    band_rad: float | None,
+    count: Count | None = None,
+) -> list[BaselineFit]:
+    """The fits of sweeps (reference, measured) with these senses, None: both tried; in their order."""
+    groups: dict[tuple[int, Senses | None], list[int]] = {}
+    for index, pair in enumerate(angles):
+        groups.setdefault((pair[0].size, senses[index]), []).append(index)
     fits: dict[int, BaselineFit] = {}
-    for (_, senses), indices in groups.items():
+    for (_, given), indices in groups.items():
         for start in range(0, len(indices), BATCH):
             batch = indices[start : start + BATCH]
             reference, measured = (np.stack([angles[i][side] for i in batch]) for side in (0, 1))
-            fitted = fit_equal(reference, measured, rng=rng, senses=senses, robust=robust, band_rad=band_rad)
+            fitted = fit_equal(reference, measured, rng=rng, senses=given, robust=robust, band_rad=band_rad)
             fits.update(zip(batch, fitted, strict=True))
-            count.of("error_model", len(fits), None)
-    return [count.of("judging", i + 1, _findings(sweep, fits[i], band_rad)) for i, sweep in enumerate(sweeps)]
+            if count is not None:
+                count.of("error_model", len(fits), None)
+    return [fits[i] for i in range(len(angles))]
+
+
+def _judged(sweep: Sweep, fit: BaselineFit, by: By | None, band_rad: float | None) -> Findings:
+    """What a fit says; ``by``: who knew the senses."""
+    has_channels = sweep.vx is not None and sweep.vy is not None
+    added = channels.added(fit, sweep.vx, sweep.vy) if sweep.vx is not None and sweep.vy is not None else None
+    counted, repeated = between_angles(fit, sweep.reference_deg)
+    reference = radians(sweep.reference_deg)
+    words = identifiability(counted, reference, radians(sweep.measured_deg), has_channels=has_channels)
+    mirror = judged(fit, reference, counted=counted, covered_deg=words.covered_deg) if by is None else Mirror(by, None)
+    band = None if band_rad is None else band_check(counted, band_rad)
+    return Findings(sweep, counted, words, added, repeated, mirror, band)
+
+
+def _both(found: Findings, fit: BaselineFit, other: BaselineFit, band_rad: float | None) -> Findings:
+    """Both solutions of a sweep that cannot tell them apart; h = +1 comes first, so that a series keeps to one."""
+    first, second = (fit, other) if fit.senses.output > 0 else (other, fit)
+    main = found if first is fit else _judged(found.sweep, first, None, band_rad)
+    second, _ = between_angles(second, found.sweep.reference_deg)
+    return replace(main, mirror=replace(found.mirror, other=second))
 
 
 def gap_laws(found: Sequence[Findings]) -> tuple[Law, ...]:
@@ -95,28 +146,6 @@ def gap_laws(found: Sequence[Findings]) -> tuple[Law, ...]:
     if len(curves) < len(found):
         return ()
     return laws([GapSweep(f.fit.point, f.fit.covariance, c.amplitude) for f, c in zip(found, curves, strict=True)])
-
-
-def senses_from_channels(sweep: Sweep, reference: Array, measured: Array) -> tuple[int, int] | None:
-    """With raw channels h is plain to see, and s follows from the slope; without them both are left to the fit."""
-    if sweep.vx is None or sweep.vy is None:
-        return None
-    output = channels.output_sense(measured, sweep.vx, sweep.vy)
-    slope = 1 if _follows(reference, measured, 1) >= _follows(reference, measured, -1) else -1
-    return slope * output, output
-
-
-def _follows(reference: Array, measured: Array, sense: int) -> float:
-    return float(np.abs(np.mean(np.exp(1j * (measured - sense * reference)))))
-
-
-def _findings(sweep: Sweep, fit: BaselineFit, band_rad: float | None) -> Findings:
-    has_channels = sweep.vx is not None and sweep.vy is not None
-    added = channels.added(fit, sweep.vx, sweep.vy) if sweep.vx is not None and sweep.vy is not None else None
-    fit, repeated = between_angles(fit, sweep.reference_deg)
-    words = identifiability(fit, radians(sweep.reference_deg), radians(sweep.measured_deg), has_channels=has_channels)
-    band = None if band_rad is None else band_check(fit, band_rad)
-    return Findings(sweep, fit, words, added, repeated, band)
 
 
 def curve_deg(fit: BaselineFit, shaft_deg: Array) -> Array:

@@ -15,7 +15,6 @@ from diagnosis.factors.sentences import (
     TIED,
     said_of_any_sweep,
     said_of_few_readings,
-    said_of_the_mirror_solution,
     said_of_these_readings,
     said_of_weak_parameters,
 )
@@ -71,7 +70,6 @@ def identifiability(
             *said_of_these_readings(covered, unseen, correlations),
             *said_of_few_readings(fit),
             *said_of_weak_parameters(fit, profiles),
-            *said_of_the_mirror_solution(fit),
         ),
     )
 

@@ -7,6 +7,7 @@ import numpy as np
 from diagnosis.error_model import model
 from diagnosis.error_model.model import NAMES, ZERO
 from diagnosis.error_model.result import BaselineFit
+from diagnosis.factors.mirror import Mirror
 from diagnosis.factors.null_space import HIDDEN, invisible_count
 from diagnosis.factors.profile_likelihood import Profile
 from twin.angles import Array
@@ -85,13 +86,19 @@ def said_of_weak_parameters(fit: BaselineFit, profiles: tuple[Profile, ...]) -> 
     return tuple(said)
 
 
-def said_of_the_mirror_solution(fit: BaselineFit) -> tuple[str, ...]:
-    """Whether both senses swapped fit as well."""
-    senses = fit.senses
-    if senses.other is None:
+def said_of_the_mirror_solution(mirror: Mirror) -> tuple[str, ...]:
+    """Who decides between the two mirror solutions; and where nobody does, the other one and what would decide."""
+    if mirror.by == "quadratic term":
+        return ("the quadratic term decides which way sensor and output count: the mirror solution fits worse",)
+    if mirror.by is not None:
+        said = {"twin": "the twin", "option": "--output-sense", "channels": ""}[mirror.by]
+        return (f"{said} says which way sensor and output count: there is no mirror solution",) if said else ()
+    if mirror.other is None:
         return ()
-    phase, offset = np.degrees(senses.other[model.BETA]), 100.0 * senses.other[model.VY]
-    pair = f"s = {-senses.sensor:+d}, h = {-senses.output:+d} (phase {phase:+.3f} deg, offset y {offset:+.3f} %)"
-    if senses.matters:
-        return (f"the mirror solution {pair} is {senses.sigma:.0f} standard errors worse, by its quadratic term alone",)
-    return (f"the mirror solution {pair} fits as well: an angle with so small a quadratic term cannot part them",)
+    other = mirror.other
+    offset, phase = 100.0 * other.point[model.VY], np.degrees(other.point[model.BETA])
+    return (
+        f"the mirror solution s = {other.senses.sensor:+d}, h = {other.senses.output:+d} fits as well: offset y "
+        f"{offset:+.3f} %, phase {phase:+.3f} deg; an angle parts the two by its quadratic term alone, which is too "
+        "small here: vx and vy, a twin, or knowing which way the output counts (--output-sense) would decide",
+    )

@@ -10,7 +10,7 @@ import numpy as np
 from diagnosis.error_model.fit import fit_many
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.control_chart import BACKWARD, BOTH, FORWARD, Chart, average_run_length, chart, limit_for
-from diagnosis.factors.findings import senses_from_channels
+from diagnosis.factors.senses import known_senses
 from twin.angles import Array, radians, wrap_deg
 from twin.baseline import FACTORS, Factor
 from twin.sweep import FEWEST_ROWS, Sweep
@@ -75,7 +75,7 @@ def monitor(sweeps: Sequence[Sweep], *, rng: np.random.Generator, run_length: fl
     """
     parts = _by_travel(sweeps)
     # One pair of senses for the whole series: a pair that flips would be a jump of beta and Vy.
-    senses = senses_from_channels(sweeps[0], *parts[BOTH][0])
+    senses, _ = known_senses(sweeps[0], *parts[BOTH][0])
     if senses is None:
         first = fit_many(parts[BOTH][:1], rng=rng, robust=True)[0].senses
         senses = first.sensor, first.output

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from diagnosis.error_model.model import NAMES
+from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.air_gaps import Law
 from diagnosis.factors.findings import Findings
+from diagnosis.factors.mechanical import mechanical
 from diagnosis.report.provenance import Provenance
 from twin.baseline import FACTORS
 
@@ -38,9 +40,12 @@ def one_sweep(found: Findings) -> dict[str, Any]:
         "senses": {
             "sensor": fit.senses.sensor,
             "output": fit.senses.output,
-            "decided": fit.senses.matters,
+            "decided": found.mirror.decided,
             "sigma": _finite(fit.senses.sigma),
+            "decided_by": found.mirror.by,
+            "log_odds": found.mirror.log_odds,
         },
+        "mirror_solution": _mirror_solution(found),
         "rms_deg": _degrees(fit.rms_rad),
         "steps": _steps(found),
         "search": {"rounds": fit.search.rounds, "widened": [FACTORS[NAMES.index(n)].name for n in fit.search.widened]},
@@ -61,10 +66,32 @@ def one_sweep(found: Findings) -> dict[str, Any]:
     return answer
 
 
+def _mirror_solution(found: Findings) -> dict[str, Any] | None:
+    """The other solution where it fits as well: its senses, factors and meaning; None where there is none."""
+    other = found.mirror.other
+    if other is None:
+        return None
+    return {
+        "sensor": other.senses.sensor,
+        "output": other.senses.output,
+        "rms_deg": _degrees(other.rms_rad),
+        "parameters": _six(other),
+        "mechanical": dict(vars(mechanical(other.point))),
+    }
+
+
 def parameters(found: Findings) -> dict[str, dict[str, Any]]:
     """The six parameters with their 95 % intervals, and the profile's limits where the interval is not symmetric."""
-    fit = found.fit
-    answer: dict[str, dict[str, Any]] = {
+    answer = _six(found.fit)
+    for profile in found.identifiability.profiles:
+        k = NAMES.index(profile.name)
+        answer[FACTORS[k].name]["profile"] = [_finite(_scale(k) * profile.low), _finite(_scale(k) * profile.high)]
+    return answer
+
+
+def _six(fit: BaselineFit) -> dict[str, dict[str, Any]]:
+    """The six parameters of a fit with their 95 % intervals."""
+    return {
         factor.name: {
             "value": _finite(_scale(k) * fit.point[k]),
             "low": _finite(_scale(k) * fit.low[k]),
@@ -74,10 +101,6 @@ def parameters(found: Findings) -> dict[str, dict[str, Any]]:
         }
         for k, factor in enumerate(FACTORS)
     }
-    for profile in found.identifiability.profiles:
-        k = NAMES.index(profile.name)
-        answer[FACTORS[k].name]["profile"] = [_finite(_scale(k) * profile.low), _finite(_scale(k) * profile.high)]
-    return answer
 
 
 def _steps(found: Findings) -> dict[str, Any]:

@@ -28,13 +28,15 @@ def text(answer: Mapping[str, Any], *, width: int) -> str:
 
 def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:
     """The answer for one sweep, line by line."""
-    steps, senses = sweep["steps"], sweep["senses"]
+    steps, senses, mirror = sweep["steps"], sweep["senses"], sweep["mirror_solution"]
     alone, swarm, polished = (_deg(v) for v in (steps["zero_only_rms_deg"], steps["swarm_rms_deg"], sweep["rms_deg"]))
     particles = steps["particles_evaluated"]
     facts = {
         "error RMS": f"{alone} with the zero alone, {swarm} after the swarm ({particles} particles), "
         f"{polished} after the polish",
-        "senses": f"s = {senses['sensor']:+d}, h = {senses['output']:+d}",
+        "senses": _pair(senses)
+        if mirror is None
+        else f"{_pair(senses)} or {_pair(mirror)}: these readings do not tell",
         "range": _range_words(sweep["search"]),
     }
     if "band" in sweep:
@@ -43,10 +45,12 @@ def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:
         *_wrapped(f"{sweep['sweep']}   {rows_words(sweep)}", width, 2),
         "",
         *_parameter_lines(sweep["parameters"]),
+        *_mirror_lines(mirror),
         "",
         *(line for name, said in facts.items() for line in _wrapped(f"{name:{_INDENT}}{said}", width, _INDENT)),
         "",
         *_wrapped(mechanical_words(sweep["mechanical"]), width, 2),
+        *(() if mirror is None else _wrapped(f"{_pair(mirror)}: {mechanical_words(mirror['mechanical'])}", width, 2)),
         "",
         *_listed(sweep["sentences"], width),
     ]
@@ -75,6 +79,15 @@ def rows_words(sweep: Mapping[str, Any]) -> str:
         listed = ", ".join(map(str, glitches[:5]))
         said += f"; {len(glitches)} left out as gross errors ({'row' if len(glitches) == 1 else 'rows'} {listed}{more})"
     return said
+
+
+def _pair(senses: Mapping[str, Any]) -> str:
+    return f"s = {senses['sensor']:+d}, h = {senses['output']:+d}"
+
+
+def _mirror_lines(mirror: Mapping[str, Any] | None) -> list[str]:
+    """The table of the mirror solution, where it fits as well."""
+    return [] if mirror is None else [f"as well, with {_pair(mirror)}:", *_parameter_lines(mirror["parameters"])[1:]]
 
 
 def _parameter_lines(parameters: Mapping[str, Any]) -> list[str]:

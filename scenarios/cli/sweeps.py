@@ -69,6 +69,16 @@ def diagnose(
             "computed from (Eq. 7).",
         ),
     ] = None,
+    twin: Annotated[
+        str | None,
+        typer.Option(metavar="TWIN", help="Take from this twin which way its output counts: a TOML file or a preset."),
+    ] = None,
+    output_sense: Annotated[
+        int | None,
+        typer.Option(
+            metavar="+1|-1", help="Which way the output counts: +1 where it is atan2(y, x) of the channels, -1 against."
+        ),
+    ] = None,
     force: Force = False,
     max_size: MaxSize = "2GB",
     seed: Seed = 0,
@@ -86,6 +96,8 @@ def diagnose(
         outputs=Outputs(json=json, plot=plot, convergence=convergence, force=force),
         seed=seed,
         band=band,
+        twin=twin,
+        output_sense=output_sense,
         fail_on=fail_on or (),
         command=command_line(context),
     )

@@ -29,6 +29,8 @@ def run(
     given: SweepFiles,
     *,
     outputs: Outputs | None = None,
+    twin: str | None = None,
+    output_sense: int | None = None,
     seed: int = 0,
     band: str | None = None,
     fail_on: Sequence[str] = (),
@@ -40,11 +42,13 @@ def run(
     paths = given.paths()
     to = outputs or Outputs()
     wanted = [(to.json, JSON), (to.plot, PICTURE), (to.convergence, PICTURE)]
-    files = OutputFiles.checked(wanted, inputs=[*paths, band], force=to.force)
+    files = OutputFiles.checked(wanted, inputs=[*paths, band, twin], force=to.force)
     read = given.read(paths)
     check_panels(to.plot, len(read.sweeps))
     with progress_line() as listener:
-        found = diagnose_many(read.sweeps, seed=seed, band_deg=delta_e_deg, progress=listener)
+        found = diagnose_many(
+            read.sweeps, seed=seed, band_deg=delta_e_deg, twin=twin, output_sense=output_sense, progress=listener
+        )
     found = replace(found, made=replace(found.made, command=command))
     answer = {**found.to_dict(), "unusable": read.listed()}
     try:

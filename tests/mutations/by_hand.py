@@ -9,6 +9,8 @@ _SWARM_TESTS = "tests/diagnosis/error_model/test_swarm.py"
 _BAND = "diagnosis/error_model/error_band.py"
 _DESIGN = "tests/scenarios/test_design.py"
 _GAPS = "diagnosis/factors/air_gaps.py"
+_MIRROR = "diagnosis/factors/mirror.py"
+_MIRROR_TESTS = "tests/diagnosis/factors/test_mirror.py"
 _LAW = "tests/diagnosis/factors/test_findings.py::test_an_exact_law_leaves_nothing_of_the_change"
 
 ERROR_MODEL: tuple[Mutation, ...] = (
@@ -91,8 +93,8 @@ FACTORS: tuple[Mutation, ...] = (
     Mutation(
         "findings.no_band_reaches_the_swarm",
         "diagnosis/factors/findings.py",
-        "robust=robust, band_rad=band_rad)",
-        "robust=robust)",
+        "senses=given, robust=robust, band_rad=band_rad)",
+        "senses=given, robust=robust)",
         ("tests/diagnosis/factors/test_band_check.py::test_a_device_keeps_its_own_band_and_particles_are_discarded",),
     ),
     Mutation(
@@ -109,6 +111,35 @@ FACTORS: tuple[Mutation, ...] = (
         '("grows with the field", 1.0)',
         '("grows with the field", 2.0)',
         (_LAW,),
+    ),
+    Mutation(
+        "mirror.any_odds_decide",
+        _MIRROR,
+        "if odds > DECIDED_LOG_ODDS else",
+        "if odds > 0.0 else",
+        (f"{_MIRROR_TESTS}::test_the_sign_is_right_or_both_are_given",),
+        short=True,
+    ),
+    Mutation(
+        "mirror.structure_counts_as_noise",
+        _MIRROR,
+        "return min(white, 0.5",
+        "return max(white, 0.5",
+        (f"{_MIRROR_TESTS}::test_other_structure_of_order_3_does_not_decide",),
+    ),
+    Mutation(
+        "mirror.readings_count_instead_of_angles",
+        _MIRROR,
+        "excess = (fit.senses.sigma * fit.standard_errors[0] / counted.standard_errors[0]) ** 2",
+        "excess = fit.senses.sigma**2",
+        (f"{_MIRROR_TESTS}::test_repeated_readings_count_once",),
+    ),
+    Mutation(
+        "mirror.first_by_chance",
+        "diagnosis/factors/findings.py",
+        "(fit, other) if fit.senses.output > 0 else (other, fit)",
+        "(fit, other)",
+        (f"{_MIRROR_TESTS}::test_the_sign_is_right_or_both_are_given",),
     ),
     Mutation(
         "control_charts.run_length_not_shared",

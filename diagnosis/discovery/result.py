@@ -17,6 +17,9 @@ from twin.chain import Chain
 from twin.effect import BoolArray
 from twin.sweep import Sweep
 
+REPEATED, HELD_OUT = "repeated readings", "held-out readings"
+"""What the noise floor was taken from: their scatter at one angle; without such, what the extended twin leaves."""
+
 
 @dataclass(frozen=True, eq=False)
 class Discovery:
@@ -36,6 +39,7 @@ class Discovery:
     baseline_held_deg: float
     extended_held_deg: float
     noise_floor_deg: float
+    noise_floor_from: str
     looked_at: int
     given: Chain | None = None
     invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
@@ -66,6 +70,7 @@ class Discovery:
             baseline_held_deg=held[0],
             extended_held_deg=held[1],
             noise_floor_deg=float(np.degrees(observations.repeat_rms)) if observations.repeat_rms else held[1],
+            noise_floor_from=REPEATED if observations.repeat_rms else HELD_OUT,
             looked_at=state.looked_at,
             given=state.given,
             invisible={

@@ -77,7 +77,7 @@ def said_of_weak_parameters(fit: BaselineFit, profiles: tuple[Profile, ...]) -> 
         k = NAMES.index(profile.name)
         null = model.NOMINAL[k]
         if k != ZERO and profile.low <= null <= profile.high:
-            said.append(f"{_WHAT[profile.name]}: compatible with none at all")
+            said.append(f"{_WHAT[profile.name]}: not told from {null:g}, that of an ideal sensor, by these readings")
         if not np.isfinite(profile.low) or not np.isfinite(profile.high):
             said.append(f"{_WHAT[profile.name]}: the likelihood never falls off on one side; no bound there")
     said += [

@@ -12,9 +12,10 @@ from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.marks.row_numbers import number_in_file
+from diagnosis.discovery.proof.predictive_check import why_not_checked
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
-from diagnosis.report.fitted_rows import fitted, of_baseline, rms_deg
+from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.senses import senses
 from twin.angles import wrap_deg
@@ -51,6 +52,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
                 **of_baseline(found),
             },
             "noise_floor_deg": found.noise_floor_deg,
+            "noise_floor_from": found.noise_floor_from,
             "noise": found.fit.weighting.family.labels[found.fit.weighting.member],
             "verdict": found.verdict,
             "causes": [_cause(found, cause) for cause in found.causes],
@@ -67,6 +69,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
                 "gain": gain,
                 "likeness_p": None if found.likeness is None else found.likeness.p,
                 "likeness_worst": None if found.likeness is None else found.likeness.worst,
+                "likeness_not_checked": _not_checked(found),
             },
             "not_visible": {name: list(missing) for name, missing in sorted(found.invisible.items())},
             "senses": senses(found),
@@ -76,6 +79,14 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
         }
     )
     return answer
+
+
+def _not_checked(found: Discovery) -> dict[str, Any] | None:
+    """Why the predictive check was not made, with the readings there are and that it takes; None where it was."""
+    if found.likeness is not None:
+        return None
+    why = why_not_checked(found.fit)
+    return {"why": "it was left out", "readings": found.fit.rows, "needed": None} if why is None else why._asdict()
 
 
 def _cut_short(found: Discovery) -> dict[str, str] | None:
@@ -94,7 +105,7 @@ def _cut_short(found: Discovery) -> dict[str, str] | None:
 def _sweep(found: Discovery) -> dict[str, Any]:
     """What the sweep holds, and what was not used of it."""
     sweep = found.sweep
-    wild = wild_rows(found)
+    numbers = sweep.numbers[wild(found)].tolist()
     return {
         "name": sweep.name,
         "rows": sweep.rows,
@@ -103,14 +114,14 @@ def _sweep(found: Discovery) -> dict[str, Any]:
         "rejected": len(sweep.rejected),
         "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:MOST_LISTED]},
         "rejected_rows_left_out": max(len(sweep.rejected) - MOST_LISTED, 0),
-        "fitted": int(np.count_nonzero(fitted(found))),
+        **counts(found),
         "turns": found.fit.observations.motion.turns,
         "columns": list(sweep.columns),
         **facts(found),
         "output_bits": found.bits,
-        "wild": len(wild),
-        "wild_rows": wild[:MOST_LISTED],
-        "wild_rows_left_out": max(len(wild) - MOST_LISTED, 0),
+        "wild": len(numbers),
+        "wild_rows": numbers[:MOST_LISTED],
+        "wild_rows_left_out": max(len(numbers) - MOST_LISTED, 0),
     }
 
 
@@ -275,13 +286,6 @@ def _structure(found: Discovery, key: str) -> dict[str, Any]:
     own = {name: float(value) for name, value in values.items() if np.ndim(value) == 0}
     rows = {name: figure["value"] for name, figure in _row_numbers(found, key).items()}
     return {"kind": effect.kind, **own, **effect.figures(values), **rows}
-
-
-def wild_rows(found: Discovery) -> list[int]:
-    """Numbers of the readings that stand alone far out of their neighbours and that no cause has claimed."""
-    observations = found.fit.observations
-    wild = (observations.sure & ~observations.usable)[observations.group] & ~found.masked
-    return [int(number) for number in found.sweep.numbers[wild]]
 
 
 def _rms(values: Any) -> float:

@@ -12,11 +12,19 @@ from rich.table import Table
 from rich.text import Text
 
 from diagnosis.report import statements
+from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.statements import FactorRow
 from diagnosis.report.wording import chance
 
 _VERDICT_STYLE = {"adequate": "green", "explained": "green", "partly explained": "yellow", "unnamed": "yellow"}
+_NARROW = 72
+"""Characters from which on two factors stand beside each other."""
+_WRONG = "What the simulation gets wrong"
 _HEADS = ("held-out RMS, deg", "false alarm")
+_PLACE = 3
+"""Characters of a cause's number."""
+_GAPS = 9
+"""Those between the columns of the causes, and behind the last one."""
 _WIDE = 120
 """Characters of a terminal on which three factors stand beside each other; no column moves further apart beyond."""
 
@@ -24,10 +32,9 @@ _WIDE = 120
 def show(answer: Mapping[str, Any], console: Console | None = None) -> None:
     """Print an answer: sweep, baseline, causes, verdict, and what this sweep cannot show."""
     console = console or Console(highlight=False)
-    wide = console.width >= _WIDE
     parts = [
         _sweep(answer["sweep"]),
-        _baseline(answer, wide=wide),
+        _baseline(answer, beside=3 if console.width >= _WIDE else 2 if console.width >= _NARROW else 1),
         _causes(answer, width=min(console.width, _WIDE)),
         _verdict(answer),
         _invisible(answer),
@@ -46,13 +53,13 @@ def text(answer: Mapping[str, Any], *, width: int) -> str:
 
 
 def _sweep(sweep: Mapping[str, Any]) -> RenderableType:
-    said = f"{', '.join(statements.sweep_facts(sweep))}; {statements.rows_words(sweep)}"
+    said = f"{', '.join(statements.sweep_facts(sweep))}; {explained_rows(sweep)}"
     return Text.assemble((sweep["name"], "bold"), "   ", said)
 
 
-def _baseline(answer: Mapping[str, Any], *, wide: bool) -> RenderableType:
+def _baseline(answer: Mapping[str, Any], *, beside: int) -> RenderableType:
     rows = statements.factor_rows(answer)
-    table = _extended(rows) if rows[0].after else _plain(rows, beside=3 if wide else 2)
+    table = _extended(rows) if rows[0].after else _plain(rows, beside=beside)
     said = filter(None, (statements.moved_words(answer), statements.senses_words(answer)))
     return Group(
         Text(statements.baseline_words(answer), "bold"),
@@ -68,16 +75,24 @@ def _indented(words: str) -> RenderableType:
 
 def _plain(rows: Iterable[FactorRow], *, beside: int) -> Table:
     """The factors, several beside each other."""
-    table = Table.grid(padding=(0, 2, 0, 0))
+    table = _grid(3 * beside)
     cells = [(row.label, f"{row.before} ({row.flag})" if row.flag else row.before) for row in rows]
     for start in range(0, len(cells), beside):
         table.add_row(*(cell for pair in cells[start : start + beside] for cell in (*pair, "")))
     return table
 
 
+def _grid(columns: int) -> Table:
+    """A table without lines, whose cells are wrapped where they have no room, and never cut."""
+    table = Table.grid(padding=(0, 2, 0, 0))
+    for _ in range(columns):
+        table.add_column(overflow="fold")
+    return table
+
+
 def _extended(rows: Iterable[FactorRow]) -> Table:
     """The factors before the causes and with them."""
-    table = Table.grid(padding=(0, 2, 0, 0))
+    table = _grid(4)
     table.add_row("", Text("before", "dim"), Text("with the causes", "dim"), "")
     for row in rows:
         table.add_row(row.label, row.before, row.after, row.flag)
@@ -89,8 +104,12 @@ def _causes(answer: Mapping[str, Any], *, width: int) -> RenderableType | None:
         return None
     said = [(statements.held_words(cause), chance(cause["false_alarm_probability"])) for cause in answer["causes"]]
     widths = [max(map(len, column)) for column in zip(_HEADS, *said, strict=True)]
+    unbroken = [*_WRONG.split(), *(cause["name"] for cause in answer["causes"])]
+    longest = max(map(len, unbroken))
+    if width < _PLACE + sum(widths) + _GAPS + longest:
+        return _below_each_other(answer, said)
     head = _columns(width, widths)
-    head.add_row("", Text("What the simulation gets wrong", "bold"), *_HEADS)
+    head.add_row("", Text(_WRONG, "bold"), *_HEADS)
     parts: list[RenderableType] = [head]
     for number, cause in enumerate(answer["causes"], 1):
         row = _columns(width, widths)
@@ -100,11 +119,21 @@ def _causes(answer: Mapping[str, Any], *, width: int) -> RenderableType | None:
     return Group(*parts)
 
 
+def _below_each_other(answer: Mapping[str, Any], said: Sequence[tuple[str, str]]) -> RenderableType:
+    """The causes on a terminal that is too narrow for columns: no name is cut, every figure on a line of its own."""
+    parts: list[RenderableType] = [Text(_WRONG, "bold")]
+    for number, (cause, figures) in enumerate(zip(answer["causes"], said, strict=True), 1):
+        parts.append(Text.assemble(f"{number:{_PLACE}}  ", (cause["name"], "bold")))
+        lines = [f"{head}: {figure}" for head, figure in zip(_HEADS, figures, strict=True)]
+        parts.extend(Padding(Text(line), (0, 0, 0, 5)) for line in (*lines, *_details(answer, cause)))
+    return Group(*parts)
+
+
 def _columns(width: int, figures: Sequence[int]) -> Table:
     """Number, name, held-out RMS, chance: the same widths for every cause, so that they stand in columns."""
     table = Table.grid(padding=(0, 2, 0, 0))
     table.width = width
-    table.add_column(justify="right", width=3)
+    table.add_column(justify="right", width=_PLACE)
     table.add_column(ratio=1)
     table.add_column(width=figures[0] + 1, no_wrap=True)
     table.add_column(width=figures[1], no_wrap=True)

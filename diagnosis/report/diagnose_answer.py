@@ -16,6 +16,8 @@ from diagnosis.report.provenance import Provenance
 from twin.baseline import FACTORS
 
 SCHEMA = "halltwin.diagnose/1"
+MOST_LISTED = 100
+"""Unusable rows that are listed by their number; how many more there are is said beside the list."""
 
 
 def to_json(found: Sequence[Findings], over_gaps: Sequence[Law], made: Provenance) -> dict[str, Any]:
@@ -35,7 +37,10 @@ def one_sweep(found: Findings) -> dict[str, Any]:
         "sweep": found.sweep.name,
         "rows": found.sweep.rows,
         "rejected": len(found.sweep.rejected),
+        "rejected_rows": {str(row): why for row, why in list(found.sweep.rejected.items())[:MOST_LISTED]},
+        "rejected_rows_left_out": max(len(found.sweep.rejected) - MOST_LISTED, 0),
         "glitch_rows": list(found.glitch_rows),
+        "fitted": len(found.sweep) - len(found.glitch_rows),
         "parameters": parameters(found),
         "senses": {
             "sensor": fit.senses.sensor,

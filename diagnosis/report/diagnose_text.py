@@ -6,16 +6,20 @@ Each function takes the answer (the content of the JSON) and nothing else, so th
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from diagnosis.factors.air_gaps import Law, sentences
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
+from diagnosis.report.row_counts import diagnosed_rows, left_out_words
 from diagnosis.report.wording import figure, plain
 
 _OF_AMPLITUDE = {"%": "% of amplitude"}
 _INDENT = 16
 _SHORTEST_NAME = 12
+_MOST_NAMED = 5
+_ONE_LINE = 72
+"""Characters in which a factor, its interval and what is said of it fit."""
 
 
 def text(answer: Mapping[str, Any], *, width: int) -> str:
@@ -42,10 +46,10 @@ def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:
     if "band" in sweep:
         facts["band"] = band_words(sweep["band"], particles)
     return [
-        *_wrapped(f"{sweep['sweep']}   {rows_words(sweep)}", width, 2),
+        *_wrapped(f"{sweep['sweep']}   {sweep['rows']} readings; {diagnosed_rows(sweep)}", width, 2),
         "",
-        *_parameter_lines(sweep["parameters"]),
-        *_mirror_lines(mirror),
+        *_parameter_lines(sweep["parameters"], width=width),
+        *_mirror_lines(mirror, width=width),
         "",
         *(line for name, said in facts.items() for line in _wrapped(f"{name:{_INDENT}}{said}", width, _INDENT)),
         "",
@@ -68,43 +72,43 @@ def band_words(band: Mapping[str, Any], particles: int) -> str:
     )
 
 
-def rows_words(sweep: Mapping[str, Any]) -> str:
-    """How many readings there are, and which of them the fit is not made of."""
-    said = f"{sweep['rows']} readings"
-    if sweep["rejected"]:
-        said += f", {sweep['rejected']} rejected"
-    glitches = sweep["glitch_rows"]
-    if glitches:
-        more = f" and {len(glitches) - 5} more" if len(glitches) > 5 else ""
-        listed = ", ".join(map(str, glitches[:5]))
-        said += f"; {len(glitches)} left out as gross errors ({'row' if len(glitches) == 1 else 'rows'} {listed}{more})"
-    return said
-
-
 def _pair(senses: Mapping[str, Any]) -> str:
     return f"s = {senses['sensor']:+d}, h = {senses['output']:+d}"
 
 
-def _mirror_lines(mirror: Mapping[str, Any] | None) -> list[str]:
+def _mirror_lines(mirror: Mapping[str, Any] | None, *, width: int) -> Iterator[str]:
     """The table of the mirror solution, where it fits as well."""
-    return [] if mirror is None else [f"as well, with {_pair(mirror)}:", *_parameter_lines(mirror["parameters"])[1:]]
+    if mirror is not None:
+        yield f"as well, with {_pair(mirror)}:"
+        yield from _factor_lines(mirror["parameters"], width=width)
 
 
-def _parameter_lines(parameters: Mapping[str, Any]) -> list[str]:
-    """The table of the six factors, with the profile's limits below those that have them."""
-    lines = [f"{'':{_INDENT}}{'value':>12}   95 % interval"]
+def _parameter_lines(parameters: Mapping[str, Any], *, width: int) -> Iterator[str]:
+    """The table of the six factors, with its head."""
+    yield from f"{'':{_INDENT}}{'value':>12}{_behind(width)}95 % interval".split("\n")
+    yield from _factor_lines(parameters, width=width)
+
+
+def _behind(width: int) -> str:
+    """What stands before an interval: where a line has no room for it, a line of its own begins."""
+    return "   " if width >= _ONE_LINE else "\n    "
+
+
+def _factor_lines(parameters: Mapping[str, Any], *, width: int) -> Iterator[str]:
+    """The six factors, with the profile's limits below those that have them."""
+    behind = _behind(width)
     for key, label in LABELS.items():
         parameter = parameters[key]
         unit = _OF_AMPLITUDE.get(UNITS[key], UNITS[key])
         value, _ = figure(parameter, SCALES[key])
         bound = "   at the model's limit" if parameter["at_bound"] else ""
         limits = _limits(parameter["low"], parameter["high"], value, SCALES[key])
-        lines.append(f"{label:{_INDENT}}{value:>12}   {limits} {unit}{bound}".rstrip())
+        yield from f"{label:{_INDENT}}{value:>12}{behind}{limits} {unit}{bound}".rstrip().split("\n")
         if "profile" in parameter:
             low, high = parameter["profile"]
             limits = _limits(low, high, value, SCALES[key])
-            lines.append(f"{'  profile':{_INDENT}}{'':>12}   {limits} {unit}".rstrip())
-    return lines
+            gap = f"{'':>12}" if width >= _ONE_LINE else ""
+            yield from f"{'  profile':{_INDENT}}{gap}{behind}{limits} {unit}".rstrip().split("\n")
 
 
 def _limits(low: float | None, high: float | None, value: str, scale: float) -> str:
@@ -138,7 +142,21 @@ def many_sweeps(sweeps: Sequence[Mapping[str, Any]], *, width: int) -> list[str]
     for first, row in zip(firsts, rows, strict=True):
         cells = [f"{cell:>{size}}" for cell, size in zip(row, widths, strict=True)]
         lines.append((" " * gap).join([f"{_end_of(first, name):{name}}", *cells]).rstrip())
-    return lines
+    return [*lines, *_below(sweeps, width)]
+
+
+def _below(sweeps: Sequence[Mapping[str, Any]], width: int) -> Iterator[str]:
+    """What the table of many sweeps does not say: readings that were not fitted, and solutions that are as good."""
+    yield from _wrapped(left_out_words(sweeps), width, 2)
+    tied = [sweep["sweep"] for sweep in sweeps if sweep["mirror_solution"] is not None]
+    if tied:
+        more = f" and {len(tied) - _MOST_NAMED} more" if len(tied) > _MOST_NAMED else ""
+        yield from _wrapped(
+            f"the sign of offset y and phase is open in {', '.join(tied[:_MOST_NAMED])}{more}: with the zero mirrored "
+            "too the other one fits as well (diagnose such a sweep alone to see both)",
+            width,
+            2,
+        )
 
 
 def _value_alone(shown: tuple[str, str]) -> str:

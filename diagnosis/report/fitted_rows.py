@@ -23,8 +23,24 @@ def fitted(found: Discovery) -> BoolArray:
     return rows if rows.any() else np.ones_like(rows)
 
 
+def wild(found: Discovery) -> BoolArray:
+    """Which readings (n_raw,) stand alone far out of their neighbours, and no cause has claimed them."""
+    observations = found.fit.observations
+    alone = (observations.sure & ~observations.usable)[observations.group]
+    return alone & ~found.masked & ~fitted(found)
+
+
+def counts(found: Discovery) -> dict[str, int]:
+    """How many readings were fitted, and how many were not although they are in use; all of them with the wild ones."""
+    left_out = ~fitted(found)
+    touched = left_out & found.masked
+    rest = left_out & ~touched & ~wild(found)
+    named = {"fitted": ~left_out, "touched": touched, "direction_in_doubt": rest}
+    return {name: int(np.count_nonzero(rows)) for name, rows in named.items()}
+
+
 def of_baseline(found: Discovery) -> dict[str, Any]:
-    """The error without its mean, what the baseline leaves of it [deg RMS], and how much of its power that explains."""
+    """The error without its mean, what the baseline leaves [deg RMS], and the share of the mean square it explains."""
     rows = fitted(found)
     error_deg = angle_error_deg(found.baseline, found.sweep)[rows]
     before = float(np.std(error_deg))

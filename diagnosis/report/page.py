@@ -14,6 +14,7 @@ from diagnosis.report import pictures as drawn
 from diagnosis.report import statements, tables
 from diagnosis.report.data import Readings, readings, two_ways
 from diagnosis.report.facts import facts
+from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.style import CSS
 from diagnosis.report.svg import Plot
 from diagnosis.report.tables import number
@@ -59,8 +60,9 @@ def _headline(answer: Mapping[str, Any]) -> str:
         ("baseline, held-out RMS", number(answer["baseline"]["heldout_rms_deg"]), "deg"),
         ("extended twin, held-out RMS", number(answer["extended"]["heldout_rms_deg"]), "deg"),
         ("times closer on readings it never saw", number(answer["extended"]["gain"]), ""),
-        ("noise floor", number(answer["noise_floor_deg"]), "deg"),
     ]
+    if statements.floor_is_known(answer):
+        cards.append(("noise floor", number(answer["noise_floor_deg"]), "deg"))
     verdict = f"Verdict: {answer['verdict']}{told}."
     return f'<p class="verdict">{escape(verdict)}</p><p>{_text(statements.verdict_words(answer))}</p>{_cards(cards)}'
 
@@ -76,7 +78,7 @@ def _cards(cards: list[tuple[str, str, str]]) -> str:
 def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings) -> str:
     sweep = answer["sweep"]
     cards = [
-        ("readings used", number(sweep["used"]), f"of {sweep['rows']}"),
+        ("readings fitted", number(sweep["fitted"]), f"of {sweep['rows']}"),
         ("turns travelled", number(sweep["turns"], statements.turns_shown(sweep["turns"])), ""),
         ("directions", str(said["directions"]), ""),
         ("between readings", statements.step_shown(sweep), "deg"),
@@ -88,7 +90,7 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
     if sweep["output_bits"] is not None:
         cards.append(("grid of the output", number(sweep["output_bits"]), "bits"))
     columns = ", ".join(f"<code>{escape(column)}</code>" for column in sweep["columns"])
-    facts_said = f"{', '.join(statements.sweep_facts(sweep))}; {statements.rows_words(sweep)}"
+    facts_said = f"{', '.join(statements.sweep_facts(sweep))}; {explained_rows(sweep)}"
     words = (
         f"<p>{_text(facts_said)}.</p>"
         f"<p>Columns: {columns}. The noise is best described as {escape(answer['noise'])}.</p>"
@@ -99,8 +101,8 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
 
 def _baseline(answer: Mapping[str, Any], read: Readings, found: Discovery) -> str:
     words = (
-        f"<p>{_text(statements.baseline_words(answer))}. The share is one of the error's power. What stands above the "
-        f"{_text(statements.floor_words(answer))}, the simulation gets wrong.</p>"
+        f"<p>{_text(statements.baseline_words(answer))}. What stands above the noise, the simulation gets wrong: "
+        f"{_text(statements.floor_words(answer))}.</p>"
     )
     limits = drawn.residual_limits(read)
     pictures = [
@@ -155,7 +157,7 @@ def _cause(
     if cause["name"] == "unnamed":
         words = (
             "<p>No cause of the catalogue explains this structure. The extended twin carries it as it is, "
-            f"so that the gain is had all the same:</p>{tables.structure(answer['unexplained']['structure'])}"
+            f"so that the gain is had all the same:</p>{tables.structure(statements.structure_lines(answer))}"
         )
     else:
         words = f"<p>Stage: {escape(effect.stage)}. Signature in the error: {escape(minus(effect.signature))}.</p>"

@@ -8,9 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from diagnosis.discovery.result import REPEATED
 from diagnosis.discovery.settings import UNLIKE
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
-from diagnosis.report.wording import figure, instances, parameter_line, plain, structure_words, with_unit
+from diagnosis.report.row_counts import rows_listed
+from diagnosis.report.wording import around, figure, instances, parameter_line, plain, structure_words, with_unit
 
 _LACKS = {
     "both directions": ("one direction", "turn in both directions"),
@@ -32,6 +34,11 @@ _LACKS = {
 _ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two speeds|both directions": "moving shaft"}
 """A want that goes without saying where the second one is wanted too."""
 
+HELD = "The given twin's factors were held as they are, its zero alone was fitted"
+_ORDERS_OF_FACTORS = ((1.0, "offset x or y"), (2.0, "gain ratio or phase"), (3.0, "quadratic term"))
+"""Orders of the turn that a change of each factor makes, to first order; the quadratic term makes order 1 as well."""
+_NEAR = 0.1
+"""Orders nearer to a whole one than this are taken for it: a record of a few turns tells them no better."""
 _SEARCHED = "of these {used} were searched, in stretches spread over the record"
 
 
@@ -64,37 +71,6 @@ def step_shown(sweep: Mapping[str, Any]) -> str:
     return plain(360.0 / sweep["points_per_turn"], 2)
 
 
-def rows_words(sweep: Mapping[str, Any]) -> str:
-    """Which rows the fits are not made of: unusable ones, and readings that stand alone."""
-    wild = sweep.get("wild")
-    if not wild:
-        return rejected_words(sweep)
-    listed = _listed(sweep["wild_rows"], wild)
-    alone = "stands alone and is" if wild == 1 else "stand alone and are"
-    return f"{rejected_words(sweep)}; {wild} {alone} not fitted ({listed})"
-
-
-def rejected_words(sweep: Mapping[str, Any]) -> str:
-    """How many rows were rejected, which, and why."""
-    if not sweep["rejected"]:
-        return "none rejected"
-    rows_by_reason: dict[str, list[str]] = {}
-    for row, why in sweep["rejected_rows"].items():
-        rows_by_reason.setdefault(why, []).append(row)
-    listed = [f"{_listed(rows, len(rows))}: {why}" for why, rows in rows_by_reason.items()]
-    more = sweep.get("rejected_rows_left_out", 0)
-    if more:
-        listed.append(f"and {more} more")
-    return f"{sweep['rejected']} rejected ({'; '.join(listed)})"
-
-
-def _listed(rows: Sequence[object], count: int, most: int = 5) -> str:
-    """The first few of so many rows, and how many more there are."""
-    more = count - min(len(rows), most)
-    told = ", ".join(str(row) for row in rows[:most])
-    return f"{'row' if count == 1 else 'rows'} {told}{f' and {more} more' if more else ''}"
-
-
 # ---- the baseline -----------------------------------------------------------------------------------------------
 
 
@@ -111,7 +87,7 @@ def baseline_words(answer: Mapping[str, Any]) -> str:
         return f"{model} leaves {plain(after)} deg RMS{over}"
     if share < 0.0:
         return f"{model} makes the error larger: {steps}"
-    return f"{model} explains {percent_shown(share)} % of the error: {steps}"
+    return f"{model}: error {steps}; {percent_shown(share)} % of its mean square explained"
 
 
 def percent_shown(share: float) -> str:
@@ -124,9 +100,21 @@ def percent_shown(share: float) -> str:
 
 
 def floor_words(answer: Mapping[str, Any]) -> str:
-    """The noise floor."""
+    """The noise floor where readings are repeated; else that it is not known, and what is left on held-out readings."""
     floor = answer["noise_floor_deg"]
-    return "noise floor not measured" if floor is None else f"noise floor {plain(floor)} deg RMS"
+    if floor is None:
+        return "noise floor not known"
+    if floor_is_known(answer):
+        return f"noise floor {plain(floor)} deg RMS, the scatter of readings repeated at one angle"
+    return (
+        "noise floor not known, as no angle was read several times in a row; "
+        f"{plain(floor)} deg RMS is left on held-out readings"
+    )
+
+
+def floor_is_known(answer: Mapping[str, Any]) -> bool:
+    """Whether repeated readings tell the noise floor."""
+    return bool(answer["noise_floor_from"] == REPEATED)
 
 
 class FactorRow(NamedTuple):
@@ -162,6 +150,8 @@ def _values(parameters: Mapping[str, Any]) -> dict[str, str]:
 def _flag(answer: Mapping[str, Any], key: str) -> str:
     """What else is to be said of a factor."""
     last = answer["extended"] if answer["causes"] else answer["baseline"]
+    if held_fixed(answer) and last["parameters"][key]["low"] == last["parameters"][key]["high"]:
+        return "held"
     if last["parameters"][key]["at_bound"]:
         return "at its bound"
     return "moved" if answer["causes"] and key in answer["extended"]["moved"] else ""
@@ -170,8 +160,11 @@ def _flag(answer: Mapping[str, Any], key: str) -> str:
 def moved_words(answer: Mapping[str, Any]) -> str:
     """Which factors stand elsewhere once the causes are known; empty where there is no cause."""
     if not answer["causes"]:
-        return ""
+        return HELD if held_fixed(answer) else ""
     names = [LABELS[key] for key in answer["extended"]["moved"]]
+    if held_fixed(answer):
+        moved = f"; with the causes known, {_and(names)} lies outside of the interval before" if names else ""
+        return f"{HELD}{moved}"
     if not names and answer["extended"]["parameters"] == answer["baseline"]["parameters"]:
         return ""
     if not names:
@@ -187,20 +180,12 @@ def senses_words(answer: Mapping[str, Any]) -> str:
     mirrored = senses["mirrored"]
     parameters = (answer["extended"] if answer["causes"] else answer["baseline"])["parameters"]
     there = []
-    for key in ("Vy_over_Ay", "beta_deg"):
+    for key in ("Vy_over_Ay", "beta_deg", "zero_deg"):
         # As many digits as the interval of the one that is shown.
-        text, _ = figure({**parameters[key], **_around(parameters[key], mirrored[key])}, SCALES[key])
+        text, _ = figure({**parameters[key], **around(parameters[key], mirrored[key])}, SCALES[key])
         there.append(f"{LABELS[key]} {text} {UNITS[key]}")
     pair = f"s = {-senses['sensor']:+d}, h = {-senses['output']:+d}"
-    return f"The mirrored twin ({pair}) fits as well, with {' and '.join(there)}"
-
-
-def _around(parameter: Mapping[str, Any], value: float) -> dict[str, Any]:
-    """Another value with the width of a parameter's interval."""
-    if parameter["low"] is None or parameter["high"] is None:
-        return {"value": value}
-    half = 0.5 * (parameter["high"] - parameter["low"])
-    return {"value": value, "low": value - half, "high": value + half}
+    return f"The mirrored twin ({pair}) fits as well, with {_and(there)}"
 
 
 def sentence(words: str) -> str:
@@ -224,8 +209,29 @@ def held_words(cause: Mapping[str, Any]) -> str:
 def parameter_lines(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list[str]:
     """A cause's parameters, one line an instance; structure without a name in words."""
     if cause["name"] == "unnamed":
-        return [structure_words(structure) for structure in answer["unexplained"]["structure"]]
+        return structure_lines(answer)
     return [line for line in map(parameter_line, instances(cause["parameters"])) if line]
+
+
+def structure_lines(answer: Mapping[str, Any]) -> list[str]:
+    """Structure without a name in words, part by part; beside a given twin also which of its factors make such."""
+    return [
+        structure_words(structure) + _of_held_factors(answer, structure)
+        for structure in answer["unexplained"]["structure"]
+    ]
+
+
+def _of_held_factors(answer: Mapping[str, Any], structure: Mapping[str, Any]) -> str:
+    """Which factors of the given twin, that are held as they are, would make such an order if they were others."""
+    if not held_fixed(answer) or structure["kind"] != "order":
+        return ""
+    factors = next((names for order, names in _ORDERS_OF_FACTORS if abs(structure["order"] - order) < _NEAR), "")
+    return f"; another {factors} would make such, and the given twin's were held" if factors else ""
+
+
+def held_fixed(answer: Mapping[str, Any]) -> bool:
+    """Whether the factors are those of a given twin, which only its zero may leave."""
+    return bool(answer["sweep"].get("held_against") == "given twin")
 
 
 def single_rows_words(cause: Mapping[str, Any], most: int = 8) -> str:
@@ -235,7 +241,7 @@ def single_rows_words(cause: Mapping[str, Any], most: int = 8) -> str:
     off = "" if size is None else f"off by {plain(size)} deg RMS, which no held-out figure counts"
     if not rows:
         return f"the readings that it touched are {off}" if off else ""
-    listed = _listed(rows, len(rows), most)
+    listed = rows_listed(rows, len(rows), most)
     return f"{listed}: {off}" if off else listed
 
 
@@ -268,10 +274,14 @@ def cut_words(answer: Mapping[str, Any]) -> str:
 
 
 def likeness_words(extended: Mapping[str, Any]) -> str:
-    """Whether sweeps simulated from the extended twin match the measured one; empty where that was not asked."""
+    """Whether sweeps simulated from the extended twin match the measured one, or why that was not checked."""
     p = extended.get("likeness_p")
     if p is None:
-        return ""
+        why = extended["likeness_not_checked"]
+        if why is None:
+            return ""
+        few = "" if why["needed"] is None else f": {why['readings']} independent readings, {why['needed']} are needed"
+        return f"whether simulated sweeps match was not checked ({why['why']}{few})"
     if p < UNLIKE:
         return f"simulated sweeps do not match (p < {UNLIKE:g}: {extended['likeness_worst']})"
     return f"simulated sweeps match (p = {plain(p, 2)})"

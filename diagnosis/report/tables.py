@@ -15,7 +15,6 @@ from diagnosis.report.wording import (
     label,
     minus,
     plain,
-    structure_words,
     unit_shown,
 )
 from twin.catalogue import STAGES, base_name, find
@@ -120,9 +119,9 @@ def parameters(cause: Mapping[str, Any], effect: Effect) -> str:
     return table(heads, rows, numbers=(1, 2))
 
 
-def structure(structures: Sequence[Mapping[str, Any]]) -> str:
+def structure(lines: Sequence[str]) -> str:
     """Structure without a name, in words."""
-    items = "".join(f"<li>{escape(structure_words(item))}</li>" for item in structures)
+    items = "".join(f"<li>{escape(line)}</li>" for line in lines)
     return f"<ol>{items}</ol>"
 
 

@@ -68,6 +68,14 @@ def figure(parameter: Mapping[str, Any], scale: float = 1.0) -> tuple[str, str]:
     return f"{value:.{decimals}f}e{power}", f"±{half:.{decimals}f}e{power}"
 
 
+def around(parameter: Mapping[str, Any], value: float) -> dict[str, Any]:
+    """Another value with the width of a parameter's interval."""
+    if parameter["low"] is None or parameter["high"] is None:
+        return {"value": value}
+    half = 0.5 * (parameter["high"] - parameter["low"])
+    return {"value": value, "low": value - half, "high": value + half}
+
+
 def with_unit(parameter: Mapping[str, Any], unit: str | None = None, scale: float = 1.0) -> str:
     """Value, half width and unit of a parameter."""
     if parameter["value"] is None or math.isnan(parameter["value"]):

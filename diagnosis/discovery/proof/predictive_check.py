@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -50,13 +51,9 @@ def likeness(fit: Fit, *, rng: np.random.Generator, noise: Noise | None = None) 
 
     None where there are too few readings, or nothing but digits is left.
     """
+    if why_not_checked(fit) is not None:
+        return None
     use = fit.observations.usable
-    if fit.rows < fit.settings.fewest_checked + len(fit.free):
-        return None
-    smallest = float(np.radians(fit.settings.smallest_rms_deg))
-    # Less than the noise ahead of the stairs: no reading lies near an edge, and only the file's digits are left.
-    if np.mean(fit.residual[0][use] ** 2) < max(smallest, 0.9 * fit.weighting.blur) ** 2:
-        return None
     noise = noise or noise_of(fit)
     plan = _Plan.of(fit)
     weight = 1.0 / np.sqrt(noise.spectrum(len(use)))
@@ -80,6 +77,27 @@ def likeness(fit: Fit, *, rng: np.random.Generator, noise: Noise | None = None) 
     worst = int(np.argmax(scores[0]))
     rank = 1 + int(np.count_nonzero(together[1:] >= together[0]))
     return PredictiveCheck(rank / len(scores), names[worst], float(scores[0, worst]))
+
+
+class NotChecked(NamedTuple):
+    """Why a fit is not held against simulated sweeps; ``needed``: so many ``readings`` it takes, None: not for them."""
+
+    why: str
+    readings: int
+    needed: int | None
+
+
+def why_not_checked(fit: Fit) -> NotChecked | None:
+    """Why simulated sweeps would say nothing of a fit; None where they do."""
+    needed = fit.settings.fewest_checked + len(fit.free)
+    if fit.rows < needed:
+        return NotChecked("too few beside the fitted parameters", fit.rows, needed)
+    smallest = float(np.radians(fit.settings.smallest_rms_deg))
+    left = fit.residual[0][fit.observations.usable]
+    # Less than the noise ahead of the stairs: no reading lies near an edge, and only the file's digits are left.
+    if np.mean(left**2) < max(smallest, 0.9 * fit.weighting.blur) ** 2:
+        return NotChecked("nothing but the digits of the readings is left", fit.rows, None)
+    return None
 
 
 # ---- the fit's own projection ---------------------------------------------------------------------------------------

@@ -99,7 +99,7 @@ def test_profile_of_a_weak_parameter_agrees_with_its_interval() -> None:
     assert profile.name == "quad"
     assert profile.low == pytest.approx(fit.low[4], abs=0.05 * fit.standard_errors[4])
     assert profile.high == pytest.approx(fit.high[4], abs=0.05 * fit.standard_errors[4])
-    assert any("quadratic term: compatible with none" in words for words in found.sentences)
+    assert any("quadratic term: not told from 0, that of an ideal sensor" in words for words in found.sentences)
     assert not found.unseen
 
 

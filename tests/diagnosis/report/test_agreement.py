@@ -19,6 +19,7 @@ from diagnosis import Explanation, Progress, explain
 from diagnosis.report import statements
 from diagnosis.report.factor_names import LABELS, SCALES
 from diagnosis.report.page import page
+from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.wording import figure
 from scenarios.commands.protocol import Protocol
 from tests.diagnosis.report.test_page import BASE, numbers_of
@@ -55,6 +56,20 @@ def with_wild_rows() -> Explanation:
     return explain({"reference_deg": sweep.reference_deg, "measured_deg": measured})
 
 
+def few_readings() -> Sweep:
+    motion = Protocol(turns=1, points=30, both_directions=False).motion()
+    return Chain().with_values(BASE).simulate(motion, seed=3)
+
+
+def repeated() -> dict[str, np.ndarray]:
+    """Every angle read three times in a row."""
+    sweeps = [
+        Chain().with_values(BASE).simulate(Protocol(turns=1, points=60).motion(), seed=seed) for seed in (1, 2, 3)
+    ]
+    columns = ("reference_deg", "measured_deg")
+    return {name: np.stack([getattr(sweep, name) for sweep in sweeps], axis=1).ravel() for name in columns}
+
+
 CASES: dict[str, Callable[[], Explanation]] = {
     "clean": lambda: explain(made()),
     "a cause": lambda: explain(made(hysteresis={"lag_deg": 0.12, "memory_deg": 8.0})),
@@ -67,6 +82,8 @@ CASES: dict[str, Callable[[], Explanation]] = {
     "one way": lambda: explain(made(both=False, saturation={"k_percent": 1.0})),
     "given twin": lambda: explain(made(), twin=Chain().with_effect("offset", x_percent=5.0)),
     "stopped": lambda: explain(made(hysteresis={"lag_deg": 0.12, "memory_deg": 8.0}), progress=stop_at_once),
+    "few": lambda: explain(few_readings()),
+    "repeated": lambda: explain(repeated()),
     "bench": lambda: explain(BENCH / "bench_sweep.csv"),
 }
 
@@ -126,6 +143,7 @@ def lengths(value: Any) -> Iterator[float]:
 
 def check(found: Explanation) -> None:
     answer = found.to_dict()
+    check_counts(answer["sweep"])
     shown = {"terminal": terminal(found), "report": report(found)}
     for where, text in shown.items():
         assert not LOST.search(text), (where, LOST.search(text))
@@ -146,7 +164,7 @@ def check(found: Explanation) -> None:
 def stated(answer: dict[str, Any]) -> Iterator[str]:
     """Words that both show as they are: facts, figures with their intervals, causes with theirs, the verdict."""
     yield ", ".join(statements.sweep_facts(answer["sweep"]))
-    yield statements.rows_words(answer["sweep"])
+    yield explained_rows(answer["sweep"])
     yield statements.baseline_words(answer)
     yield statements.floor_words(answer)
     yield statements.verdict_words(answer)
@@ -178,6 +196,12 @@ def figures_beside(text: str, answer: dict[str, Any]) -> Iterator[str]:
             yield shown
 
 
+def check_counts(sweep: dict[str, Any]) -> None:
+    """Every row is counted once: in use, set aside or rejected; and of those in use fitted, or why not."""
+    assert sweep["rows"] == sweep["used"] + sweep["set_aside"] + sweep["rejected"]
+    assert sweep["used"] == sweep["fitted"] + sweep["wild"] + sweep["touched"] + sweep["direction_in_doubt"]
+
+
 def check_chain(answer: dict[str, Any]) -> None:
     """The gains of the causes chain from the baseline to the extended twin."""
     rms = answer["baseline"]["heldout_rms_deg"]
@@ -197,10 +221,14 @@ def test_the_cases_show_what_they_are_for() -> None:
     assert wild["wild"] == len(wild["wild_rows"]) > 0
     assert wild["rejected"] == 1
     # Those about a reversal whose direction is inferred are not fitted either.
-    assert wild["fitted"] <= wild["used"] - wild["wild"]
+    assert wild["direction_in_doubt"] > 0
+    assert explained("single readings").to_dict()["sweep"]["touched"] > 0
+    assert explained("few").to_dict()["extended"]["likeness_not_checked"]["needed"]
+    assert explained("repeated").to_dict()["noise_floor_from"] == "repeated readings"
     senses, factors = (explained("wild rows").to_dict()[key] for key in ("senses", "extended"))
     # Without a quadratic term the mirrored twin reads the same: offset y and phase change their sign, nothing else.
     assert not senses["decided"]
+    assert f"and {LABELS['zero_deg']} " in statements.senses_words(explained("wild rows").to_dict())
     for key, sign in (("Vx_over_Ax", 1.0), ("Vy_over_Ay", -1.0), ("gain_ratio", 1.0), ("beta_deg", -1.0)):
         told = factors["parameters"][key]
         assert senses["mirrored"][key] == pytest.approx(sign * told["value"], abs=told["high"] - told["low"])

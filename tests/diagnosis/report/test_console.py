@@ -12,13 +12,14 @@ from rich.console import Console
 from diagnosis.report.console import show
 from diagnosis.report.statements import (
     baseline_words,
+    factor_rows,
+    floor_words,
     held_words,
     not_visible,
     percent_shown,
-    rejected_words,
-    rows_words,
     senses_words,
     single_rows_words,
+    structure_lines,
     verdict_words,
 )
 from diagnosis.report.wording import chance, figure, instances, label, plain, structure_words
@@ -68,6 +69,10 @@ def an_answer(**changes: Any) -> dict[str, Any]:
             "used": 2878,
             "fitted": 2878,
             "rejected": 2,
+            "touched": 0,
+            "direction_in_doubt": 0,
+            "wild": 0,
+            "wild_rows": [],
             "rejected_rows": {"411": "time_s missing or not finite", "1207": "time_s missing or not finite"},
             "turns": 8.0,
             "columns": ["reference_deg", "measured_deg"],
@@ -82,6 +87,7 @@ def an_answer(**changes: Any) -> dict[str, Any]:
             "explained_percent": 90.9416,
         },
         "noise_floor_deg": 0.021,
+        "noise_floor_from": "held-out readings",
         "verdict": "partly explained",
         "causes": [hysteresis, unnamed],
         "unexplained": {
@@ -96,6 +102,7 @@ def an_answer(**changes: Any) -> dict[str, Any]:
             "gain": 5.9,
             "likeness_p": 0.43,
             "likeness_worst": "",
+            "likeness_not_checked": None,
         },
         "not_visible": {
             "offset_drift": ["temperature_c", "two temperatures"],
@@ -127,8 +134,9 @@ def test_everything_is_said_at_any_width(width: int) -> None:
     for part in (
         "bench.csv 2880 readings, 8 turns travelled",
         "14-bit grid",
-        "2 rejected (rows 411, 1207: time_s missing or not finite)",
-        "The paper's error model explains 91 % of the error: 0.412 -> 0.124 deg RMS",
+        "2 rejected (rows 411, 1207: time_s missing or not finite); 2878 fitted",
+        "The paper's error model: error 0.412 -> 0.124 deg RMS; 91 % of its mean square explained",
+        "noise floor not known, as no angle was read several times in a row; 0.0210 deg RMS is left on held-out",
         "gain ratio 1.00980 ±0.00010 1.00980 ±0.00010",
         "quadratic term 0.190 ±0.010 % 0.250 ±0.010 % moved",
         "With the causes known, quadratic term lies outside of the interval before",
@@ -145,6 +153,76 @@ def test_everything_is_said_at_any_width(width: int) -> None:
         assert part in words or width < 80, part
 
 
+@pytest.mark.parametrize("width", [30, 40, 52])
+def test_on_a_narrow_terminal_names_and_figures_are_wrapped_and_not_cut(width: int) -> None:
+    answer = an_answer()
+    answer["causes"][0]["name"] = "reference_eccentricity"
+    text = shown(answer, width)
+    assert "…" not in text
+    assert max(map(len, text.splitlines())) <= width
+    words = " ".join(text.split())
+    for part in (
+        "What the simulation gets wrong",
+        "1 reference_eccentricity held-out RMS, deg: 0.125 -> 0.0310 false alarm: < 1e-6",
+        "2 unnamed held-out RMS, deg: 0.0310 -> 0.0212 false alarm: 0.0003",
+    ):
+        assert part in words
+
+
+def test_the_noise_floor_is_one_of_repeated_readings_or_not_known() -> None:
+    answer = an_answer()
+    assert floor_words(answer).startswith("noise floor not known")
+    answer["noise_floor_from"] = "repeated readings"
+    assert floor_words(answer) == "noise floor 0.0210 deg RMS, the scatter of readings repeated at one angle"
+
+
+@pytest.mark.parametrize(
+    ("why", "said"),
+    [
+        (
+            {"why": "too few beside the fitted parameters", "readings": 38, "needed": 44},
+            "not checked (too few beside the fitted parameters: 38 independent readings, 44 are needed)",
+        ),
+        (
+            {"why": "nothing but the digits of the readings is left", "readings": 38, "needed": None},
+            "not checked (nothing but the digits of the readings is left)",
+        ),
+    ],
+)
+def test_a_predictive_check_that_was_not_made_is_said_not_to_be(why: dict[str, Any], said: str) -> None:
+    answer = an_answer()
+    answer["extended"] |= {"likeness_p": None, "likeness_worst": None, "likeness_not_checked": why}
+    assert f"whether simulated sweeps match was {said}" in " ".join(shown(answer, 100).split())
+
+
+def test_beside_a_given_twin_it_is_said_what_was_held_and_which_factors_would_make_such_an_order() -> None:
+    answer = an_answer()
+    answer["sweep"]["held_against"] = "given twin"
+    for part in (answer["baseline"], answer["extended"]):
+        exact = {key: {**told, "low": told["value"], "high": told["value"]} for key, told in part["parameters"].items()}
+        part["parameters"] = {**exact, "zero_deg": part["parameters"]["zero_deg"]}
+    answer["extended"]["moved"] = []
+    orders = (
+        (2.0, "gain ratio or phase"),
+        (0.9997, "offset x or y"),
+        (3.0, "quadratic term"),
+        (13.0, None),
+        (1.5, None),
+    )
+    answer["unexplained"]["structure"] = [
+        {"kind": "order", "order": order, "amplitude_deg": 0.05, "phase_deg": 1.0} for order, _ in orders
+    ]
+    words = " ".join(shown(answer, 100).split())
+    assert "The given twin's factors were held as they are, its zero alone was fitted" in words
+    assert "stays within its interval" not in words
+    assert [row.flag for row in factor_rows(answer)] == ["held"] * 5 + [""]
+    lines = structure_lines(answer)
+    for line, (_, factor) in zip(lines, orders, strict=True):
+        assert (f"; another {factor} would make such" in line) == (factor is not None)
+    answer["sweep"]["held_against"] = "error model"
+    assert not any("would make such" in line for line in structure_lines(answer))
+
+
 def test_a_pipe_gets_no_colour_codes() -> None:
     assert "\x1b" not in shown(an_answer(), 80)
 
@@ -158,28 +236,17 @@ def test_an_adequate_baseline_is_said_and_no_table_drawn() -> None:
 def test_a_share_is_never_negative_never_rounded_to_all_and_of_the_fitted_rows() -> None:
     answer = an_answer()
     baseline, sweep = answer["baseline"], answer["sweep"]
-    assert baseline_words(answer) == "The paper's error model explains 91 % of the error: 0.412 -> 0.124 deg RMS"
+    told = "error 0.412 -> 0.124 deg RMS"
+    assert baseline_words(answer) == f"The paper's error model: {told}; 91 % of its mean square explained"
     sweep |= {"held_against": "given twin", "fitted": 2818}
     over = "over the 2818 readings that were fitted"
-    assert baseline_words(answer) == f"The given twin explains 91 % of the error: 0.412 -> 0.124 deg RMS, {over}"
+    assert baseline_words(answer) == f"The given twin: {told}, {over}; 91 % of its mean square explained"
     baseline |= {"explained_percent": -39.0, "fitted_rms_deg": 0.486}
     assert baseline_words(answer) == f"The given twin makes the error larger: 0.412 -> 0.486 deg RMS, {over}"
     baseline |= {"explained_percent": None, "fitted_error_rms_deg": 0.0, "fitted_rms_deg": 0.0}
     assert baseline_words(answer) == f"The given twin leaves 0 deg RMS, {over}"
     shares = (0.0, 1e-6, 0.3, 50.4, 99.93, 99.996, 99.99999, 100.0)
     assert [percent_shown(s) for s in shares] == ["0", "< 0.01", "0.3", "50", "99.9", "> 99.99", "> 99.99", "100"]
-
-
-def test_rows_that_no_fit_is_made_of_are_listed_and_a_cut_list_says_so() -> None:
-    sweep = an_answer()["sweep"]
-    assert rows_words(sweep) == "2 rejected (rows 411, 1207: time_s missing or not finite)"
-    sweep |= {"rejected": 0, "rejected_rows": {}, "wild": 113, "wild_rows": list(range(1, 101))}
-    assert rows_words(sweep) == "none rejected; 113 stand alone and are not fitted (rows 1, 2, 3, 4, 5 and 108 more)"
-    sweep |= {"wild": 1, "wild_rows": [17]}
-    assert rows_words(sweep) == "none rejected; 1 stands alone and is not fitted (row 17)"
-    sweep |= {"wild": 0, "rejected": 130, "rejected_rows_left_out": 30}
-    sweep["rejected_rows"] = {str(row): "vx missing" for row in range(1, 101)}
-    assert rows_words(sweep) == "130 rejected (rows 1, 2, 3, 4, 5 and 95 more: vx missing; and 30 more)"
 
 
 def test_a_part_of_a_long_record_is_said_to_be_one() -> None:
@@ -210,9 +277,10 @@ def test_what_cannot_be_held_out_is_said_in_words() -> None:
 def test_a_mirrored_description_is_said_to_fit_as_well() -> None:
     answer = an_answer()
     assert senses_words(answer) == ""
-    mirrored = {"Vy_over_Ay": 0.00712, "beta_deg": -0.1691}
+    mirrored = {"Vy_over_Ay": 0.00712, "beta_deg": -0.1691, "zero_deg": -33.1201}
     answer["senses"] = {"sensor": 1, "output": 1, "decided": False, "log_odds": 0.3, "mirrored": mirrored}
-    said = "The mirrored twin (s = -1, h = -1) fits as well, with offset y 0.712 % and phase -0.1691 deg"
+    said = "The mirrored twin (s = -1, h = -1) fits as well, with offset y 0.712 %, phase -0.1691 deg and "
+    said += "zero -33.1201 deg"
     assert senses_words(answer) == said
     assert said in " ".join(shown(answer, 160).split())
     answer["senses"] |= {"decided": True, "mirrored": None}
@@ -301,7 +369,6 @@ def test_what_is_missing_is_grouped_and_said_once() -> None:
 def test_every_kind_of_structure_has_words() -> None:
     for kind in ("order", "time_frequency", "step", "drift", "temperature", "direction", "speed", "local", "code"):
         assert structure_words({"kind": kind, "amplitude_deg": 0.05, "order": 2.0})
-    assert rejected_words({"rejected": 0, "rejected_rows": {}}) == "none rejected"
 
 
 def test_the_catalogue_is_listed_whole_with_a_source_each() -> None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.error_model.model import Readings
+from diagnosis.error_model.model import Readings, coefficients
 from twin.adc.adc_quantisation import ADC_QUANTISATION, FULL_SCALE
 from twin.adc.reference_jitter import REFERENCE_JITTER
 from twin.angles import TAU, Array
@@ -56,15 +57,18 @@ def outside(readings: Readings, band_rad: float) -> Callable[[Array], NDArray[np
     It is checked at :data:`SENTINELS` readings spread over the rows, so that its cost does not grow with their number.
     """
     pick = np.unique(np.linspace(0, readings.count - 1, SENTINELS).astype(np.intp))
-    few = readings.sweeps((slice(None), None, pick))
-    tangent = np.tan(min(band_rad, 1.5))
+    few = readings.sweeps((slice(None), pick))
+    # r sin and r cos of the angle from the reading to the point are sums of products, as the objective is.
+    across = np.swapaxes(few.features(), -1, -2)
+    turned = replace(few, cos_read=few.sin_read, sin_read=-few.cos_read)
+    along = np.tan(min(band_rad, 1.5)) * np.swapaxes(turned.features(), -1, -2)
+    counted = None if few.weights is None else (few.weights > 0.0)[:, None, :]
 
     def leaves(points: Array) -> NDArray[np.bool_]:
-        x, y = few.channels(points)
-        across = np.abs(y * few.cos_read - x * few.sin_read)
-        out = across > tangent * (x * few.cos_read + y * few.sin_read)
-        if few.weights is not None:
-            out &= few.weights > 0.0
+        coefs = coefficients(points)
+        out = np.abs(coefs @ across) > coefs @ along
+        if counted is not None:
+            out &= counted
         return np.asarray(out.any(axis=-1))
 
     return leaves

@@ -99,10 +99,14 @@ def spinning(
 
 
 def paper(
-    output: Annotated[Path, written("Folder for table and figures.", "-o", "--output", metavar="FOLDER")],
+    output: Annotated[Path, written("Folder for tables and figures.", "-o", "--output", metavar="FOLDER")],
+    cases: Annotated[
+        int, typer.Option(metavar="N", help="Random cases that the swarm is tried on; the paper has 100.")
+    ] = 100,
     force: Force = False,
+    seed: Seed = 0,
 ) -> None:
-    """Regenerate Table 1 and Figures 3 to 9 of the paper from the twin."""
-    from scenarios.commands.paper import run
+    """Reproduce the paper: Tables 1 and 2, Figures 3 to 9, 13, 14, 16, its search and discard rule; held against it."""
+    from scenarios.commands.paper.run import run
 
-    run(output, force=force)
+    run(output, cases=cases, seed=seed, force=force)

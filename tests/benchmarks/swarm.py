@@ -16,9 +16,9 @@ import numpy as np
 
 from diagnosis.error_model import model, swarm
 from diagnosis.error_model.fit import QUICK, fit_baseline
+from diagnosis.error_model.grid_search import full_grid_count, grid_search
 from diagnosis.error_model.model import NOMINAL, ZERO, Readings
 from diagnosis.error_model.search_range import first_box
-from tests.diagnosis.error_model.grid_search import full_grid_count, grid_search
 from twin.angles import TAU, Array, wrap
 
 NOISE_DEG = 0.02

@@ -17,8 +17,8 @@ import pytest
 import typer
 
 from scenarios.cli import app as command_line
-from scenarios.commands import paper
 from scenarios.commands.marks import is_own
+from scenarios.commands.paper import run as paper
 from tests.command_line import csv_text, halltwin, sweep_angles
 from twin.whole_file import TEMPORARY
 
@@ -97,7 +97,8 @@ def read(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def folder(read: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of what the commands read, which is also where they run."""
     shutil.copytree(read, tmp_path, dirs_exist_ok=True)
-    monkeypatch.setattr(paper, "FIGURES", {3: paper.FIGURES[3]})
+    monkeypatch.setattr(paper, "FIGURES", {"fig3": paper.FIGURES["fig3"]})
+    monkeypatch.setattr(paper, "TABLES", {"table1": paper.TABLES["table1"]})
     # Built once: building it takes longer than a refusal.
     monkeypatch.setattr(command_line, "app", COMMAND_LINE)
     monkeypatch.chdir(tmp_path)

@@ -11,9 +11,10 @@ import pytest
 
 from diagnosis.correction.cross_validation import BeforeAfter
 from diagnosis.factors.series import monitor
-from scenarios.commands import paper
 from scenarios.commands.compensate_plot import before_after_figure
 from scenarios.commands.monitor_plot import charts_figure
+from scenarios.commands.paper import run as paper
+from scenarios.commands.paper.work import Work
 from scenarios.commands.trace import trace
 from scenarios.commands.trace_plot import trace_figure
 from tests.command_line import halltwin
@@ -95,16 +96,19 @@ def test_a_trace_of_one_turn_lies_over_the_shaft_angle() -> None:
     assert legend_of(figure) == {"forward"}
 
 
-@pytest.mark.parametrize("number", paper.FIGURES)
-def test_figures_of_the_paper_have_units(number: int) -> None:
+FEW = Work(cases=2)
+
+
+@pytest.mark.parametrize("name", paper.FIGURES)
+def test_figures_of_the_paper_have_units(name: str) -> None:
     from diagnosis.report.plotting import style
 
     plt = style()
-    figure, _ = paper.FIGURES[number](plt)
+    figure, _ = paper.FIGURES[name](plt, FEW)
     for axis in figure.axes:
         assert all("[" in label for label in (axis.get_xlabel(), axis.get_ylabel()))
     plt.close(figure)
-    assert paper.TITLES[number]
+    assert paper.TITLES[name]
 
 
 @pytest.mark.parametrize("arguments", [("diagnose", "DATA"), ("compensate", "imc-14bit", "--check", "DATA")])

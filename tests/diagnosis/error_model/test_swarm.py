@@ -9,10 +9,12 @@ import pytest
 
 from diagnosis.error_model import swarm
 from diagnosis.error_model.error_band import SENTINELS, delta_e_rad, outside
+from diagnosis.error_model.grid_search import full_grid_count, grid_search
 from diagnosis.error_model.model import NOMINAL, Readings
+from scenarios.commands.paper.search import methods, search
+from scenarios.commands.paper.table_2 import draw
 from tests.diagnosis.cases import turn
-from tests.diagnosis.error_model.grid_search import full_grid_count, grid_search
-from tests.diagnosis.error_model.study import STEPS, device, draw, iterations_needed
+from tests.diagnosis.error_model.study import device
 from twin.adc.adc_quantisation import FULL_SCALE
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain
@@ -187,10 +189,10 @@ def test_delta_e_adds_the_settings_of_the_chain() -> None:
 
 def test_converges_below_200_iterations() -> None:
     cases = draw(12, np.random.default_rng(3))
-    rng = np.random.default_rng(4)
-    assert np.all(iterations_needed(cases, rng) < 150)
-    assert np.all(iterations_needed(cases, rng, steps=STEPS) < 200)
-    assert np.all(iterations_needed(cases, rng, band_rad=delta_e_rad(device("a"))) < 200)
+    ways = methods(delta_e_rad(device("a")))
+    assert np.all(search(cases, ways["modified"], seed=4).needed < 150)
+    assert np.all(search(cases, ways["steps"], seed=4).needed < 200)
+    assert np.all(search(cases, ways["discard"], seed=4).needed < 200)
 
 
 def test_ordinary_method() -> None:

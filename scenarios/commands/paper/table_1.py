@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scenarios.commands.paper.held import Held
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain
 from twin.cordic.bit_true import Cordic, angle_rad, codes_of, vectoring
@@ -147,6 +148,21 @@ def calculation_row() -> Row:
         remark="2^-7 = 0.0078 is in radians: the table mixes units. "
         f"8 iterations leave {np.degrees(eight):.3f} deg; 14 iterations leave {np.degrees(fourteen):.4f} deg",
     )
+
+
+def held() -> list[Held]:
+    """The rows as figures of the paper, held against ours."""
+    return [
+        Held(
+            where="Table 1",
+            what=row.factor,
+            printed=row.printed,
+            ours=row.computed,
+            unit=row.unit,
+            remark=f"{row.condition}; {row.remark}",
+        )
+        for row in table()
+    ]
 
 
 def table_csv(rows: list[Row]) -> str:

@@ -1,54 +1,23 @@
-"""halltwin paper: Table 1 and Figures 3 to 9 of the paper, computed from the twin."""
+"""Figures 3 to 9 of the paper: what each factor of the channels, the converter and the CORDIC do, from the twin."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from diagnosis.report.plotting import style
-from scenarios.commands.outputs import PICTURE, TABLE, OutputFiles
-from scenarios.commands.paper_table import (
-    Q_PERCENT_PER_MT,
-    cordic_error,
-    non_linear,
-    offset_of,
-    table,
-    table_csv,
-    whole_turn,
-)
+from scenarios.commands.paper.disk_curve import PRINTED_NL_MT, PRINTED_UP_TO_MT, disk_curve
+from scenarios.commands.paper.table_1 import cordic_error, non_linear, offset_of, whole_turn
 from twin.adc.converter import Converter, convert
 from twin.angles import Array
 from twin.chain import Chain
 from twin.hall.gain_mismatch import GAIN_MISMATCH
 from twin.hall.phase import PHASE
-from twin.sweep_file import csv_text
 
 Columns = dict[str, Array]
 TURN = whole_turn(360)
 ANGLE_DEG = np.degrees(TURN.shaft_rad)
-
-
-def run(folder: Path, *, force: bool = False) -> None:
-    """Write table1.csv and, for each figure, its data (.csv) and its picture (.svg, .png)."""
-    names = {number: [folder / f"fig{number}{ending}" for ending in (".csv", ".svg", ".png")] for number in FIGURES}
-    asked = [(path, TABLE if path.suffix == ".csv" else PICTURE) for paths in names.values() for path in paths]
-    files = OutputFiles.checked([(folder / "table1.csv", TABLE), *asked], force=force, folders=True)
-    plt = style()
-    rows = table()
-    for row in rows:
-        print(f"{row.factor:20s} printed {row.printed:<8g} computed {row.computed:.5f} {row.unit}  {row.remark}")
-    contents: dict[Path | None, Any] = {folder / "table1.csv": table_csv(rows)}
-    for number, draw in FIGURES.items():
-        figure, columns = draw(plt)
-        figure.suptitle(f"Fig. {number}: {TITLES[number]}", fontsize=10)
-        csv, *pictures = names[number]
-        contents |= {csv: csv_text(columns), **dict.fromkeys(pictures, figure)}
-        plt.close(figure)
-    files.write(contents)
-    print(f"wrote table1.csv and figures {', '.join(map(str, FIGURES))} to {folder}")
 
 
 def _error_deg(chain: Chain) -> Array:
@@ -90,21 +59,17 @@ def phase(plt: Any) -> tuple[Any, Columns]:
 
 
 def field_and_voltage(plt: Any) -> tuple[Any, Columns]:
-    """Fig. 6: output voltage against field; the quadratic model, with saturation as the curve that it is fitted to."""
-    field = np.linspace(-100.0, 100.0, 401)
-    share: Array = np.asarray(field / 100.0, dtype=np.float64)
-    q = 0.01 * Q_PERCENT_PER_MT * 100.0
-    # The real curve: the quadratic term, and the concentrator's flattening of 0.5 % at 100 mT (typical assumption).
-    real = share + q * share**2 - 0.005 * share**3
-    terms = np.polynomial.polynomial.polyfit(share, real, 2)
-    fitted = np.polynomial.polynomial.polyval(share, terms)
-    figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
-    axes[0].plot(field, 1e3 * (real - share), label="curve")
-    axes[0].plot(field, 1e3 * (fitted - share), "--", label="quadratic fit")
-    _label(axes[0], "deviation from a straight line", "field [mT]", "deviation [mV]")
-    axes[1].plot(field, real, label="output")
-    _label(axes[1], "output at 1 V for 100 mT", "field [mT]", "voltage [V]")
-    return figure, {"field_mT": field, "voltage_V": real, "fitted_V": np.asarray(fitted, dtype=np.float64)}
+    """Fig. 6: output voltage against field, of the concentrator's disk; and the quadratic that Eq. 2 fits to it."""
+    curve = disk_curve()
+    figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.0), layout="constrained")
+    axes[0].plot(curve.field_mT, curve.deviation_mT, label="the disk")
+    axes[0].plot(curve.field_mT, curve.fitted_deviation_mT, "--", label="quadratic fitted to it (Eq. 2)")
+    axes[0].plot(PRINTED_UP_TO_MT, -PRINTED_NL_MT, "k*", label="0.5 mT up to 80 mT, as printed")
+    _label(axes[0], "behind a straight line of the slope at zero", "field in the plane [mT]", "deviation [mT]")
+    axes[1].plot(curve.field_mT, curve.voltage_V, label="the disk")
+    axes[1].plot(curve.field_mT, curve.fitted_V, "--", label="quadratic fitted to it (Eq. 2)")
+    _label(axes[1], "output, scaled to 1 V at 100 mT", "field in the plane [mT]", "voltage [V]")
+    return figure, {"field_mT": curve.field_mT, "voltage_V": curve.voltage_V, "fitted_V": curve.fitted_V}
 
 
 def non_linearity(plt: Any) -> tuple[Any, Columns]:
@@ -161,26 +126,6 @@ def calculation(plt: Any) -> tuple[Any, Columns]:
     axes[1].semilogy(list(counts), bound, "--", label="atan(2^-(n-1))")
     _label(axes[1], "largest error and its bound", "iterations [1]", "error [deg]")
     return figure, columns
-
-
-FIGURES: dict[int, Callable[[Any], tuple[Any, Columns]]] = {
-    3: offsets,
-    4: gain,
-    5: phase,
-    6: field_and_voltage,
-    7: non_linearity,
-    8: fluctuation,
-    9: calculation,
-}
-TITLES = {
-    3: "angle error by offsets of the channels",
-    4: "angle error by a mismatch of the gains",
-    5: "angle error by a phase that is not 90 deg",
-    6: "output voltage over the field",
-    7: "angle error by the quadratic term",
-    8: "sampling error by a change of the converter's reference",
-    9: "angle error by the iterations of the CORDIC",
-}
 
 
 def _surface(plt: Any, across: Array, chains: Sequence[Chain], label: str, name: str) -> tuple[Any, Columns]:

@@ -1,0 +1,1 @@
+"""The paper again: its tables and figures computed from the twin and the diagnosis, beside what it prints."""

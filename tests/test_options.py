@@ -25,6 +25,7 @@ BASE: dict[str, tuple[str, ...]] = {
     "diagnose": ("short.csv",),
     "spinning": ("-o", "out/spinning"),
     "hardware": ("-o", "out/hardware"),
+    "paper": ("-o", "out/paper"),
     "compensate": ("short.csv", "--header", "out/c.h"),
     "monitor": tuple(f"s{k}.csv" for k in range(8)),
     "bench": ("--points", "8", "-o", "out/bench.csv"),
@@ -66,7 +67,7 @@ RIGHT: dict[str, str] = {
 """Which of ODD are right, by option, or by command and option; a bore is what a ring alone has."""
 NONE_IS_RIGHT = frozenset({"--temperatures", "design --tolerance"})
 """Where nothing at all between the quotes means none."""
-LONG = frozenset({"explain", "spinning", "hardware", "diagnose", "generate"})
+LONG = frozenset({"explain", "spinning", "hardware", "paper", "diagnose", "generate"})
 """Commands that take their time: what is right for them is tried elsewhere."""
 BEGUN = "the study would begin"
 

@@ -82,5 +82,5 @@ def _matplotlib() -> Any:
     try:
         import matplotlib
     except ImportError:
-        raise UserError("drawing needs matplotlib; pip install 'halltwin[plot]'") from None
+        raise UserError("drawing needs matplotlib; pip install '.[plot]' in the checkout") from None
     return matplotlib

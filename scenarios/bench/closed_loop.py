@@ -12,8 +12,8 @@ import numpy as np
 
 from diagnosis.correction.compensation import Correction, correction_of, to_dict
 from scenarios.bench.faults import Opener
-from scenarios.bench.journal import Journal
-from scenarios.bench.measure import Measured, Measurement, finish, measure
+from scenarios.bench.loading import numbers
+from scenarios.bench.measure import Measured, Measurement, finish, journal_of, measure
 from scenarios.bench.pretreatment import errors_deg
 from scenarios.bench.readings import Reading
 from scenarios.bench.written import part_path, record_path
@@ -73,7 +73,7 @@ def run_loop(
     A run that was broken off goes on where it was, in whichever half. ``command``: the line that runs it again.
     """
     first, second = _half(job, "before"), _half(job, "after")
-    with contextlib.closing(Journal(first.output, first.plan, twin=first.twin, restart=restart)) as earlier:
+    with contextlib.closing(journal_of(first, restart=restart)) as earlier:
         # What was measured with a correction belongs to the readings that this came from.
         anew = restart or not earlier.complete
         before = measure(first, earlier, open_bus, prepare=lambda sequence: sequence.load(None), last=False)
@@ -90,7 +90,9 @@ def run_loop(
         )
         named = ", ".join(cause["name"] for cause in answer["causes"]) or "no cause beyond the paper's error model"
         say(f"{answer['verdict']}: {named}; correction of {correction.series.shape[1]} orders loaded")
-        with contextlib.closing(Journal(second.output, second.plan, twin=second.twin, restart=anew)) as later:
+        # Readings belong to the correction that was loaded when they were taken.
+        second = replace(second, settings={**second.settings, "correction": numbers(correction)})
+        with contextlib.closing(journal_of(second, restart=anew)) as later:
             after = measure(second, later, open_bus, prepare=lambda sequence: sequence.load(correction), last=False)
             if not all(one.corrected for one in after.pretreated.kept):
                 raise UserError(
@@ -98,8 +100,8 @@ def run_loop(
                 )
             loop = Loop(before, after, answer, correction)
             job.files.write({part_path(job.output, "report", ".json"): json_text(summary(loop))})
-            finish(later, after)
-        finish(earlier, before)
+            finish(second, later, after, witness=earlier)
+        finish(first, earlier, before)
     return loop
 
 

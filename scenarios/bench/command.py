@@ -6,7 +6,7 @@ import contextlib
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -63,7 +63,7 @@ def run(options: Options) -> None:
     """Do what the options ask for. Raises UserError."""
     for package, name in (("can", "python-can"), ("cantools", "cantools")):
         if find_spec(package) is None:
-            raise UserError(f"the bench needs {name}; pip install 'halltwin[bench]'")
+            raise UserError(f"the bench needs {name}; pip install '.[bench]' in the checkout")
     from scenarios.bench.buses import Interface, parse_options
     from scenarios.bench.faults import parse
 
@@ -81,7 +81,7 @@ def run(options: Options) -> None:
     _measure(options, open_bus, faults)
 
 
-def _measurement(options: Options) -> Measurement:
+def _measurement(options: Options, encoder: Chain | None, faults: Sequence[Fault]) -> Measurement:
     from scenarios.bench.bus_log import check_log_name
     from scenarios.bench.measure import Measurement
     from scenarios.bench.plan import Plan
@@ -109,6 +109,8 @@ def _measurement(options: Options) -> Measurement:
         plan=plan,
         output=options.output,
         files=_files(options),
+        twin=_twin_name(options),
+        settings=settings_of(options, encoder, faults),
         channels=options.channels,
         chamber=options.chamber,
         patience=Patience(timeout_s=options.timeout_s, attempts=options.attempts),
@@ -130,8 +132,7 @@ def _files(options: Options) -> OutputFiles:
 
 def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> None:
     from scenarios.bench.buses import with_bench_faults
-    from scenarios.bench.journal import Journal
-    from scenarios.bench.measure import measure
+    from scenarios.bench.measure import journal_of, measure
     from scenarios.commands.fail_on import BENCH, asked
     from scenarios.commands.file_lock import alone
     from scenarios.commands.interrupt import interruptible
@@ -139,8 +140,8 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
     if options.plot is not None and not options.closed_loop:
         raise UserError("--plot draws the closed loop; give --closed-loop, or draw the sweep with halltwin explain")
     words = asked(options.fail_on, BENCH)
-    job = _measurement(options)
     encoder = _encoder(options, faults)
+    job = _measurement(options, encoder, faults)
     own_bus = with_bench_faults(open_bus, faults, options.seed)
     kept = f"the readings so far are kept beside {job.output}: run again with the same options to go on"
     lock = job.output.with_name(f"{job.output.name}.lock")
@@ -150,9 +151,7 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
     ):
         if not options.closed_loop:
             with (
-                contextlib.closing(
-                    Journal(job.output, job.plan, twin=_twin_name(options), restart=options.restart)
-                ) as journal,
+                contextlib.closing(journal_of(job, restart=options.restart)) as journal,
                 _bench(options, encoder, open_bus, faults, start=len(journal.readings)),
             ):
                 measured = measure(job, journal, own_bus)
@@ -161,7 +160,7 @@ def _measure(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> Non
             return
         # Noise is drawn anew for each pose, so both measurements may share a bench and a seed.
         with _bench(options, encoder, open_bus, faults, start=0):
-            _close_loop(options, replace(job, twin=_twin_name(options)), own_bus, words)
+            _close_loop(options, job, own_bus, words)
 
 
 def _close_loop(options: Options, job: Measurement, own_bus: Opener, words: Sequence[str]) -> None:
@@ -240,6 +239,25 @@ def _twin_name(options: Options) -> str:
     if options.interface != "virtual":
         return f"on {options.interface}"
     return " ".join([options.twin or DEFAULT_TWIN, *options.hide, f"seed {options.seed}"])
+
+
+def settings_of(options: Options, encoder: Chain | None, faults: Sequence[Fault]) -> dict[str, Any]:
+    """Everything besides the plan that the readings depend on, as plain values; ``encoder`` where it is virtual."""
+    from diagnosis.report.provenance import version
+    from twin.files import to_dict
+    from twin.regular_file import digest
+
+    return {
+        "channels": options.channels,
+        "chamber": options.chamber,
+        "interface": options.interface,
+        "channel": options.channel,
+        "bus_options": list(options.bus_options),
+        "faults": [f"{fault.kind}:{fault.node}={fault.value:g}" for fault in faults],
+        "effects": [f"{path.name} (SHA-256 {digest(path.resolve())[:16]})" for path in options.effect_files],
+        "seed": options.seed,
+        **({} if encoder is None else {"twin": to_dict(encoder), "version": version()}),
+    }
 
 
 def _serve(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> None:

@@ -1,27 +1,51 @@
 """The journal: every reading and every event as it comes, so that a measurement goes on where it was broken off.
 
-One JSON object a line. It lies beside the sweep while the measurement runs and stays as its log afterwards.
+One JSON object a line, sealed against damage: the settings of the measurement, then readings, events, and the SHA-256
+of each file that is about to be written, by which a later run knows it again. The journal lies beside the sweep while
+the measurement runs and stays as its log afterwards.
 """
 
 from __future__ import annotations
 
 import contextlib
 import errno
-import json
-import math
+import hashlib
 import os
-from dataclasses import asdict, fields
+from collections.abc import Mapping
+from dataclasses import asdict
+from io import FileIO
 from pathlib import Path
 from typing import Any
 
+from scenarios.bench.journal_reader import SCHEMA, Kept, check_own, read_journal
 from scenarios.bench.plan import Plan
 from scenarios.bench.readings import Event, Reading
+from scenarios.bench.sealed_lines import sealed
+from scenarios.commands.settings import Settings, difference
 from twin.errors import UserError
+from twin.regular_file import digest, opened
 from twin.whole_file import check_writable
 
-SCHEMA = "halltwin.bench/1"
-_WHOLE, _FLAGS, _OPTIONAL = ("index", "direction", "turn"), ("index_seen", "corrected"), ("temperature_c", "vx", "vy")
-"""Entries of a reading: whole numbers, true or false, and such as may be missing. All others are numbers."""
+OPTIONS = {
+    "plan.points": "--points",
+    "plan.turns": "--turns",
+    "plan.both_directions": "--both-directions",
+    "plan.speeds_rpm": "--speed-rpm",
+    "plan.temperatures_c": "--temperatures",
+    "plan.settle_s": "--settle",
+    "channels": "--channels",
+    "chamber": "--chamber",
+    "interface": "--interface",
+    "channel": "--channel",
+    "bus_options": "--bus-option",
+    "faults": "--fault",
+    "effects": "--effects",
+    "twin": "the twin's",
+    "correction": "the correction",
+    "seed": "--seed",
+    "version": "halltwin",
+}
+"""What the settings of a measurement are called by who gives them."""
 
 
 def running_path(sweep: Path) -> Path:
@@ -40,26 +64,29 @@ class Journal:
     Whoever opens it closes it, or has it finished; without a reading it leaves no file.
     """
 
-    def __init__(self, sweep: Path, plan: Plan, *, twin: str, restart: bool) -> None:
+    def __init__(self, sweep: Path, plan: Plan, *, twin: str, settings: Settings, restart: bool) -> None:
         """Begin a journal, or take up the one of a broken run.
 
-        Raises UserError where that one is of another plan and holds readings, or is damaged.
+        ``twin`` is what is measured, in words; ``settings`` are all besides the plan that the readings depend on.
+        Raises UserError where there is a journal of other settings that holds readings, a damaged one, or something
+        else.
         """
         check_writable(sweep)
-        self._sweep = sweep
         self._plan = plan
-        self.path = running_path(sweep)
-        head = {"schema": SCHEMA, "plan": plan.digest(), "twin": twin}
+        self.path, self.log = running_path(sweep), finished_path(sweep)
+        check_own(self.path)
+        asked = {"plan": asdict(plan), **settings}
         if restart:
             self.path.unlink(missing_ok=True)
-        self.readings, self._size = _taken_up(self.path, head, plan.readings)
+        kept = _taken_up(self.path, asked)
+        self.readings, self._size, self._seal = kept.readings, kept.size, kept.seal
         # Without a buffer: what fails, fails here, and nothing is written later.
-        self._file = self.path.open("ab", buffering=0)
+        self._file = _opened(self.path)
         try:
             # A line that was cut off goes, and so does a head that no reading followed.
             self._file.truncate(self._size)
             if not self._size:
-                self._line(head)
+                self._line({"schema": SCHEMA, "plan": plan.digest(), "twin": twin, "settings": asked})
         except BaseException:
             self.close()
             raise
@@ -67,7 +94,7 @@ class Journal:
     @property
     def complete(self) -> bool:
         """Whether every reading of the plan is there."""
-        return {reading.index for reading in self.readings} >= {stop.index for stop in self._plan.stops()}
+        return len(self.readings) == self._plan.readings
 
     def keep(self, reading: Reading) -> None:
         """Write a reading. Raises UserError."""
@@ -78,11 +105,26 @@ class Journal:
         """Write an event. Raises UserError."""
         self._line({"event": asdict(event)})
 
-    def finish(self, summary: dict[str, Any]) -> Path:
-        """Write the summary and give the journal its lasting name. Raises UserError."""
+    def will_write(self, contents: Mapping[Path, bytes]) -> None:
+        """Say what is about to be written beside the journal, so that a later run knows it again. Raises UserError."""
+        for path, content in contents.items():
+            self._wrote(path.name, hashlib.sha256(content).hexdigest())
+
+    def will_finish(self, other: Journal) -> None:
+        """Take over from another journal what it wrote, itself as its log included. Raises UserError."""
+        for name, digests in sorted(read_journal(other.path).wrote.items()):
+            for content_digest in sorted(digests):
+                self._wrote(name, content_digest)
+        self._wrote(other.log.name, digest(other.path))
+
+    def summarise(self, summary: dict[str, Any]) -> None:
+        """Write the summary. Raises UserError."""
         self._line({"summary": summary})
+
+    def finish(self) -> None:
+        """Give the journal its lasting name."""
         self._file.close()
-        return self.path.replace(finished_path(self._sweep))
+        self.path.replace(self.log)
 
     def close(self) -> None:
         """Leave the journal for a later run, where there is something to go on from."""
@@ -99,8 +141,11 @@ class Journal:
             "options to go on"
         )
 
+    def _wrote(self, name: str, content_digest: str) -> None:
+        self._line({"wrote": name, "sha256": content_digest})
+
     def _line(self, content: dict[str, Any]) -> None:
-        line = (json.dumps(content) + "\n").encode()
+        line, seal = sealed(content, self._seal)
         try:
             if self._file.write(line) != len(line):
                 raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -108,60 +153,26 @@ class Journal:
             with contextlib.suppress(OSError):
                 self._file.truncate(self._size)
             raise UserError(f"{self.path}: cannot be written ({error.strerror}); make room; {self.kept()}") from None
-        self._size += len(line)
+        self._size, self._seal = self._size + len(line), seal
 
 
-def _taken_up(path: Path, head: dict[str, Any], readings: int) -> tuple[list[Reading], int]:
-    """The readings of a broken run, and how many bytes of its journal hold; none where it comes to nothing."""
+def _opened(path: Path) -> FileIO:
+    """A journal to append to, made where there is none. Raises UserError."""
     try:
-        raw = path.read_bytes()
-    except FileNotFoundError:
-        return [], 0
-    whole = raw[: raw.rfind(b"\n") + 1]
-    begins = json.dumps({"schema": SCHEMA}).removesuffix("}").encode()
-    if not raw.startswith(begins[: len(raw)]):
-        raise UserError(f"{path}: is no journal of the bench; move it away, or --restart")
-    entries = []
-    for number, line in enumerate(whole.splitlines(), 1):
-        try:
-            entries.append(_entry(line, readings))
-        except (ValueError, RecursionError) as error:
-            said = "is no JSON" if isinstance(error, json.JSONDecodeError | UnicodeDecodeError) else str(error)
-            raise UserError(f"{path}: line {number} is damaged: {said}; move the file away, or --restart") from None
-    found = [entry["reading"] for entry in entries if "reading" in entry]
-    if not found:
-        return [], 0
-    for key, value in head.items():
-        if entries[0].get(key) != value:
-            raise UserError(
-                f"{path}: belongs to another measurement (its {key} is {entries[0].get(key)!r}, not {value!r}); "
-                "give the same options to go on with it, or --restart"
-            )
-    return found, len(whole)
+        return FileIO(opened(path, os.O_RDWR | os.O_APPEND | os.O_CREAT), "ab")
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written ({error.strerror}); make room, or give another path") from None
 
 
-def _entry(line: bytes, readings: int) -> dict[str, Any]:
-    """A line of a journal, its reading as such. Raises ValueError."""
-    entry = json.loads(line)
-    if not isinstance(entry, dict):
-        raise ValueError("is no object")
-    return {**entry, "reading": _reading(entry["reading"], readings)} if "reading" in entry else entry
-
-
-def _reading(content: Any, readings: int) -> Reading:
-    """A reading whose every entry is of its kind. Raises ValueError."""
-    names = [item.name for item in fields(Reading)]
-    if not isinstance(content, dict) or content.keys() != set(names):
-        raise ValueError("a reading has not the entries of one")
-    for name, value in content.items():
-        if name in _FLAGS:
-            fits = isinstance(value, bool)
-        elif isinstance(value, bool) or not isinstance(value, int | float):
-            fits = value is None and name in _OPTIONAL
-        else:
-            fits = math.isfinite(value) and (name not in _WHOLE or isinstance(value, int))
-        if not fits:
-            raise ValueError(f"{name} is {str(value)[:40]!r}")
-    if not 0 <= content["index"] < readings or content["direction"] not in (-1, 1):
-        raise ValueError("a reading that the plan does not hold")
-    return Reading(**content)
+def _taken_up(path: Path, asked: Settings) -> Kept:
+    """What a broken run has left; nothing where it comes to nothing. Raises UserError."""
+    kept = read_journal(path)
+    if not kept.readings:
+        return Kept()
+    begun = kept.head.get("settings")
+    other = difference(begun, asked, OPTIONS) if isinstance(begun, dict) else "other settings"
+    if other:
+        raise UserError(
+            f"{path}: was begun with {other}; give the same options to go on with it, or --restart to begin anew"
+        )
+    return kept

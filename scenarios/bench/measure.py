@@ -17,17 +17,22 @@ from scenarios.bench.progress import progress
 from scenarios.bench.readings import Assembler, Reading
 from scenarios.bench.sequence import NodeGone, Patience, Sequence
 from scenarios.commands.outputs import OutputFiles
+from scenarios.commands.settings import Settings
 from twin.errors import UserError
 
 
 @dataclass(frozen=True, kw_only=True)
 class Measurement:
-    """What to measure and where to put it: ``files`` are all that the run may write, the output among them."""
+    """What to measure and where to put it: ``files`` are all that the run may write, the output among them.
+
+    ``twin`` is what is measured, in words, and ``settings`` are all besides the plan that the readings depend on.
+    """
 
     plan: Plan
     output: Path
     files: OutputFiles
     twin: str = "a real bench"
+    settings: Settings = field(default_factory=dict)
     channels: bool = True
     chamber: bool = True
     patience: Patience = field(default_factory=Patience)
@@ -59,8 +64,7 @@ def measure(
     Raises UserError where a node is gone or nothing can be written.
     """
     continued = len(journal.readings)
-    done = {reading.index for reading in journal.readings}
-    stops = [stop for stop in job.plan.stops() if stop.index not in done]
+    stops = list(job.plan.stops())[continued:]
     if job.record is not None and continued and stops:
         raise UserError(
             f"{journal.path}: holds {continued} readings of a broken run, and a log would lack them; "
@@ -74,17 +78,30 @@ def measure(
         except NodeGone as error:
             raise UserError(f"{error}; mend it; {journal.kept()}") from None
     pretreated = pretreat(journal.readings, manifest_deg=job.manifest_deg)
-    job.files.write({job.output: sweep_text(pretreated.kept)})
+    job.files.write({job.output: sweep_text(pretreated.kept)}, before=journal.will_write)
     measured = Measured(pretreated, assembler.counts, continued)
     if last:
-        finish(journal, measured)
+        finish(job, journal, measured)
     return measured
 
 
-def finish(journal: Journal, measured: Measured) -> None:
-    """Turn the journal of a sweep that is written into its log."""
+def finish(job: Measurement, journal: Journal, measured: Measured, *, witness: Journal | None = None) -> None:
+    """Turn the journal of a sweep that is written into its log. Raises UserError.
+
+    ``witness`` is the journal of the run that goes on, which will know sweep and log as its own.
+    """
     pretreated = measured.pretreated
-    journal.finish({"readings": len(pretreated.kept), "rejected": pretreated.rejected, "bus": dict(measured.counts)})
+    journal.summarise({"readings": len(pretreated.kept), "rejected": pretreated.rejected, "bus": dict(measured.counts)})
+    # Somebody's file may lie there since the work began.
+    job.files.check([journal.log])
+    if witness is not None:
+        witness.will_finish(journal)
+    journal.finish()
+
+
+def journal_of(job: Measurement, *, restart: bool) -> Journal:
+    """The journal of a measurement, begun or taken up. Raises UserError."""
+    return Journal(job.output, job.plan, twin=job.twin, settings=job.settings, restart=restart)
 
 
 def _take(

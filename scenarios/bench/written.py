@@ -1,7 +1,7 @@
 """The files that a run on the bench leaves, and which of them may be replaced.
 
-What was measured is replaced only with ``--force``: nobody can compute it again. Where a journal lies beside it, the
-run is not finished, and what it has written so far is its own.
+What was measured is replaced only with ``--force``: nobody can compute it again. A run that was broken off goes on with
+the files that it wrote itself, which it knows by the digests in its journal.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from pathlib import Path
 
 from scenarios.bench.bus_log import LOG_FORMATS
 from scenarios.bench.journal import finished_path, running_path
+from scenarios.bench.journal_reader import written_by_run
 from scenarios.commands.outputs import JSON, MEASURED, PICTURE, TOML, Format, OutputFiles, check_ending
 from twin.errors import UserError
 from twin.whole_file import is_stream
@@ -39,7 +40,7 @@ def files_of_measurement(
     if is_stream(output):
         raise UserError(f"{output}: is no file; a measurement keeps its readings beside its sweep: give a file's name")
     given = [*_measured(output), (record, _BUS_LOG)]
-    return OutputFiles.checked(given, inputs=inputs, force=force, unfinished=_unfinished(output, output))
+    return OutputFiles.checked(given, inputs=inputs, force=force, unfinished=_unfinished(output))
 
 
 def files_of_loop(
@@ -63,7 +64,7 @@ def files_of_loop(
     ]
     if record is not None:
         given += [(record_path(record, part), _BUS_LOG) for part in ("before", "after")]
-    return OutputFiles.checked(given, inputs=inputs, force=force, unfinished=_unfinished(before, before, after))
+    return OutputFiles.checked(given, inputs=inputs, force=force, unfinished=_unfinished(before, after))
 
 
 def _measured(sweep: Path) -> Iterator[tuple[Path, Format]]:
@@ -71,6 +72,10 @@ def _measured(sweep: Path) -> Iterator[tuple[Path, Format]]:
     yield finished_path(sweep), _LOG
 
 
-def _unfinished(first: Path, *sweeps: Path) -> list[Path]:
-    """What a run that broke off has written, where the journal of its first sweep is still there."""
-    return [path for sweep in sweeps for path, _ in _measured(sweep)] if running_path(first).exists() else []
+def _unfinished(*sweeps: Path) -> dict[Path, set[str]]:
+    """The files that a run which broke off says to have written, each with the digests of what it wrote there."""
+    found: dict[Path, set[str]] = {}
+    for sweep in sweeps:
+        for name, digests in written_by_run(running_path(sweep)).items():
+            found.setdefault(sweep.with_name(name), set()).update(digests)
+    return found

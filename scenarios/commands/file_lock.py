@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from twin.errors import UserError
+from twin.regular_file import opened
 
 
 @contextlib.contextmanager
@@ -27,7 +28,7 @@ def alone(path: Path, *, busy: str) -> Iterator[None]:
     Raises
     ------
     UserError
-        Another process holds the lock, or the file is none.
+        Another process holds the lock, or the file is no lock.
     OSError
         The file cannot be made.
     """
@@ -46,7 +47,7 @@ def alone(path: Path, *, busy: str) -> Iterator[None]:
 def _held(path: Path) -> int | None:
     """The locked file's descriptor, which no child inherits; None where another process holds it."""
     while True:
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
+        descriptor = opened(path, os.O_RDWR | os.O_CREAT)
         try:
             locked = _locked(descriptor, path)
             if os.fstat(descriptor).st_size:

@@ -13,14 +13,15 @@ import json
 import os
 import stat
 import unicodedata
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from scenarios.commands.inputs import ENDINGS
 from scenarios.commands.marks import is_own, mark_written, marked
 from twin.errors import UserError
+from twin.regular_file import digest
 from twin.whole_file import check_writable, is_stream, target_of, write_together
 
 
@@ -53,14 +54,15 @@ class OutputFiles:
     """The files that a command will write; see the module's text.
 
     ``inputs`` are the files that it reads, ``force`` lets it replace files of others, ``folders`` lets it make the
-    folders that are not there yet; ``unfinished`` are files that an earlier run of the same work began.
+    folders that are not there yet. ``unfinished`` are files that an earlier run of the same work wrote, each with the
+    SHA-256 of what that run wrote there.
     """
 
     formats: Mapping[Path, Format]
     inputs: tuple[Path, ...] = ()
     force: bool = False
     folders: bool = False
-    unfinished: frozenset[Path] = frozenset()
+    unfinished: Mapping[Path, Collection[str]] = field(default_factory=dict)
 
     @classmethod
     def checked(
@@ -70,12 +72,12 @@ class OutputFiles:
         inputs: Iterable[str | Path | None] = (),
         force: bool = False,
         folders: bool = False,
-        unfinished: Iterable[Path] = (),
+        unfinished: Mapping[Path, Collection[str]] | None = None,
     ) -> OutputFiles:
         """The outputs that are not None, all of them fit to be written. Raises UserError before anything is done."""
         asked = [(path, form) for path, form in given if path is not None]
         read = tuple(file for name in inputs if name is not None for file in _files(Path(name)))
-        outputs = cls(formats=dict(asked), inputs=read, force=force, folders=folders, unfinished=frozenset(unfinished))
+        outputs = cls(formats=dict(asked), inputs=read, force=force, folders=folders, unfinished=unfinished or {})
         _check_distinct([path for path, _ in asked])
         outputs.check()
         return outputs
@@ -94,8 +96,8 @@ class OutputFiles:
                 check_writable(path)
         for path in asked:
             check_ending(path, self.formats[path])
-            if not (self.force or path in self.unfinished or is_stream(path)):
-                _check_own(path, self.formats[path])
+            if not (self.force or is_stream(path)):
+                _check_own(path, self.formats[path], self.unfinished.get(path, ()))
 
     def _check_inputs(self) -> None:
         """Refuse an output that is an input, or the file that the printed answer goes to. Raises UserError."""
@@ -106,15 +108,20 @@ class OutputFiles:
             if _identity(path) in read and not is_stream(path):
                 raise _used_already(path)
 
-    def write(self, contents: Mapping[Path | None, Any]) -> None:
+    def write(
+        self, contents: Mapping[Path | None, Any], *, before: Callable[[Mapping[Path, bytes]], None] | None = None
+    ) -> None:
         """Make the contents of the outputs, then write all of them or none. Raises UserError.
 
         A content is text, bytes or a figure of matplotlib's, or a function that makes one of them. The key None is
-        passed over, so that a command lists everything it may be asked for.
+        passed over, so that a command lists everything it may be asked for. ``before`` is called with what each file
+        will hold, when nothing is written yet.
         """
         made = {path: self._packed(path, content) for path, content in contents.items() if path is not None}
         # Much may have happened since the work began.
         self.check(made)
+        if before is not None:
+            before(made)
         with _folders_for(made) if self.folders else contextlib.nullcontext():
             write_together(made)
         for path, content in made.items():
@@ -169,10 +176,12 @@ def _used_already(path: Path) -> UserError:
     return UserError(f"{path}: is read or written already by this command; give each output a name of its own")
 
 
-def _check_own(path: Path, form: Format) -> None:
-    """Refuse to replace a file that holds anything and is not as the program wrote it."""
+def _check_own(path: Path, form: Format, written: Collection[str]) -> None:
+    """Refuse to replace a file that holds anything and is not as the program wrote it, by its mark or by a digest."""
     try:
         if not path.exists() or path.stat().st_size == 0 or (form.marked and is_own(path)):
+            return
+        if written and path.is_file() and digest(target_of(path)) in written:
             return
     except OSError as error:
         raise UserError(f"{path}: is there already and cannot be read ({error.strerror}); give another name") from None

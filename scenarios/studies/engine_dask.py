@@ -33,7 +33,7 @@ def _client(machines: Machines) -> Iterator[Any]:
     try:
         from distributed import Client, LocalCluster
     except ImportError:
-        raise UserError("--scheduler needs Dask; pip install 'halltwin[sweeps]'") from None
+        raise UserError("--scheduler needs Dask; pip install '.[sweeps]' in the checkout") from None
     if machines.scheduler != "local":
         try:
             client = Client(machines.scheduler, timeout=_CONNECT_S)

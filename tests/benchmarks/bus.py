@@ -21,8 +21,7 @@ from scenarios.bench.buses import Interface
 from scenarios.bench.faults import Bus, FaultyBus, Opener
 from scenarios.bench.hall_node import HallNode
 from scenarios.bench.hidden import hidden_encoder
-from scenarios.bench.journal import Journal
-from scenarios.bench.measure import Measurement, measure
+from scenarios.bench.measure import Measurement, journal_of, measure
 from scenarios.bench.messages import SEQUENCES, messages
 from scenarios.bench.plan import Plan
 from scenarios.bench.virtual import Setup, running
@@ -124,11 +123,10 @@ def whole_bench() -> tuple[int, int, float]:
     open_bus, plan = Interface().opener(), Plan(points=360, both_directions=True)
     with tempfile.TemporaryDirectory() as folder, running(Setup(chain=hidden_encoder(None, ())), open_bus):
         output = Path(folder) / "sweep.csv"
-        journal = Journal(output, plan, twin="", restart=True)
+        job = Measurement(plan=plan, output=output, files=files_of_measurement(output))
+        journal = journal_of(job, restart=True)
         start = time.perf_counter()
-        found = measure(
-            Measurement(plan=plan, output=output, files=files_of_measurement(output), twin=""), journal, open_bus
-        )
+        found = measure(job, journal, open_bus)
         seconds = time.perf_counter() - start
     assert set(found.counts) == {"frames"}
     return len(found.pretreated.kept), found.counts["frames"], seconds

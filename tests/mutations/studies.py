@@ -63,7 +63,7 @@ STUDIES: tuple[Mutation, ...] = (
     Mutation(
         "journal.without_a_reading",
         _JOURNAL,
-        "    if not found:\n        return [], 0\n",
+        "    if not kept.readings:\n        return Kept()\n",
         "",
         (f"{_BENCH_TESTS}::test_a_journal_without_a_reading_blocks_nothing",),
     ),
@@ -73,6 +73,44 @@ STUDIES: tuple[Mutation, ...] = (
         "            if self._file.write(line) != len(line):\n",
         "            if self._file.write(line) < 0:\n",
         (f"{_BENCH_TESTS}::test_a_full_disk_is_one_line_and_room_lets_it_go_on",),
+    ),
+    Mutation(
+        "journal.seal",
+        "scenarios/bench/sealed_lines.py",
+        "    if seal.encode() != found[2]:\n",
+        "    if False:\n",
+        (f"{_BENCH_TESTS}::test_a_damaged_journal_is_one_line_and_stays",),
+    ),
+    Mutation(
+        "journal.settings",
+        _JOURNAL,
+        "difference(begun, asked, OPTIONS) if",
+        '"" if',
+        (
+            f"{_BENCH_TESTS}::test_other_options_are_refused_by_name",
+            f"{_BENCH_TESTS}::test_a_twin_or_effect_edited_under_its_name_is_another",
+        ),
+    ),
+    Mutation(
+        "journal.foreign",
+        _JOURNAL,
+        "        check_own(self.path)\n",
+        "",
+        (f"{_BENCH_TESTS}::test_what_is_no_journal_is_never_removed",),
+    ),
+    Mutation(
+        "journal.own_files_alone",
+        "scenarios/commands/outputs.py",
+        "digest(target_of(path)) in written",
+        "True",
+        (f"{_BENCH_TESTS}::test_only_what_the_run_itself_wrote_is_replaced_unasked",),
+    ),
+    Mutation(
+        "journal.plain_file",
+        "twin/regular_file.py",
+        "    if stat.S_ISREG(os.fstat(number).st_mode):\n",
+        "    if True:\n",
+        (f"{_BENCH_TESTS}::test_what_is_no_journal_is_never_removed",),
     ),
     Mutation(
         "journal.closed_without_a_reading",

@@ -117,5 +117,7 @@ def tools() -> tuple[Any, Any]:
         # xarray writes through it.
         import_module("zarr")
     except ImportError:
-        raise UserError("halltwin generate needs xarray, zarr and dask; pip install 'halltwin[sweeps]'") from None
+        raise UserError(
+            "halltwin generate needs xarray, zarr and dask; pip install '.[sweeps]' in the checkout"
+        ) from None
     return xarray, dask.array

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("can", reason="python-can is not installed: pip install 'halltwin[bench]'")
-pytest.importorskip("cantools", reason="cantools is not installed: pip install 'halltwin[bench]'")
+pytest.importorskip("can", reason="python-can is not installed: pip install '.[bench]' in the checkout")
+pytest.importorskip("cantools", reason="cantools is not installed: pip install '.[bench]' in the checkout")
 
 from scenarios.bench.sequence import Patience
 from tests.scenarios.bench.rig import run_bench

@@ -13,8 +13,7 @@ import numpy as np
 from scenarios.bench.buses import Interface, with_bench_faults
 from scenarios.bench.faults import parse
 from scenarios.bench.hidden import hidden_encoder
-from scenarios.bench.journal import Journal
-from scenarios.bench.measure import Measured, Measurement, measure
+from scenarios.bench.measure import Measured, Measurement, journal_of, measure
 from scenarios.bench.plan import Plan
 from scenarios.bench.sequence import Patience
 from scenarios.bench.virtual import Setup, running
@@ -58,7 +57,7 @@ def run_bench(
     )
     setup = Setup(chain=quiet_encoder(), faults=parsed)
     with (
-        contextlib.closing(Journal(output, plan, twin=job.twin, restart=False)) as journal,
+        contextlib.closing(journal_of(job, restart=False)) as journal,
         running(setup, open_bus) as done,
     ):
         found = measure(job, journal, with_bench_faults(open_bus, parsed, 0))

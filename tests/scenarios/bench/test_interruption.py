@@ -11,19 +11,20 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import can
 import pytest
 
-from scenarios.bench.command import Options, run
+from scenarios.bench import journal
+from scenarios.bench.command import Options, hidden_encoder, run
 from scenarios.bench.journal import SCHEMA, finished_path, running_path
-from scenarios.bench.measure import Measurement
 from scenarios.bench.plan import Plan
+from scenarios.bench.sealed_lines import sealed
 from scenarios.bench.sequence import Patience
 from scenarios.commands.file_lock import alone
-from scenarios.commands.outputs import OutputFiles
 from tests.command_line import halltwin
 from tests.scenarios.bench.rig import PLAN, assert_same_readings, quiet_encoder, run_bench
 from twin.errors import UserError
@@ -35,17 +36,8 @@ def test_a_killed_run_goes_on(tmp_path: Path, undisturbed: tuple[Path, Path]) ->
     write_twin(twin, quiet_encoder())
     options = ["--twin", str(twin), "--points", "64", "--both-directions", "-o", str(sweep)]
     # The encoder falls silent after its 200th frame, the 100th reading: time enough to be killed in the middle.
-    command = [
-        sys.executable,
-        "-m",
-        "scenarios.cli.main",
-        "bench",
-        *options,
-        "--fault",
-        "silent:hall=20",
-        "--attempts",
-        "200",
-    ]
+    options += ["--fault", "silent:hall=20"]
+    command = [sys.executable, "-m", "scenarios.cli.main", "bench", *options, "--attempts", "200"]
     process = subprocess.Popen(command)
     journal = running_path(sweep)
     end = time.monotonic() + 30.0
@@ -59,7 +51,7 @@ def test_a_killed_run_goes_on(tmp_path: Path, undisturbed: tuple[Path, Path]) ->
     # The line that the kill cut off.
     with journal.open("a") as file:
         file.write('{"reading": {"index": 9')
-    run(Options(output=sweep, twin=str(twin), points=64, both_directions=True))
+    run(Options(output=sweep, twin=str(twin), points=64, both_directions=True, faults=["silent:hall=20"]))
     assert_same_readings(sweep, undisturbed[0])
     assert not journal.exists()
     assert all(json.loads(line) for line in finished_path(sweep).read_text().splitlines())
@@ -69,17 +61,13 @@ def test_a_journal_of_another_plan_is_not_continued(tmp_path: Path) -> None:
     sweep = tmp_path / "sweep.csv"
     with pytest.raises(UserError):
         run_bench(sweep, faults=["gone:hall=40"], patience=Patience(timeout_s=0.05, attempts=10))
-    with pytest.raises(UserError, match="belongs to another measurement"):
+    with pytest.raises(UserError, match="was begun with --points 64, now 45; --both-directions on, now off; give"):
         run_bench(sweep, plan=Plan(points=45))
     with pytest.raises(UserError, match="a log would lack them"):
         run_bench(sweep, record=tmp_path / "bus.log")
 
 
-HEAD = {
-    "schema": SCHEMA,
-    "plan": PLAN.digest(),
-    "twin": Measurement(plan=PLAN, output=Path(), files=OutputFiles({})).twin,
-}
+HEAD = {"schema": SCHEMA, "settings": {"plan": asdict(PLAN)}}
 READING = {
     "index": 0,
     "time_s": 1.0,
@@ -94,50 +82,174 @@ READING = {
     "index_seen": True,
     "corrected": False,
 }
+NEXT = {**READING, "index": 1}
 
 
-def lines(*entries: object) -> bytes:
+def lines(*entries: dict[str, Any]) -> list[bytes]:
     """A journal that begins well."""
-    return "".join(json.dumps(entry) + "\n" for entry in (HEAD, {"reading": READING}, *entries)).encode()
+    made: list[bytes] = []
+    seal = ""
+    for entry in (HEAD, {"reading": READING}, *entries):
+        line, seal = sealed(entry, seal)
+        made.append(line)
+    return made
+
+
+WELL = lines({"reading": NEXT}, {"event": {"kind": "late", "message": "HallAngle", "index": 1}})
+DIGITS = b"1" + b"0" * 400
 
 
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (b"not a journal\n", "is no journal of the bench"),
-        (b"not a journal", "is no journal of the bench"),
-        (b"\xff\xfe", "is no journal of the bench"),
-        (lines() + b"{garbage\n" + lines(), "line 3 is damaged: is no JSON"),
-        (lines() + b"\xff\n", "line 3 is damaged: is no JSON"),
-        (lines([1]), "line 3 is damaged: is no object"),
+        ([b"not a journal\n"], "is no journal of the bench"),
+        ([b"not a journal"], "is no journal of the bench"),
+        ([b"\xff\xfe"], "is no journal of the bench"),
+        ([*WELL[:2], b"{garbage\n", WELL[2]], "line 3 is damaged: bears no checksum"),
+        ([*WELL[:2], b"\xff\n"], "line 3 is damaged: bears no checksum"),
+        ([*WELL[:2], b"[" * 100_000 + b"]" * 100_000 + b"\n"], "line 3 is damaged: bears no checksum"),
+        ([WELL[0], WELL[1].replace(b": 0.1,", b": 0.2,"), WELL[2]], "line 2 is damaged: is not as it was written"),
+        ([WELL[0], WELL[1].replace(b": 0.1,", b": 1e308,"), WELL[2]], "line 2 is damaged: is not as it was written"),
+        ([WELL[0], WELL[1].replace(b": 0.1,", b": NaN,"), WELL[2]], "line 2 is damaged: is not as it was written"),
+        ([WELL[0], WELL[1].replace(b": 0.1,", b": " + DIGITS + b",")], "line 2 is damaged: is not as it was written"),
+        ([*WELL[:3], WELL[2]], "line 4 is damaged: is not as it was written, or not in its place"),
+        ([WELL[0], WELL[2], WELL[1]], "line 2 is damaged: is not as it was written, or not in its place"),
+        ([WELL[0], WELL[1], WELL[3]], "line 3 is damaged: is not as it was written, or not in its place"),
         (lines({"reading": 7}), "line 3 is damaged: a reading has not the entries of one"),
-        (lines({"reading": {**READING, "index": "7"}}), "line 3 is damaged: index is '7'"),
-        (lines({"reading": {**READING, "index": 1.5}}), "line 3 is damaged: index is '1.5'"),
-        (lines({"reading": {**READING, "index": 999}}), "line 3 is damaged: a reading that the plan does not hold"),
-        (lines({"reading": {**READING, "measured_deg": float("nan")}}), "line 3 is damaged: measured_deg is 'nan'"),
-        (lines({"reading": {**READING, "measured_deg": None}}), "line 3 is damaged: measured_deg is 'None'"),
-        (lines({"reading": {**READING, "index_seen": 1}}), "line 3 is damaged: index_seen is '1'"),
+        (lines({"reading": {**NEXT, "index": "1"}}), "line 3 is damaged: index is no such value"),
+        (lines({"reading": {**NEXT, "index": 1.5}}), "line 3 is damaged: index is no such value"),
+        (lines({"reading": {**NEXT, "index": 2}}), "line 3 is damaged: expected the reading of place 1"),
+        (lines({"reading": READING}), "line 3 is damaged: expected the reading of place 1"),
+        (
+            lines({"reading": {**NEXT, "measured_deg": float("nan")}}),
+            "line 3 is damaged: measured_deg is no such value",
+        ),
+        (lines({"reading": {**NEXT, "measured_deg": int(DIGITS)}}), "line 3 is damaged: measured_deg is no such value"),
+        (lines({"reading": {**NEXT, "measured_deg": None}}), "line 3 is damaged: measured_deg is no such value"),
+        (lines({"reading": {**NEXT, "index_seen": 1}}), "line 3 is damaged: index_seen is no such value"),
     ],
 )
-def test_a_damaged_journal_is_one_line_and_stays(tmp_path: Path, content: bytes, said: str) -> None:
+def test_a_damaged_journal_is_one_line_and_stays(tmp_path: Path, content: list[bytes], said: str) -> None:
     sweep = tmp_path / "sweep.csv"
-    running_path(sweep).write_bytes(content)
+    running_path(sweep).write_bytes(b"".join(content))
     with pytest.raises(UserError) as refused:
         run_bench(sweep)
     assert said in str(refused.value)
-    assert "--restart" in str(refused.value)
-    assert {item.name: item.read_bytes() for item in tmp_path.iterdir()} == {running_path(sweep).name: content}
+    assert "move" in str(refused.value)
+    assert {item.name: item.read_bytes() for item in tmp_path.iterdir()} == {
+        running_path(sweep).name: b"".join(content)
+    }
 
 
-@pytest.mark.parametrize("length", [0, 10, len(json.dumps(HEAD)) + 1])
+@pytest.mark.parametrize("length", [0, 10, len(lines()[0])])
 def test_a_journal_without_a_reading_blocks_nothing(
     tmp_path: Path, undisturbed: tuple[Path, Path], length: int
 ) -> None:
     sweep = tmp_path / "sweep.csv"
-    other = (json.dumps({**HEAD, "twin": "another encoder, mistyped"}) + "\n").encode()
+    other, _ = sealed({**HEAD, "settings": {"twin": "another encoder, mistyped"}}, "")
     running_path(sweep).write_bytes(other[:length])
     run_bench(sweep)
     assert_same_readings(sweep, undisturbed[0])
+
+
+@pytest.mark.parametrize("given", ["--restart", "--force"])
+def test_what_is_no_journal_is_never_removed(tmp_path: Path, given: str) -> None:
+    sweep, mine, journal = (tmp_path / name for name in ("sweep.csv", "mine.txt", "sweep.csv.journal.jsonl"))
+    mine.write_text("my notes")
+    plants: dict[str, Callable[[], None]] = {
+        "is no journal of the bench": lambda: journal.write_text("my notes"),
+        "expected a plain file": lambda: journal.symlink_to(mine),
+        "a link, a folder": lambda: journal.symlink_to(tmp_path / "nowhere"),
+        "a pipe": lambda: os.mkfifo(journal),
+        "or a device": lambda: journal.symlink_to("/dev/zero"),
+    }
+    for said, plant in plants.items():
+        plant()
+        before = journal.lstat()
+        ended = halltwin("bench", "-o", sweep, "--points", "12", given)
+        assert (ended.code, ended.err.count("\n")) == (2, 1), ended
+        assert said in ended.err
+        assert journal.lstat() == before
+        journal.unlink()
+    assert [item.name for item in tmp_path.iterdir()] == ["mine.txt"]
+    assert mine.read_text() == "my notes"
+
+
+@pytest.fixture
+def broken_off(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[str, ...]:
+    """A command that has been broken off in the middle of its measurement of m.csv, in the working folder."""
+    monkeypatch.chdir(tmp_path)
+    write_twin("own.toml", hidden_encoder(None, ()))
+    command = ("bench", "-o", "m.csv", "--twin", "own.toml", "--points", "36", "--fault", "gone:hall=60")
+    assert "readings are kept" in halltwin(*command, "--attempts", "2", "--timeout", "0.05").err
+    return command
+
+
+@pytest.mark.parametrize(
+    ("other", "said"),
+    [
+        (("--no-channels",), "begun with --channels on, now off;"),
+        (("--no-chamber",), "begun with --chamber on, now off;"),
+        (("--points", "40"), "begun with --points 36, now 40;"),
+        (("--settle", "0.5", "--seed", "3"), "begun with --settle 0.3, now 0.5; --seed 0, now 3;"),
+        (("--speed-rpm", "0", "--speed-rpm", "60"), "begun with --speed-rpm 0.0, now 0.0,60.0;"),
+        (("--fault", "wild=0.01"), "begun with --fault gone:hall=60, now gone:hall=60,wild:hall=0.01;"),
+        (("--hide", "saturation:k_percent=2"), "begun with the twin's effects.saturation.k_percent none, now 2;"),
+        (("--twin", "paper-encoder"), ""),
+    ],
+    ids=str,
+)
+def test_other_options_are_refused_by_name(broken_off: tuple[str, ...], other: tuple[str, ...], said: str) -> None:
+    before = Path("m.csv.journal.jsonl").read_bytes()
+    ended = halltwin(*broken_off, *other)
+    if not said:
+        # A twin is what it holds, whatever its file is called.
+        assert ended.code == 0
+        return
+    assert (ended.code, ended.err.count("\n")) == (2, 1), ended
+    assert said in ended.err
+    assert "--restart" in ended.err
+    assert Path("m.csv.journal.jsonl").read_bytes() == before
+
+
+def test_a_twin_or_effect_edited_under_its_name_is_another(broken_off: tuple[str, ...]) -> None:
+    twin = Path("own.toml")
+    text = twin.read_text()
+    (noise,) = [line for line in text.splitlines() if line.startswith("rms_deg")]
+    twin.write_text(text.replace(noise, "rms_deg = 0.5"))
+    assert f"the twin's effects.noise.{noise.replace(' =', '')}, now 0.5;" in halltwin(*broken_off).err
+    twin.write_text(text)
+    assert halltwin("new-effect", "wobble").code == 0
+    assert "--effects none, now wobble.py (SHA-256 " in halltwin(*broken_off, "--effects", "wobble.py").err
+
+
+def test_only_what_the_run_itself_wrote_is_replaced_unasked(broken_off: tuple[str, ...]) -> None:
+    sweep, log = Path("m.csv"), Path("m.csv.log.jsonl")
+    for foreign in (sweep, log):
+        foreign.write_text("somebody's own")
+        ended = halltwin(*broken_off)
+        assert (ended.code, ended.err.count("\n")) == (2, 1), ended
+        assert f"{foreign}: is there already" in ended.err
+        assert foreign.read_text() == "somebody's own"
+        foreign.unlink()
+    assert halltwin(*broken_off).code == 0
+    # As if it had been killed when the sweep was written and the journal was not yet its log.
+    log.rename("m.csv.journal.jsonl")
+    written = sweep.read_bytes()
+    assert halltwin(*broken_off).code == 0
+    assert sweep.read_bytes() == written
+
+
+@pytest.mark.parametrize("planted", [b"", sealed(HEAD, "")[0]], ids=["empty", "begun"])
+def test_a_journal_that_says_nothing_of_a_sweep_does_not_give_it_away(
+    broken_off: tuple[str, ...], planted: bytes
+) -> None:
+    assert halltwin(*broken_off).code == 0
+    kept = {name: Path(name).read_bytes() for name in ("m.csv", "m.csv.log.jsonl")}
+    Path("m.csv.journal.jsonl").write_bytes(planted)
+    for more in ((), ("--points", "40", "--seed", "9"), ("--restart",)):
+        assert "m.csv: is there already" in halltwin(*broken_off, *more).err
+    assert {name: Path(name).read_bytes() for name in kept} == kept
 
 
 @pytest.mark.parametrize(
@@ -167,7 +279,7 @@ def test_a_full_disk_is_one_line_and_room_lets_it_go_on(
 ) -> None:
     sweep = tmp_path / "sweep.csv"
     with monkeypatch.context() as full:
-        full.setattr(Path, "open", opened_on_a_disk_of(10_000))
+        full.setattr(journal, "_opened", on_a_disk_of(10_000))
         with pytest.raises(
             UserError, match=r"journal\.jsonl: cannot be written \(No space left .* of 128 readings are kept"
         ):
@@ -179,9 +291,9 @@ def test_a_full_disk_is_one_line_and_room_lets_it_go_on(
     assert_same_readings(sweep, undisturbed[0])
 
 
-def opened_on_a_disk_of(size: int) -> Callable[..., Any]:
-    """``Path.open`` for files that take so many bytes, the last of them in half a line."""
-    whole = Path.open
+def on_a_disk_of(size: int) -> Callable[[Path], Any]:
+    """Opens a journal that takes so many bytes, the last of them in half a line."""
+    whole = journal._opened
 
     class Full:
         def __init__(self, file: Any) -> None:
@@ -195,11 +307,7 @@ def opened_on_a_disk_of(size: int) -> Callable[..., Any]:
             self._left -= len(part)
             return int(self._file.write(part))
 
-    def opened(path: Path, mode: str = "r", *arguments: Any, **named: Any) -> Any:
-        file = whole(path, mode, *arguments, **named)
-        return Full(file) if mode == "ab" else file
-
-    return opened
+    return lambda path: Full(whole(path))
 
 
 def test_a_second_bench_for_the_same_sweep_is_refused(tmp_path: Path) -> None:

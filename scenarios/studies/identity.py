@@ -4,48 +4,52 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from diagnosis.report.provenance import version
+from scenarios.commands.settings import Settings, difference
+from twin.bounded_input import LARGEST_TEXT_BYTES
 from twin.errors import UserError
+from twin.regular_file import content
 
-Settings = Mapping[str, Any]
+
+@dataclass(frozen=True, kw_only=True)
+class Identity:
+    """The study by name, and everything that its results depend on besides the program's version.
+
+    ``options`` are the settings, or tables of them, under the names that a user gives them, in the order of importance.
+    """
+
+    study: str
+    seed: int
+    settings: Settings
+    options: Mapping[str, str] = field(default_factory=dict)
+
+    def record(self) -> dict[str, Any]:
+        """As plain values."""
+        return {"study": self.study, "version": version(), "seed": self.seed, "settings": self.settings}
+
+    def text(self) -> str:
+        """The text of the record. Raises ValueError for a figure that is not finite."""
+        return json.dumps(self.record(), indent=1, sort_keys=True, allow_nan=False) + "\n"
+
+    def difference(self, found: Settings) -> str:
+        """How another record differs, in words; empty where it does not."""
+        named = {f"settings.{name}": option for name, option in self.options.items()}
+        options = {"study": "the study", "version": "halltwin", **named, "seed": "--seed", "settings": ""}
+        return difference(found, self.record(), options)
 
 
 def read_record(record: Path) -> dict[str, Any]:
-    """The settings that a folder was begun with, by dotted name. Raises UserError where the record is none."""
+    """What a folder was begun with. Raises UserError where the record is none."""
     try:
-        content = json.loads(record.read_text(encoding="utf-8"))
-        if not isinstance(content, dict) or not isinstance(content.get("settings"), dict):
+        found = json.loads(content(record, most=LARGEST_TEXT_BYTES, expected="the record of a study"))
+        if not isinstance(found, dict) or not isinstance(found.get("settings"), dict):
             raise ValueError("no settings")
+    except UserError:
+        raise
     except (OSError, ValueError, RecursionError):
         raise UserError(f"{record}: is damaged or no record of a study; give another folder") from None
-    return flat(content)
-
-
-def refuse_other(path: Path, found: Settings, asked: Settings) -> None:
-    """Raise UserError where a folder was begun with other settings than are asked for, naming the first."""
-    for name in sorted(found.keys() | asked.keys(), key=lambda key: (key.count("."), key)):
-        if found.get(name) != asked.get(name):
-            there, here = (_short(settings.get(name)) for settings in (found, asked))
-            raise UserError(
-                f"{path}: was begun with {name} {there}, this run has {here}; give another folder, "
-                "or the same settings to go on"
-            )
-
-
-def flat(content: Settings) -> dict[str, Any]:
-    """Nested settings by dotted name; the settings themselves without their own prefix."""
-    out: dict[str, Any] = {}
-    for key, value in content.items():
-        if isinstance(value, Mapping):
-            prefix = "" if key == "settings" else f"{key}."
-            out.update({f"{prefix}{name}": inner for name, inner in flat(value).items()})
-        else:
-            out[key] = value
-    return out
-
-
-def _short(value: Any) -> str:
-    text = json.dumps(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    return found

@@ -4,6 +4,9 @@
 long as anything is complete. ``done/000012`` marks chunk 12 as complete and holds the SHA-256 of its files, as
 ``sha256sum`` writes them: a chunk that was damaged since is computed anew. ``chunks/000012.npz`` holds its arrays
 where a study keeps them so. ``study.lock`` is there while a command works in the folder.
+
+Nothing is removed or replaced that the study did not write: that is what a mark lists, what is equal to what would take
+its place, and temporary files of the program's own.
 """
 
 from __future__ import annotations
@@ -11,27 +14,29 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import io
-import json
+import os
 import re
 import shutil
-import zipfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from diagnosis.report.provenance import version
 from scenarios.commands.file_lock import alone
 from scenarios.commands.interrupt import interruptible
-from scenarios.studies.identity import flat, read_record, refuse_other
+from scenarios.studies.chunk_files import joined
+from scenarios.studies.identity import Identity, read_record
+from twin.bounded_input import LARGEST_TEXT_BYTES
 from twin.errors import UserError
+from twin.regular_file import content, digest
 from twin.whole_file import TEMPORARY, new_name, write_whole
 
 _IDENTITY, _LOCK, _DONE, _CHUNKS = "study.json", "study.lock", "done", "chunks"
 _OWN_UNFINISHED = re.compile(re.escape(TEMPORARY).replace(r"\*", "[0-9a-f]{16}"))
-_ZARR_UNFINISHED = re.compile(r".+\.[0-9a-f]{32}\.partial")
+_EMPTY = hashlib.sha256().hexdigest()
+"""An empty file holds nothing of anybody's: a loss of power leaves such."""
 
 
 @dataclass(frozen=True)
@@ -42,9 +47,7 @@ class StudyFolder:
 
     @classmethod
     @contextlib.contextmanager
-    def opened(
-        cls, path: Path, *, study: str, seed: int, settings: Mapping[str, Any], stores: Sequence[str] = ()
-    ) -> Iterator[StudyFolder]:
+    def opened(cls, path: Path, identity: Identity, *, stores: Sequence[str] = ()) -> Iterator[StudyFolder]:
         """Begin a study in this folder, or go on with it, and keep every other command out meanwhile.
 
         ``stores`` are folders in it that the study fills beside its chunks. Raises UserError where the folder holds
@@ -52,7 +55,6 @@ class StudyFolder:
         to go on.
         """
         folder = cls(path.absolute())
-        identity = {"study": study, "version": version(), "seed": seed, "settings": settings}
         folder._refuse_foreign()
         made = folder._make()
         busy = f"{path}: another halltwin is at work in this folder; wait until it ends"
@@ -62,7 +64,7 @@ class StudyFolder:
                 try:
                     yield folder
                 finally:
-                    folder._clear_unfinished(stores)
+                    folder._clear_unfinished()
         finally:
             if made and not (folder.path / _IDENTITY).exists():
                 with contextlib.suppress(OSError):
@@ -91,27 +93,44 @@ class StudyFolder:
             if not (begun or item.name == _LOCK or _OWN_UNFINISHED.fullmatch(item.name)):
                 raise UserError(f"{self.path}: exists and is no study; give the name of a new folder")
 
-    def _begin(self, identity: Mapping[str, Any], stores: Sequence[str]) -> None:
+    def _begin(self, identity: Identity, stores: Sequence[str]) -> None:
         """Write the record, or hold the one that is there against it."""
         # Another command may have been there between the first look and the lock.
         self._refuse_foreign()
-        self._clear_unfinished(stores)
+        self._clear_unfinished()
         record = self.path / _IDENTITY
-        text = json.dumps(identity, indent=1, sort_keys=True, allow_nan=False) + "\n"
         if record.exists():
-            found, asked = read_record(record), flat(json.loads(text))
-            if found == asked or self._complete():
-                refuse_other(self.path, found, asked)
+            other = identity.difference(read_record(record))
+            if not other:
                 return
-            # Nothing is complete, so nothing is lost, and a mistake in the settings does not block their correction.
-            for name in (_DONE, _CHUNKS, *stores):
-                shutil.rmtree(self.path / name, ignore_errors=True)
+            # While nothing is complete nothing is lost, and a mistake in the settings does not block their correction.
+            if self._complete() or not self._taken_back(stores):
+                raise UserError(
+                    f"{self.path}: was begun with {other}; give another folder, or the same settings to go on"
+                )
         try:
-            write_whole(record, text.encode())
+            write_whole(record, identity.text().encode())
         except OSError as error:
             raise UserError(
                 f"{record}: cannot be written ({error.strerror}); make room and run the same command again"
             ) from None
+
+    def _taken_back(self, stores: Sequence[str]) -> bool:
+        """Remove what the marks list, and the marks, where there is nothing else; whether that was so."""
+        own: set[Path] = set()
+        for mark in (self.path / _DONE).glob("*"):
+            if self.damaged(mark.name) == []:
+                own |= {mark, *self._listed(mark.name)}
+        places = [self.path / name for name in (_DONE, _CHUNKS, *stores)]
+        there = {item for place in places for item in place.rglob("*") if item.is_symlink() or not item.is_dir()}
+        if there - own:
+            return False
+        for file in there:
+            file.unlink()
+            for folder in file.relative_to(self.path).parents[:-1]:
+                with contextlib.suppress(OSError):
+                    (self.path / folder).rmdir()
+        return True
 
     def _complete(self) -> int:
         """How many chunks are marked as complete."""
@@ -120,38 +139,44 @@ class StudyFolder:
     def _kept(self, path: Path) -> str:
         return f"{self._complete()} complete chunks are kept in {path}: run the same command again to go on"
 
-    def _clear_unfinished(self, stores: Sequence[str]) -> None:
-        """Take away what killed runs left half-written: our own names alone, and zarr's in its stores."""
+    def _clear_unfinished(self) -> None:
+        """Take away what killed runs left half-written: our own names alone."""
         for place in (self.path, self.path / _DONE, self.path / _CHUNKS):
             for left in place.glob(TEMPORARY):
                 if _OWN_UNFINISHED.fullmatch(left.name):
-                    _remove(left)
-        for store in stores:
-            for left in (self.path / store).rglob("*.partial"):
-                if _ZARR_UNFINISHED.fullmatch(left.name):
                     _remove(left)
 
     # ---- parts ----------------------------------------------------------------------------------------------------
 
     def is_done(self, chunk: int) -> bool:
         """Whether the chunk is complete, and every file of it as it was written."""
-        return self.damaged(f"{chunk:06d}") == []
+        return self.damaged(part_of(chunk)) == []
 
     def mark(self, part: str, files: Iterable[Path]) -> None:
-        """Say that a part, which is these files, is complete. Raises OSError."""
-        lines = [f"{_digest(file)}  {file.relative_to(self.path).as_posix()}\n" for file in sorted(files)]
+        """Say that a part, which is these files, is complete. Raises UserError and OSError."""
+        lines = [f"{digest(file)}  {file.relative_to(self.path).as_posix()}\n" for file in sorted(files)]
         target = self.path / _DONE / part
         target.parent.mkdir(exist_ok=True)
+        if os.path.lexists(target):
+            # Only a plain file is a mark that was damaged.
+            digest(target)
         write_whole(target, "".join(lines).encode())
 
     def damaged(self, part: str) -> list[Path] | None:
         """The files of a part that are not as they were when it was complete; None where it never was."""
+        listed = self._listed(part)
+        return [file for file, wanted in listed.items() if _digest_or_none(file) != wanted] if listed else None
+
+    def _listed(self, part: str) -> dict[Path, str]:
+        """The files of a part, each with its digest, as its mark lists them; none where the mark is none."""
         try:
-            lines = (self.path / _DONE / part).read_text(encoding="utf-8").splitlines()
-            wanted = [(self.path / name, digest) for digest, name in (line.split("  ", 1) for line in lines)]
-            return [file for file, digest in wanted if _digest(file) != digest] if wanted else None
-        except (OSError, ValueError):
-            return None
+            text = content(self.path / _DONE / part, most=LARGEST_TEXT_BYTES, expected="a list of digests").decode()
+            pairs = [line.split("  ", 1) for line in text.splitlines()]
+            listed = {self.path / name: wanted for wanted, name in pairs}
+        except (OSError, ValueError, UserError):
+            return {}
+        inside = all(".." not in file.parts and file.is_relative_to(self.path) for file in listed)
+        return listed if inside else {}
 
     @contextlib.contextmanager
     def workspace(self) -> Iterator[Path]:
@@ -163,40 +188,69 @@ class StudyFolder:
         finally:
             shutil.rmtree(path, ignore_errors=True)
 
+    def copied(self, part: str, beside: Path) -> list[Path]:
+        """Copy the files of a part into a workspace; where the copies are. Raises UserError and OSError."""
+        copies = []
+        for file, wanted in self._listed(part).items():
+            copy = beside / file.relative_to(self.path)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, copy, follow_symlinks=False)
+            if digest(copy) != wanted:
+                raise UserError(f"{file}: is not as this study wrote it; delete it and run the same command again")
+            copies.append(copy)
+        return copies
+
+    def place(self, part: str, beside: Path) -> list[Path]:
+        """Give every file of a workspace, which are those of a part, its place in the folder; where they are now.
+
+        Raises UserError where something is there that the study did not write, and OSError.
+        """
+        files = [file for file in sorted(beside.rglob("*")) if file.is_file()]
+        places = [self.path / file.relative_to(beside) for file in files]
+        listed = self._listed(part)
+        for file, place in zip(files, places, strict=True):
+            if os.path.lexists(place) and digest(place) not in (digest(file), _EMPTY) and place not in listed:
+                raise UserError(f"{place}: was not written by this study; move it away and run the same command again")
+        for file, place in zip(files, places, strict=True):
+            place.parent.mkdir(parents=True, exist_ok=True)
+            os.replace(file, place)
+        return places
+
     # ---- chunks ---------------------------------------------------------------------------------------------------
 
     def save(self, chunk: int, arrays: Mapping[str, np.ndarray[Any, Any]]) -> list[Path]:
-        """Write a chunk's arrays as .npz, whole or not at all; the files that it is made of. Raises OSError."""
+        """Write a chunk's arrays as .npz, whole or not at all; the files that it is made of.
+
+        Raises UserError where somebody's file is in its place, and OSError.
+        """
         out = io.BytesIO()
         # Its own argument, allow_pickle, is newer than the oldest numpy, which would store it as an array.
         np.savez(out, **arrays)  # type: ignore[arg-type]
-        target = self._chunk(chunk)
-        target.parent.mkdir(exist_ok=True)
-        write_whole(target, out.getvalue())
-        return [target]
+        with self.workspace() as beside:
+            (beside / _CHUNKS).mkdir()
+            write_whole(beside / _CHUNKS / f"{part_of(chunk)}.npz", out.getvalue())
+            return self.place(part_of(chunk), beside)
 
-    def load(self, chunks: int) -> dict[str, np.ndarray[Any, Any]]:
-        """The arrays of all chunks, one after the other along their first axis. Raises UserError."""
-        parts = [self._arrays(chunk) for chunk in range(chunks)]
-        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    def load(self, chunks: int, required: Collection[str] = ()) -> dict[str, np.ndarray[Any, Any]]:
+        """The arrays of all chunks, one after the other along their first axis; these names must be among them.
 
-    def _arrays(self, chunk: int) -> dict[str, np.ndarray[Any, Any]]:
-        try:
-            with np.load(self._chunk(chunk), allow_pickle=False) as content:
-                return {name: content[name] for name in content.files}
-        except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
-            raise UserError(
-                f"{self._chunk(chunk)}: cannot be read ({type(error).__name__}); run the same command again to compute "
-                "it anew"
-            ) from None
-
-    def _chunk(self, chunk: int) -> Path:
-        return self.path / _CHUNKS / f"{chunk:06d}.npz"
+        Raises UserError.
+        """
+        files = [self.path / _CHUNKS / f"{part_of(chunk)}.npz" for chunk in range(chunks)]
+        return joined(files, required)
 
 
-def _digest(file: Path) -> str:
-    with file.open("rb") as content:
-        return hashlib.file_digest(content, "sha256").hexdigest()
+def part_of(chunk: int) -> str:
+    """The name of a chunk among the parts of a study."""
+    return f"{chunk:06d}"
+
+
+def _digest_or_none(file: Path) -> str | None:
+    """The SHA-256 of a plain file; None where there is none. Raises UserError where there is something else."""
+    try:
+        return digest(file)
+    except OSError:
+        return None
 
 
 def _remove(path: Path) -> None:

@@ -56,7 +56,7 @@ FILES: tuple[Mutation, ...] = (
         ),
         (
             "outputs.files_of_others_are_replaced",
-            "                _check_own(path, self.formats[path])",
+            "                _check_own(path, self.formats[path], self.unfinished.get(path, ()))",
             "                pass",
             "::test_a_file_of_somebody_else_stays[simulate--o]",
         ),

@@ -21,8 +21,8 @@ STUDIES: tuple[Mutation, ...] = (
     Mutation(
         "study.damaged_chunk",
         _FOLDER,
-        "if _digest(file) != digest] if wanted else None",
-        "if False] if wanted else None",
+        "if _digest_or_none(file) != wanted] if",
+        "if False] if",
         (f"{_STUDY_TESTS}::test_a_damaged_chunk_is_computed_anew",),
     ),
     Mutation(
@@ -42,9 +42,44 @@ STUDIES: tuple[Mutation, ...] = (
     Mutation(
         "study.nothing_complete",
         _FOLDER,
-        "if found == asked or self._complete():",
+        "if self._complete() or not self._taken_back(stores):",
         "if True:",
-        (f"{_STUDY_TESTS}::test_other_settings_are_taken_up_as_long_as_nothing_is_complete",),
+        (f"{_STUDY_TESTS}::test_other_settings_are_taken_up_as_long_as_nothing_is_there",),
+    ),
+    Mutation(
+        "study.listed_alone",
+        _FOLDER,
+        "        if there - own:\n",
+        "        if False:\n",
+        (f"{_STUDY_TESTS}::test_nothing_that_no_mark_lists_goes_with_other_settings",),
+    ),
+    Mutation(
+        "study.foreign_chunk",
+        _FOLDER,
+        "and place not in listed:",
+        "and False:",
+        (f"{_STUDY_TESTS}::test_lost_marks_are_made_again_and_a_foreign_file_is_not_replaced",),
+    ),
+    Mutation(
+        "study.inside",
+        _FOLDER,
+        "return listed if inside else {}",
+        "return listed",
+        (f"{_STUDY_TESTS}::test_a_mark_that_leads_out_of_the_folder_is_none",),
+    ),
+    Mutation(
+        "study.plain_files",
+        "twin/regular_file.py",
+        'getattr(os, "O_NOFOLLOW", 0) | ',
+        "",
+        (f"{_STUDY_TESTS}::test_what_is_no_plain_file_is_neither_read_nor_followed",),
+    ),
+    Mutation(
+        "study.forged_chunk",
+        "scenarios/studies/chunk_files.py",
+        "not part.keys() >= set(required) or not",
+        "not",
+        (f"{_STUDY_TESTS}::test_a_chunk_that_is_none_while_it_is_used_is_one_line",),
     ),
     Mutation(
         "design.mountable",

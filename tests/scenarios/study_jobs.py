@@ -13,6 +13,7 @@ import numpy as np
 
 from scenarios.commands.interrupt import INTERRUPTED, Interrupted
 from scenarios.studies.engine import run_study
+from scenarios.studies.identity import Identity
 from scenarios.studies.job import Job
 from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder
@@ -64,9 +65,14 @@ def study(path: Path, *, seed: int = 0, pause_s: float = 0.0, machines: Machines
 
 def run(job: Job, path: Path, *, seed: int = 0, chunks: int = CHUNKS, machines: Machines | None = None) -> StudyFolder:
     """Begin or go on with a study in a folder."""
-    with StudyFolder.opened(path, study="draws", seed=seed, settings={"chunks": chunks}) as folder:
+    with StudyFolder.opened(path, identity(seed=seed, chunks=chunks)) as folder:
         run_study(job, folder, chunks=chunks, items=chunks, unit="chunks", machines=machines or Machines(workers=1))
     return folder
+
+
+def identity(*, seed: int = 0, chunks: int = CHUNKS, study: str = "draws") -> Identity:
+    """What such a study is."""
+    return Identity(study=study, seed=seed, settings={"chunks": chunks}, options={"chunks": "--chunks"})
 
 
 def content(path: Path) -> dict[str, bytes]:

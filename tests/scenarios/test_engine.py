@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,11 +14,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios.studies import progress, study_folder
+from scenarios.studies import identity as identities
+from scenarios.studies import progress
 from scenarios.studies.machines import Machines
 from scenarios.studies.progress import Course
 from scenarios.studies.study_folder import StudyFolder
-from tests.scenarios.study_jobs import CHUNKS, Draws, FillsDisk, KillsItsWorker, content, run, study
+from tests.scenarios.study_jobs import CHUNKS, Draws, FillsDisk, KillsItsWorker, content, identity, run, study
 from twin.errors import UserError
 
 ROOT = Path(__file__).parents[2]
@@ -47,7 +49,7 @@ def test_only_missing_chunks_are_done_again(tmp_path: Path) -> None:
     folder = study(tmp_path / "s")
     before = content(tmp_path / "s")
     (folder.path / "done" / "000004").unlink()
-    (folder.path / "chunks" / "000004.npz").write_bytes(b"half a chunk")
+    (folder.path / "chunks" / "000004.npz").unlink()
     untouched = (folder.path / "chunks" / "000003.npz").stat().st_mtime_ns
     study(tmp_path / "s")
     assert content(tmp_path / "s") == before
@@ -59,17 +61,18 @@ def test_another_seed_version_or_setting_is_refused_and_nothing_lost(
 ) -> None:
     study(tmp_path / "s")
     before = content(tmp_path / "s")
-    with pytest.raises(UserError, match="begun with seed 0, this run has 5"):
+    with pytest.raises(UserError, match="begun with --seed 0, now 5; give another folder"):
         study(tmp_path / "s", seed=5)
-    with pytest.raises(UserError, match="begun with chunks 12, this run has 13"):
+    with pytest.raises(UserError, match="begun with --chunks 12, now 13; give"):
         run(Draws(0), tmp_path / "s", chunks=13)
     with (
-        pytest.raises(UserError, match="begun with study"),
-        StudyFolder.opened(tmp_path / "s", study="others", seed=0, settings={"chunks": CHUNKS}),
+        pytest.raises(UserError, match="begun with the study draws, now others;"),
+        StudyFolder.opened(tmp_path / "s", identity(study="others")),
     ):
         pass
-    monkeypatch.setattr(study_folder, "version", lambda: "99.0")
-    with pytest.raises(UserError, match=r'this run has "99.0"'):
+    here = identities.version()
+    monkeypatch.setattr(identities, "version", lambda: "99.0")
+    with pytest.raises(UserError, match=f"begun with halltwin {re.escape(here)}, now 99.0;"):
         study(tmp_path / "s")
     assert content(tmp_path / "s") == before
 

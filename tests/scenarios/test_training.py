@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -77,6 +78,15 @@ def test_the_store_is_the_same_for_one_and_two_workers_and_a_cluster(tmp_path: P
         generate(job, tmp_path / name, where)
     assert content(tmp_path / "one") == content(tmp_path / "two") == content(tmp_path / "dask")
     (tmp_path / "one" / "done" / "000002").unlink()
+    generate(job, tmp_path / "one", Machines(workers=1))
+    assert content(tmp_path / "one") == content(tmp_path / "two")
+
+    # Marks that are lost are made again; with another seed nobody knows whose the sweeps are.
+    shutil.rmtree(tmp_path / "one" / "done")
+    before = content(tmp_path / "one")
+    with pytest.raises(UserError, match="begun with --seed 0, now 9; give another folder"):
+        generate(replace(job, recipe=replace(job.recipe, seed=9)), tmp_path / "one", Machines(workers=1))
+    assert content(tmp_path / "one") == before
     generate(job, tmp_path / "one", Machines(workers=1))
     assert content(tmp_path / "one") == content(tmp_path / "two")
 

@@ -7,12 +7,31 @@ from typing import cast, get_args
 
 from scenarios.commands.intervals import interval, values, with_units
 from scenarios.commands.once import check_once
-from scenarios.studies.design.space import MOST_DESIGNS, TOLERANCES, Sampling, Space
+from scenarios.studies.design.space import AXES, MOST_DESIGNS, TOLERANCES, Sampling, Space
 from scenarios.studies.design.study import Demand
 from twin.errors import UserError
 from twin.known_names import nearest
 from twin.limits import require_within
 from twin.magnet.magnet import Shape
+
+OPTIONS = {
+    "demand.max_error_deg": "--max-error",
+    "demand.window_mT": "--window",
+    "demand.temperature_c": "--temperature",
+    "demand.tolerance": "--tolerance",
+    "demand.mountings": "--mountings",
+    "demand.min_yield": "--min-yield",
+    **{f"space.axes.{name}": f"--{name.removesuffix(f'_{unit}').replace('_', '-')}" for name, unit in AXES.items()},
+    "space.grades": "--grade",
+    "space.shape": "--shape",
+    "space.bore_mm": "--bore",
+    "space.sampling": "--sampling",
+    "space.count": "--count",
+    # The sampling's seed is the study's.
+    "space.seed": "--seed",
+    "twin": "the twin's",
+}
+"""What the settings of a study are called by who gives them."""
 
 
 def space_of(

@@ -16,9 +16,11 @@ from diagnosis.report.provenance import Provenance
 from scenarios.commands.outputs import JSON, PICTURE, TABLE, TOML, OutputFiles, json_text
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from scenarios.studies.design.check import Check, check_design, design_twin
+from scenarios.studies.design.options import OPTIONS
 from scenarios.studies.design.space import AXES, MOST_DESIGNS, Space, require_mountable
 from scenarios.studies.design.study import Demand, DesignStudy, feasible, ranking
 from scenarios.studies.engine import run_study
+from scenarios.studies.identity import Identity
 from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder
 from twin.angles import Array, IntArray
@@ -31,6 +33,11 @@ from twin.presets import read_twin_or_preset
 
 Figures = dict[str, np.ndarray[Any, Any]]
 _CHUNK = 16
+COLUMNS = (
+    *("design", "grade", "field_mT", "field_low_mT", "field_high_mT", "margin_mT", "error_deg", "error_p95_deg"),
+    *("stray_error_deg", "resolution_bits", "yield"),
+)
+"""What is known of every design, besides the error of each cause."""
 
 
 def study_of(twin: str, space: Space, demand: Demand, *, seed: int) -> DesignStudy:
@@ -61,14 +68,15 @@ def folder_of(study: DesignStudy, output: Path) -> Iterator[StudyFolder]:
         "demand": _plain(asdict(study.demand)),
         "chunk": study.chunk,
     }
-    with StudyFolder.opened(output, study="design", seed=study.seed, settings=settings) as folder:
+    identity = Identity(study="design", seed=study.seed, settings=settings, options=OPTIONS)
+    with StudyFolder.opened(output, identity) as folder:
         yield folder
 
 
 def explore(study: DesignStudy, folder: StudyFolder, machines: Machines) -> Figures:
     """All designs' figures, each (designs, ...), computed or read back from a study begun before."""
     run_study(study, folder, chunks=study.chunks, items=study.space.designs, unit="designs", machines=machines)
-    return folder.load(study.chunks)
+    return folder.load(study.chunks, COLUMNS)
 
 
 def _plain(value: Any) -> Any:

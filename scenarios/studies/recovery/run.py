@@ -14,6 +14,7 @@ from diagnosis.report.provenance import Provenance
 from scenarios.commands.once import check_once
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.studies.engine import run_study
+from scenarios.studies.identity import Identity
 from scenarios.studies.machines import Machines
 from scenarios.studies.recovery.cells import BASELINE, CLEAN, PARAMETERS, Cell, Grid
 from scenarios.studies.study_folder import StudyFolder
@@ -25,6 +26,18 @@ from twin.known_names import nearest
 from twin.limits import require_within
 
 Summary = list[dict[str, Any]]
+COLUMNS = ("cell", "truth", "found", "low", "high", "bound", "named", "extra")
+"""What each chunk holds, a row a repeat."""
+OPTIONS = {
+    "causes": "--cause",
+    "noises_deg": "--noise",
+    "points": "--points",
+    "turns": "--turns",
+    "amplitudes_deg": "--amplitude",
+    "fits": "--fits",
+    "sweeps": "--sweeps",
+}
+"""What the settings are called by who gives them."""
 
 
 def check(grid: Grid) -> None:
@@ -53,7 +66,8 @@ def folder_of(grid: Grid, output: Path) -> Iterator[StudyFolder]:
     """The study's folder, begun or gone on with, for this command alone. Raises UserError."""
     check(grid)
     settings = {name: list(v) if isinstance(v, tuple) else v for name, v in asdict(grid).items() if name != "seed"}
-    with StudyFolder.opened(output, study="recovery", seed=grid.seed, settings=settings) as folder:
+    identity = Identity(study="recovery", seed=grid.seed, settings=settings, options=OPTIONS)
+    with StudyFolder.opened(output, identity) as folder:
         yield folder
 
 
@@ -61,7 +75,7 @@ def recover(grid: Grid, folder: StudyFolder, machines: Machines) -> Summary:
     """Run the study, or finish one that was begun; one entry a cell."""
     cells = grid.cells()
     run_study(grid, folder, chunks=len(cells), items=len(cells), unit="cells", machines=machines)
-    rows = folder.load(len(cells))
+    rows = folder.load(len(cells), COLUMNS)
     return [summary(cell, {name: v[rows["cell"] == k] for name, v in rows.items()}) for k, cell in enumerate(cells)]
 
 

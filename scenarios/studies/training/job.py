@@ -64,6 +64,25 @@ class Training:
         return write_region(folder, chunk, self.numbers(chunk), self.arrays(chunk))
 
 
+OPTIONS = {
+    "protocol.points": "--points",
+    "protocol.turns": "--turns",
+    "protocol.both_directions": "--both-directions",
+    "protocol.speeds_rpm": "--speed-rpm",
+    "protocol.temperatures_c": "--temperatures",
+    "ranges.strength_deg": "--strength",
+    "ranges.noise_deg": "--noise",
+    "ranges.most": "--most-causes",
+    "sweeps": "--sweeps",
+    "chunk": "--chunk",
+    "channels": "--channels",
+    "twin": "the twin's",
+    # Which causes can be drawn depends on what the shaft does, so this one comes last.
+    "causes": "--cause",
+}
+"""What the settings are called by who gives them."""
+
+
 def settings_of(job: Training) -> dict[str, Any]:
     """Everything that the store's content depends on, as plain values."""
     recipe = job.recipe

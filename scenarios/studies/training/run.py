@@ -12,9 +12,10 @@ import tomli_w
 
 from diagnosis.report.provenance import version
 from scenarios.studies.engine import run_study
+from scenarios.studies.identity import Identity
 from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder
-from scenarios.studies.training.job import Training, settings_of
+from scenarios.studies.training.job import OPTIONS, Training, settings_of
 from scenarios.studies.training.recipe import Recipe, parameter_names
 from scenarios.studies.training.store import STORE, create, tools
 from twin.limits import require_within
@@ -28,9 +29,8 @@ def generate(job: Training, output: Path, machines: Machines) -> None:
     tools()
     settings = settings_of(job)
     one = job.arrays_of(range(1))
-    with StudyFolder.opened(
-        output, study="training", seed=job.recipe.seed, settings=settings, stores=(STORE,)
-    ) as folder:
+    identity = Identity(study="training", seed=job.recipe.seed, settings=settings, options=OPTIONS)
+    with StudyFolder.opened(output, identity, stores=(STORE,)) as folder:
         create(
             folder,
             one,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Mapping
 from importlib import import_module
@@ -11,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.studies.study_folder import StudyFolder
+from scenarios.studies.study_folder import StudyFolder, part_of
 from twin.errors import UserError
 
 Arrays = Mapping[str, np.ndarray[Any, Any]]
@@ -78,34 +77,29 @@ def create(
             # zarr warns that the collected metadata, which one request reads, is younger than the format.
             warnings.simplefilter("ignore")
             dataset.to_zarr(beside / STORE, compute=False, encoding=encoding)
-            folder.mark(_BARE, _moved(beside, folder.path))
+            folder.mark(_BARE, folder.place(_BARE, beside))
     except OSError as error:
         raise UserError(
             f"{folder.path / STORE}: cannot be written ({error.strerror}); make room and run the same command again"
         ) from None
 
 
-def _moved(source: Path, target: Path) -> list[Path]:
-    """Give every file below a folder its place below another; where they are now."""
-    files = [file for file in sorted(source.rglob("*")) if file.is_file()]
-    places = [target / file.relative_to(source) for file in files]
-    for file, place in zip(files, places, strict=True):
-        place.parent.mkdir(parents=True, exist_ok=True)
-        os.replace(file, place)
-    return places
-
-
 def write_region(folder: StudyFolder, chunk: int, numbers: range, arrays: Arrays) -> list[Path]:
-    """Write the sweeps with these numbers, which are one chunk of every variable; its files. Raises OSError."""
+    """Write the sweeps with these numbers, which are one chunk of every variable; its files.
+
+    Raises UserError where somebody's file is in the place of one, and OSError.
+    """
     xr, _ = tools()
-    store = folder.path / STORE
     dataset = xr.Dataset({name: (_DIMS[name], values) for name, values in arrays.items()})
-    with warnings.catch_warnings():
+    with folder.workspace() as beside, warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        dataset.to_zarr(store, region={"sweep": slice(numbers.start, numbers.stop)})
-    # A chunk of nothing but zeros has no file.
-    places = [store / name / "c" / str(chunk) for name in arrays]
-    return [file for place in places for file in (place, *place.rglob("*")) if file.is_file()]
+        # zarr writes into a store as it is without its sweeps, and the files move from there.
+        bare = folder.copied(_BARE, beside)
+        dataset.to_zarr(beside / STORE, region={"sweep": slice(numbers.start, numbers.stop)})
+        for file in bare:
+            file.unlink()
+        # A chunk of nothing but zeros has no file.
+        return folder.place(part_of(chunk), beside)
 
 
 def tools() -> tuple[Any, Any]:

@@ -33,6 +33,10 @@ class BeforeAfter:
         before, after = (float(np.degrees(np.max(np.abs(part)))) for part in (self.before_rad, self.after_rad))
         return before, after
 
+    def among(self, rows: NDArray[np.bool_]) -> BeforeAfter:
+        """The same of some of the readings (n,)."""
+        return BeforeAfter(self.before_rad[rows], self.after_rad[rows])
+
     def per_turn(self, turn: Array) -> BeforeAfter:
         """The same with each turn's own zero taken out: for references that find their zero anew at every turn."""
         return BeforeAfter(_without_zeros(self.before_rad, turn), _without_zeros(self.after_rad, turn))

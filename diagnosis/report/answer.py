@@ -17,6 +17,7 @@ from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
 from diagnosis.report.provenance import Provenance
+from diagnosis.report.row_counts import MOST_LISTED
 from diagnosis.report.senses import senses
 from twin.angles import wrap_deg
 from twin.baseline import FACTORS
@@ -24,8 +25,6 @@ from twin.catalogue import find
 from twin.files import to_dict
 
 SCHEMA = "halltwin.explain/1"
-MOST_LISTED = 100
-"""Rows that are listed by their number; how many more there are is said beside the list."""
 _T95 = 1.959964
 Deviations = dict[tuple[str, str], float]
 """Standard deviation of a parameter, by effect and parameter."""

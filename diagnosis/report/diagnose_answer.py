@@ -13,11 +13,10 @@ from diagnosis.factors.air_gaps import Law
 from diagnosis.factors.findings import Findings
 from diagnosis.factors.mechanical import mechanical
 from diagnosis.report.provenance import Provenance
+from diagnosis.report.row_counts import counts_of
 from twin.baseline import FACTORS
 
 SCHEMA = "halltwin.diagnose/1"
-MOST_LISTED = 100
-"""Unusable rows that are listed by their number; how many more there are is said beside the list."""
 
 
 def to_json(found: Sequence[Findings], over_gaps: Sequence[Law], made: Provenance) -> dict[str, Any]:
@@ -35,12 +34,7 @@ def one_sweep(found: Findings) -> dict[str, Any]:
     fit = found.fit
     answer: dict[str, Any] = {
         "sweep": found.sweep.name,
-        "rows": found.sweep.rows,
-        "rejected": len(found.sweep.rejected),
-        "rejected_rows": {str(row): why for row, why in list(found.sweep.rejected.items())[:MOST_LISTED]},
-        "rejected_rows_left_out": max(len(found.sweep.rejected) - MOST_LISTED, 0),
-        "glitch_rows": list(found.glitch_rows),
-        "fitted": len(found.sweep) - len(found.glitch_rows),
+        **counts_of(found.sweep, found.glitch_rows),
         "parameters": parameters(found),
         "senses": {
             "sensor": fit.senses.sensor,

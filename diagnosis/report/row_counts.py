@@ -1,15 +1,32 @@
 """How many readings there are, and what became of each: unusable, left out of the fits, or fitted; the counts add up.
 
-Each function takes the answer (the content of the JSON) and nothing else, so that all commands say the same.
+What is said is made of the content of the JSON and of nothing else, so that all commands say the same.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+if TYPE_CHECKING:
+    from twin.sweep import Sweep
+
+MOST_LISTED = 100
+"""Rows that the JSON lists by their number; how many more there are is said beside the list."""
 _MOST_ROWS = 5
 _MOST_SWEEPS = 5
+
+
+def counts_of(sweep: Sweep, glitch_rows: Sequence[int]) -> dict[str, Any]:
+    """The counts of a sweep of which these rows, by their numbers, were set aside as gross errors, as plain values."""
+    return {
+        "rows": sweep.rows,
+        "rejected": len(sweep.rejected),
+        "rejected_rows": {str(row): why for row, why in list(sweep.rejected.items())[:MOST_LISTED]},
+        "rejected_rows_left_out": max(len(sweep.rejected) - MOST_LISTED, 0),
+        "glitch_rows": list(glitch_rows),
+        "fitted": len(sweep) - len(glitch_rows),
+    }
 
 
 def explained_rows(sweep: Mapping[str, Any]) -> str:

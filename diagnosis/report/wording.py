@@ -12,6 +12,8 @@ from typing import Any
 from twin.catalogue import CATALOGUE
 
 _MOST_DECIMALS = 7
+_FIFTY = 50
+"""Readings of which an RMS is known to a tenth."""
 _ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT|mm|Hz|s)$")
 _NUMBERED = re.compile(r"^(?P<name>.*?)(?:_(?P<number>\d+))?$")
 
@@ -48,6 +50,19 @@ def half_width(parameter: Mapping[str, Any]) -> float | None:
     return None if low is None or high is None or math.isinf(high - low) else 0.5 * (high - low)
 
 
+def decimals_of(uncertainty: float) -> int:
+    """Decimals to which a figure of this uncertainty is told: to two digits of it."""
+    if not math.isfinite(uncertainty) or uncertainty <= 0.0:
+        return _MOST_DECIMALS
+    # Rounded first: 0.0999999 is to count as 0.1.
+    return max(0, 1 - math.floor(math.log10(float(f"{uncertainty:.1e}"))))
+
+
+def rms_shown(rms: float, readings: int) -> str:
+    """The RMS of so many readings, known to the share 1/sqrt(2 n): three digits from fifty readings on, else two."""
+    return plain(rms, 3 if readings >= _FIFTY else 2)
+
+
 def figure(parameter: Mapping[str, Any], scale: float = 1.0) -> tuple[str, str]:
     """Value and half width ("" where the value is exact) of a parameter, to two digits of the half width."""
     value, half = parameter["value"], half_width(parameter)
@@ -58,8 +73,7 @@ def figure(parameter: Mapping[str, Any], scale: float = 1.0) -> tuple[str, str]:
     value, half = value * scale, half * scale
     if half <= 0.0:
         return plain(value, 4), ""
-    # Rounded first: 0.0999999 is to count as 0.1.
-    decimals = max(0, 1 - math.floor(math.log10(float(f"{half:.1e}"))))
+    decimals = decimals_of(half)
     if decimals <= _MOST_DECIMALS:
         return f"{value:.{decimals}f}", f"±{half:.{decimals}f}"
     # A row of zeros says nothing: both with the power of ten of the larger one.

@@ -14,13 +14,16 @@ from diagnosis.correction.calibration import calibrate
 from diagnosis.correction.compensation import Correction, correction_of, to_dict
 from diagnosis.correction.compensation_c import check_prefix, header
 from diagnosis.correction.cross_validation import BeforeAfter, against, cross_validated
-from scenarios.commands.compensate_text import show
+from diagnosis.report.row_counts import counts_of, diagnosed_rows, rejected_words
+from diagnosis.report.wording import plain
+from scenarios.commands.compensate_text import MadeOf, show
 from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
 from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from twin.angles import TAU, Array, radians
 from twin.chain import Chain
+from twin.effect import BoolArray
 from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.limits import require_within
@@ -32,6 +35,7 @@ _FEWEST_POINTS = 4
 _MOST_POINTS = 65536
 _COARSEST_DEG = 10.0
 _NONE = SweepFiles()
+_NO_ROWS: BoolArray = np.zeros(0, dtype=bool)
 
 
 @dataclass(frozen=True)
@@ -78,19 +82,38 @@ def run(
     others = check.read(checked_on)
     sweep = None if is_twin(source) else Sweep.read(source, max_bytes=check.max_bytes)
     check_panels(outputs.plot, len(others.sweeps) if checked_on or sweep is None else 1)
-    if sweep is not None:
-        correction = _of_readings(tolerance_deg, seed)(*_angles(sweep))
-    else:
+    if sweep is None:
         correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)
+        made_of, gross = MadeOf(shown_name(source), "", tolerance_deg), _NO_ROWS
+    else:
+        correction, made_of, gross = _made_of(sweep, shown_name(source), tolerance_deg, seed)
     judged = _judge(correction, sweep, others, tolerance_deg, seed)
-    show(shown_name(source), correction, [row for one in judged for row in _rows(*one, other=bool(checked_on))])
-    for line in others.lines:
+    show(made_of, correction, [row for one in judged for row in _rows(*one, other=bool(checked_on), gross=gross)])
+    for line in (*_rejected(others), *others.lines):
         print(line)
     _write(
         files, outputs, correction, source=shown_name(source), judged=_with_own_zero(judged) if checked_on else judged
     )
     _say_where_worse(judged, fails=bool(checked_on or words))
     others.raise_unusable()
+
+
+def _made_of(sweep: Sweep, name: str, tolerance_deg: float, seed: int) -> tuple[Correction, MadeOf, BoolArray]:
+    """The correction of a sweep, what is told of its readings, and which (n,) were set aside as gross errors."""
+    found = calibrate(*_angles(sweep), rng=np.random.default_rng(seed))
+    gross = found.fit.outliers
+    counts = counts_of(sweep, sweep.numbers[gross].tolist())
+    readings = f"{counts['rows']} readings; {diagnosed_rows(counts)}"
+    # Of the mean of so many readings; and no better than the orders that were left out.
+    known_deg = float(np.degrees(found.fit.sigma_rad)) / np.sqrt(counts["fitted"])
+    made_of = MadeOf(name, readings, max(known_deg, tolerance_deg))
+    return correction_of(found.chain, tolerance_deg=tolerance_deg), made_of, gross
+
+
+def _rejected(others: SweepsRead) -> list[str]:
+    """Which sweeps of ``--check`` hold rows that could not be used."""
+    counts = [(shown_name(one.name), counts_of(one, ())) for one in others.sweeps if one.rejected]
+    return [f"{name}: {told['rows']} readings; {rejected_words(told)}" for name, told in counts]
 
 
 def _files(outputs: Outputs, *, inputs: Sequence[Path]) -> OutputFiles:
@@ -125,11 +148,21 @@ def _judge(
     return [("on held-out blocks", found, sweep)]
 
 
-def _rows(name: str, found: BeforeAfter, tested: Sweep, *, other: bool) -> list[tuple[str, BeforeAfter]]:
-    """As it is and, where the reference may have found its zero anew, with each turn's own zero taken out."""
+def _rows(
+    name: str, found: BeforeAfter, tested: Sweep, *, other: bool, gross: BoolArray
+) -> list[tuple[str, BeforeAfter]]:
+    """As it is and, where the reference may have found its zero anew, with each turn's own zero taken out.
+
+    Of the sweep that the correction is made of also without its gross errors, which all others count.
+    """
     rows, turn = [(name, found)], _turns(tested)
-    if other or np.unique(turn).size > 1:
+    apart = other or np.unique(turn).size > 1
+    if apart:
         rows.append(("  each turn's own zero taken out", found.per_turn(turn)))
+    if not other and gross.any():
+        kept = found.among(~gross)
+        left_out = f"without the {np.count_nonzero(gross)} set aside"
+        rows.append((f"  and {left_out}" if apart else f"  {left_out}", kept.per_turn(turn[~gross]) if apart else kept))
     return rows
 
 
@@ -142,7 +175,7 @@ def _say_where_worse(judged: Sequence[tuple[str, BeforeAfter, Sweep]], *, fails:
     for name, found, tested in judged:
         before, after = found.per_turn(_turns(tested)).rms_deg
         if after > before:
-            larger.append(f"{name} ({before:.4f} -> {after:.4f} deg RMS, own zero taken out)")
+            larger.append(f"{name} ({plain(before, 4)} -> {plain(after, 4)} deg RMS, own zero taken out)")
     if larger:
         said = f"the correction makes the error larger {', '.join(larger)}; do not load it"
         if fails:

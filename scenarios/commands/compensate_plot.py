@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.correction.cross_validation import BeforeAfter
 from diagnosis.report.plotting import style
+from diagnosis.report.wording import rms_shown
 from twin.angles import Array
 from twin.sweep import Sweep
 
@@ -27,9 +28,9 @@ def before_after_figure(judged: Sequence[tuple[str, BeforeAfter, Sweep]]) -> Any
         way = sweep.motion().direction
         for errors, colour, when in ((before, _BEFORE, "before"), (after, _AFTER, "after")):
             _draw(axis, shaft, errors, way, colour=colour, name=when)
-        rms, rms_after = found.rms_deg
+        rms, rms_after = (rms_shown(value, shaft.size) for value in found.rms_deg)
         words = name if sweep.name in name else f"{sweep.name}, {name}"
-        axis.set_title(f"{words}: RMS {rms:.3f} to {rms_after:.3f} deg", fontsize=9)
+        axis.set_title(f"{words}: RMS {rms} to {rms_after} deg", fontsize=9)
         axis.set(xlim=(0, 360), xticks=range(0, 361, 90), xlabel="shaft angle [deg]", ylabel="angle error [deg]")
         axis.grid(alpha=0.25)
     handles = {label: mark for axis in axes.flat for mark, label in zip(*axis.get_legend_handles_labels(), strict=True)}

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from diagnosis.report.plotting import style
+from diagnosis.report.wording import plain
 from scenarios.commands.outputs import PICTURE, TABLE, OutputFiles
-from twin.hall.spinning_current import PHASES, Plate, Spinning, corner_of, density, residual_offset_mT, spin
+from twin.hall.spinning_current import PHASES, Plate, Spinning, corner_and_error, density, residual_offset_mT, spin
 from twin.sweep_file import csv_text
 
 SHOWN = 5
@@ -38,19 +40,29 @@ def run(folder: Path, *, seed: int, force: bool = False, field_mT: float = 5.0) 
         name: density(values, plate.cycle_Hz)
         for name, values in (("without spinning", noisy.unspun_mT), ("with spinning", noisy.output_mT))
     }
-    corners = {name: corner_of(*spectrum) for name, spectrum in spectra.items()}
+    corners = {name: _stated(*corner_and_error(*spectrum), spectrum[0]) for name, spectrum in spectra.items()}
     figure = _figure(plate, traced, spectra, offsets=(before, after), corners=corners)
     trace = csv_text({name: values.ravel() for name, values in samples.items()})
     files.write({csv: trace, png: figure, svg: figure})
-    print(f"offset before {before:.4g} mT, after {after:.4g} mT: {abs(before / after):.0f} times smaller")
+    told = [_two_digits(value) for value in (before, after, abs(before / after))]
+    print(f"offset before {told[0]} mT, after {told[1]} mT: {told[2]} times smaller")
     for name, corner in corners.items():
-        print(f"1/f corner {name}: {_stated(corner, spectra[name][0])}")
+        print(f"1/f corner {name}: {corner}")
 
 
-def _stated(corner_Hz: float, frequency_Hz: np.ndarray) -> str:
-    """A corner below the lowest frequency of the spectrum is known to be below it, no more."""
+def _two_digits(value: float) -> str:
+    """A figure that follows from the plate's, which are typical assumptions of one or two digits."""
+    return plain(float(f"{value:.2g}"), 2)
+
+
+def _stated(corner_Hz: float, error_Hz: float, frequency_Hz: np.ndarray) -> str:
+    """A corner with half of its 95 % interval; below the lowest frequency of the spectrum it is only known to be."""
     lowest = frequency_Hz[0]
-    return f"below {lowest:.2g} Hz" if corner_Hz < lowest else f"{corner_Hz:.3g} Hz"
+    if corner_Hz < lowest:
+        return f"below {_two_digits(lowest)} Hz"
+    half = 1.96 * error_Hz
+    digits = 1 - math.floor(math.log10(half))
+    return f"{round(corner_Hz, digits):g} ±{round(half, digits):g} Hz"
 
 
 def _figure(
@@ -59,7 +71,7 @@ def _figure(
     spectra: dict[str, tuple[np.ndarray, np.ndarray]],
     *,
     offsets: tuple[float, float],
-    corners: dict[str, float],
+    corners: dict[str, str],
 ) -> Any:
     plt = style()
     figure, axes = plt.subplots(4, 1, figsize=(8.0, 11.0), layout="constrained")
@@ -71,11 +83,11 @@ def _figure(
     for axis in axes[:2]:
         axis.set(xlabel="time [us]", ylabel="voltage [uV]")
     cycle = 1e6 * traced.time_s.mean(axis=(1, 2))
-    axes[2].plot(cycle, traced.unspun_mT, "o-", label=f"bias left in phase 0: offset {offsets[0]:.3g} mT")
-    axes[2].plot(cycle, traced.output_mT, "o-", label=f"mean over a cycle: offset {offsets[1]:.3g} mT")
+    axes[2].plot(cycle, traced.unspun_mT, "o-", label=f"bias left in phase 0: offset {_two_digits(offsets[0])} mT")
+    axes[2].plot(cycle, traced.output_mT, "o-", label=f"mean over a cycle: offset {_two_digits(offsets[1])} mT")
     axes[2].set(xlabel="time [us]", ylabel="output [mT]", title="Offset before and after spinning")
     for name, (frequency, power) in spectra.items():
-        label = f"{name}: corner {_stated(corners[name], frequency)}"
+        label = f"{name}: corner {corners[name]}"
         axes[3].loglog(frequency, 1e6 * np.sqrt(power), linewidth=0.8, label=label)
     axes[3].set(xlabel="frequency [Hz]", ylabel="noise [nT/sqrt(Hz)]", title="Noise of the output")
     for axis in axes:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from twin.hall.spinning_current import Plate, corner_of, density, flicker, residual_offset_mT, spin
+from twin.hall.spinning_current import Plate, corner_and_error, corner_of, density, flicker, residual_offset_mT, spin
 from twin.limits import OutOfRangeError
 
 
@@ -61,6 +61,18 @@ def test_noise_has_the_stated_density() -> None:
     # 255 half-overlapping segments: about 6 % a line; the mean of the ratio over 900 lines to 1 %.
     assert np.mean(power / stated) == pytest.approx(1.0, abs=0.02)
     assert corner_of(frequency, power) == pytest.approx(plate.corner_Hz, rel=0.05)
+
+
+def test_a_corner_scatters_as_its_error_says() -> None:
+    plate, rate = Plate(), 2e5
+    drawn = [
+        corner_and_error(*density(flicker(np.random.default_rng(seed), 1 << 15, rate, plate), rate))
+        for seed in range(40)
+    ]
+    corners, errors = np.array(drawn).T
+    # The scatter of forty is known to 1/sqrt(80), 11 %: two and a half of these.
+    assert np.std(corners, ddof=1) == pytest.approx(errors.mean(), rel=0.28)
+    assert abs(corners.mean() - plate.corner_Hz) < 3.0 * errors.mean() / np.sqrt(len(corners))
 
 
 def test_spinning_moves_the_corner_and_leaves_the_white_noise() -> None:

@@ -24,6 +24,8 @@ from twin.limits import require_within
 PHASES = 4
 SIGNAL_SIGN = np.array([1.0, -1.0, 1.0, -1.0])
 """Sign of the Hall voltage at the amplifier in each phase; the demodulator multiplies by the same."""
+_HANN_ALIKE = 1.0 + 2.0 * ((2.0 / 3.0) ** 2 + (1.0 / 6.0) ** 2)
+"""By what the variance of a mean over lines grows because those of a Hann window are alike."""
 CURRENT_SIGN = np.array([1.0, 1.0, -1.0, -1.0])
 """Sense of the bias current along its axis."""
 
@@ -163,10 +165,24 @@ def density(values: Array, rate_Hz: float, segments: int = 64) -> tuple[Array, A
 
 
 def corner_of(frequency_Hz: Array, power: Array) -> float:
-    """The 1/f corner [Hz] of a density: that of a (1 + corner / f), fitted with weights by the density's own error."""
+    """The 1/f corner [Hz] of a density: see :func:`corner_and_error`."""
+    return corner_and_error(frequency_Hz, power)[0]
+
+
+def corner_and_error(frequency_Hz: Array, power: Array) -> tuple[float, float]:
+    """The 1/f corner [Hz] of a density and its standard error: of a (1 + corner / f), weighted by the density's error.
+
+    Under the Hann window the amplitudes of neighbouring lines correlate by 2/3, those of the next but one by 1/6.
+    """
     design = np.stack([np.ones_like(frequency_Hz), 1.0 / frequency_Hz], axis=-1)
     weight = 1.0 / power
     for _ in range(20):
         white, pink = np.linalg.lstsq(design * weight[:, None], power * weight, rcond=None)[0]
         weight = 1.0 / np.maximum(design @ np.array([white, pink]), 1e-3 * power.min())
-    return float(max(pink, 0.0) / white)
+    corner = float(max(pink, 0.0) / white)
+    weighted = design * weight[:, None]
+    left = power * weight - weighted @ np.array([white, pink])
+    variance = _HANN_ALIKE * (left @ left) / max(power.size - 2, 1)
+    covariance = np.linalg.inv(weighted.T @ weighted) * variance
+    slope = np.array([-corner, 1.0]) / white
+    return corner, float(np.sqrt(slope @ covariance @ slope))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -41,9 +42,8 @@ class Held:
         """The figure as a line of the terminal."""
         unit = "" if self.unit == "1" else f" {self.unit}"
         interval = "" if self.low is None or self.high is None else f" ({self.low:.4g} to {self.high:.4g})"
-        said = (
-            f"{self.where:{_WHERE}} {self.what:38} printed {self.printed_words}, ours {self.ours:.4g}{interval}{unit}"
-        )
+        ours = f"{self.ours:.4g}" if math.isfinite(self.ours) else "never"
+        said = f"{self.where:{_WHERE}} {self.what:38} printed {self.printed_words}, ours {ours}{interval}{unit}"
         return said if self.deviation is None else f"{said}, deviation {self.deviation:+.2g}{unit}"
 
 

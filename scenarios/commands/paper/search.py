@@ -24,6 +24,7 @@ NEAR = 1.01
 """A best within this factor of the smallest RMS counts as converged."""
 _TOGETHER = 50
 """Cases that are searched in one batch: their arrays stay small."""
+_MARGIN = 0.05
 GRID_POINTS = 5
 """Points of each factor in the coarse grid: 5^6 = 15,625 tries, nearly as many as the swarm's 20,100 particles."""
 
@@ -82,12 +83,12 @@ def _search(cases: Cases, method: Method, rng: np.random.Generator) -> tuple[Arr
     readings = Readings.of(cases.reference, cases.measured)
     gram = readings.gram()
     least = least_squares.descend(least_squares.on_gram(gram), cases.points, count=readings.count).cost
-    mean = np.angle(np.mean(np.exp(1j * (cases.measured - cases.reference)), axis=1))
-    box, root = first_box(mean), model.factor(gram)
+    lower, upper = _range(cases)
+    root = model.factor(gram)
     found = swarm.run(
         lambda points: model.cost(model.coefficients(points), root),
-        box.lower,
-        box.upper,
+        lower,
+        upper,
         rng=rng,
         settings=method.settings,
         steps=STEPS if method.steps else None,
@@ -99,14 +100,22 @@ def _search(cases: Cases, method: Method, rng: np.random.Generator) -> tuple[Arr
     return needed, best, own, smallest, found.discarded.astype(np.float64)
 
 
+def _range(cases: Cases) -> tuple[Array, Array]:
+    """Lower and upper end (cases, 6) of what is searched: Table 2's range about the mean error, and a little more.
+
+    A case drawn at the range's very edge may have its least RMS beyond it, by its noise.
+    """
+    box = first_box(np.asarray(np.angle(np.mean(np.exp(1j * (cases.measured - cases.reference)), axis=1))))
+    more = _MARGIN * (box.upper - box.lower)
+    return box.lower - more, box.upper + more
+
+
 def coarse_grid_rad(cases: Cases) -> Array:
     """RMS error (cases,) [rad] of the best point of the ordinary method's grid with few points a factor."""
     gram = Readings.of(cases.reference, cases.measured).gram()
-    mean = np.angle(np.mean(np.exp(1j * (cases.measured - cases.reference)), axis=1))
-    box = first_box(mean)
     costs = [
         grid_search.grid_search(one, low, high, points=GRID_POINTS).cost
-        for one, low, high in zip(gram, box.lower, box.upper, strict=True)
+        for one, low, high in zip(gram, *_range(cases), strict=True)
     ]
     return np.asarray(np.sqrt(np.asarray(costs) / cases.reference.shape[1]))
 

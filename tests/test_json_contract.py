@@ -234,11 +234,12 @@ def test_same_input_and_seed_give_the_same_bytes(folder: Path) -> None:
     path = written(folder, "one cause")
     outputs = []
     for number in ("1", "2"):
-        names = [folder / f"bytes{number}.{ending}" for ending in ("json", "toml")]
+        (folder / number).mkdir()
+        names = [folder / number / f"bytes.{ending}" for ending in ("json", "toml")]
         command = [sys.executable, "-m", "scenarios.cli.main", "explain", str(path), "--seed", "3"]
-        command += ["--json", str(names[0]), "--extended", str(names[1])]
+        command += ["--json", names[0].name, "--extended", names[1].name]
         environment = {**os.environ, "PYTHONHASHSEED": number, "PYTHONPATH": str(ROOT)}
-        ended = subprocess.run(command, cwd=folder, env=environment, capture_output=True, check=True)
+        ended = subprocess.run(command, cwd=folder / number, env=environment, capture_output=True, check=True)
         outputs.append((ended.stdout, *(name.read_bytes() for name in names)))
     assert outputs[0] == outputs[1]
 

@@ -6,7 +6,12 @@ import os
 from pathlib import Path
 
 
+def shown_path(path: str | Path) -> str:
+    """A path as it was given; what is no UTF-8 or cannot be printed, such as a line break, becomes U+FFFD."""
+    text = os.fsencode(path).decode("utf-8", errors="replace")
+    return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
+
+
 def shown_name(path: str | Path) -> str:
-    """The last part of a path; what is no UTF-8 or cannot be printed, such as a line break, becomes U+FFFD."""
-    name = os.fsencode(Path(path).name).decode("utf-8", errors="replace")
-    return "".join(letter if letter.isprintable() else "\ufffd" for letter in name)
+    """The last part of a path, as :func:`shown_path` shows it."""
+    return shown_path(Path(path).name)

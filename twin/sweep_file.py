@@ -10,13 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from twin.angles import Array
+from twin.ending import ending_of
 from twin.whole_file import write_beside
 
 
 def write_columns(path: Path, columns: Mapping[str, Array], *, comments: tuple[str, ...] = ()) -> None:
     """Write columns (each (n,)) as CSV, compressed where the name ends in .gz, whole or not at all."""
     content = csv_text(columns, comments=comments).encode()
-    write_beside(path, gzip.compress(content, mtime=0) if path.suffix == ".gz" else content)
+    write_beside(path, gzip.compress(content, mtime=0) if ending_of(path).endswith(".gz") else content)
 
 
 def csv_text(columns: Mapping[str, Array], *, comments: tuple[str, ...] = ()) -> str:

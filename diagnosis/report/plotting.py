@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from twin.ending import ending_of
 from twin.errors import UserError
 from twin.whole_file import write_beside
 
@@ -37,8 +38,8 @@ def drawing() -> Iterator[Callable[..., Figure]]:
 
 def check_format(path: Path) -> None:
     """Raise UserError where a picture of this name cannot be drawn: its format is another, or matplotlib is absent."""
-    if path.suffix not in FORMATS:
-        raise UserError(f"{path.name}: pictures end in {', '.join(FORMATS)}; found '{path.suffix}'")
+    if ending_of(path) not in FORMATS:
+        raise UserError(f"{path.name}: pictures end in {', '.join(FORMATS)}; found '{ending_of(path)}'")
     _matplotlib()
 
 
@@ -65,7 +66,7 @@ def save(figure: Any, *paths: Path) -> None:
 def write_figure(figure: Any, *paths: Path) -> None:
     """Write the figure under each name, whole or not at all; the same figure gives the same bytes."""
     for path in paths:
-        write_beside(path, figure_bytes(figure, path.suffix))
+        write_beside(path, figure_bytes(figure, ending_of(path)))
 
 
 def figure_bytes(figure: Any, ending: str) -> bytes:

@@ -76,5 +76,5 @@ class BusLog:
 
 def check_log_name(path: Path) -> None:
     """Raise UserError where python-can cannot tell the format by the name."""
-    if path.suffix not in LOG_FORMATS:
+    if path.suffix.lower() not in LOG_FORMATS:
         raise UserError(f"{path.name}: bus logs end in {', '.join(LOG_FORMATS)}; found '{path.suffix}'")

@@ -13,6 +13,7 @@ from scenarios.bench.bus_log import LOG_FORMATS
 from scenarios.bench.journal import finished_path, running_path
 from scenarios.bench.journal_reader import written_by_run
 from scenarios.commands.outputs import JSON, MEASURED, PICTURE, TOML, Format, OutputFiles, check_ending
+from twin.ending import ending_of
 from twin.errors import UserError
 from twin.whole_file import is_stream
 
@@ -22,9 +23,7 @@ _BUS_LOG = Format("bus logs", LOG_FORMATS, marked=False)
 
 def part_path(output: Path, part: str, suffix: str) -> Path:
     """The name of one of the files of a closed loop."""
-    name = output.name
-    for ending in MEASURED.endings[::-1]:
-        name = name.removesuffix(ending)
+    name = output.name[: len(output.name) - len(ending_of(output))]
     return output.with_name(f"{name}-{part}{suffix}")
 
 

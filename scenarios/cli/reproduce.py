@@ -1,4 +1,4 @@
-"""The command line that makes an answer again: the inputs by name and what decides the answer, without the outputs."""
+"""The command line that makes an answer again: the inputs and what decides the answer, without the outputs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scenarios.cli.options import OUTPUTS, RUNNING
 def command_line(context: typer.Context) -> str:
     """The command as it was given, less what is written and how it is run; the seed always.
 
-    Files are named without their folders, so that the same answer holds the same line on every machine.
+    Files are named as they were on the command line: of two with one name in two folders, each is meant.
     """
     words = ["halltwin", str(context.info_name)]
     for param in context.command.params:
@@ -29,16 +29,12 @@ def command_line(context: typer.Context) -> str:
 
 def _words(param: Any, value: Any) -> list[str]:
     """One parameter as it is typed."""
-    values = [_without_folder(item) for item in (value if isinstance(value, list | tuple) else [value])]
+    from twin.shown_name import shown_path
+
+    values = [shown_path(str(item)) for item in (value if isinstance(value, list | tuple) else [value])]
     if param.param_type_name == "argument":
         # What begins with a hyphen would be taken for an option.
         return [f"./{name}" if name.startswith("-") else name for name in values]
     if isinstance(value, bool):
         return [param.opts[0] if value else param.secondary_opts[0]]
     return [word for item in values for word in (param.opts[0], item)]
-
-
-def _without_folder(value: Any) -> str:
-    from twin.shown_name import shown_name
-
-    return shown_name(str(value)) or str(value)

@@ -204,8 +204,7 @@ def _write(files: OutputFiles, outputs: Outputs, correction: Correction, *, sour
             outputs.plot: lambda: _picture(judged),
         }
     )
-    for path in files.formats:
-        print(f"wrote {path}" + (f" ({outputs.points} points)" if path == outputs.table else ""))
+    files.tell_written({} if outputs.table is None else {outputs.table: f"{outputs.points} points"})
 
 
 def _toml(correction: Correction) -> str:

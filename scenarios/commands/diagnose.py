@@ -56,7 +56,6 @@ def run(
             print(line)
     finally:
         files.write({to.json: lambda: json_text(answer), to.plot: found.plot, to.convergence: found.plot_convergence})
-    for written in files.formats:
-        print(f"wrote {written}")
+    files.tell_written()
     raise_found(words, in_diagnoses(answer))
     read.raise_unusable()

@@ -70,6 +70,7 @@ def run(
                 outputs.plot: found.plot,
             }
         )
+    files.tell_written()
     if answer["cut_short"] is not None:
         raise SystemExit(INTERRUPTED)
     raise_found(words, in_explanation(answer))

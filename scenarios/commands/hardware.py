@@ -41,7 +41,8 @@ def run_command(twin: str, folder: Path, *, effect_files: Sequence[Path] = (), f
         before, after = residual_offset_mT(plate)
         print(f"plate {axis}: offset {before:.4g} mT before spinning, {after:.4g} mT after it")
     print(f"field in the plane {hardware.assembly.nominal_mT:.4g} mT; {int(signals.sound.sum())} sound frames")
-    print(f"largest error {np.max(np.abs(columns['error_deg'])):.4g} deg; wrote hardware.csv, .png, .svg to {folder}")
+    print(f"largest error {np.max(np.abs(columns['error_deg'])):.4g} deg")
+    files.tell_written()
 
 
 def table(hardware: Hardware, signals: Run, shaft_deg: Array, reference_deg: Array) -> dict[str, Array]:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from scenarios.commands.fail_on import FoundError
 from twin.bounded_input import LARGEST_SWEEP_BYTES
+from twin.ending import ending_of
 from twin.errors import SweepError, UserError
 from twin.shown_name import shown_name
 from twin.sweep import Sweep
@@ -26,7 +27,7 @@ def sweep_paths(names: Sequence[str]) -> list[Path]:
     for name in names:
         path = Path(name)
         if path.is_dir():
-            inside = sorted(item for item in path.iterdir() if item.name.endswith(ENDINGS))
+            inside = sorted(item for item in path.iterdir() if ending_of(item) in ENDINGS)
             if not inside:
                 raise UserError(f"{name}: no sweep in this folder; expected files ending in {', '.join(ENDINGS)}")
             found += inside

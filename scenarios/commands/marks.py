@@ -19,6 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from twin.ending import ending_of
+
 _SAID = b"written by halltwin; SHA-256 of all else: "
 _DIGEST = re.compile(re.escape(_SAID) + b"([0-9a-f]{64})")
 _REACH = 512
@@ -62,7 +64,7 @@ def marked(path: Path, content: bytes) -> bytes:
     """The content with its mark, in the format that the path's ending says; CSV as it is."""
     if _is_plain(path):
         return content
-    form = _FORMS[path.suffix.lower()]
+    form = _FORMS[ending_of(path)]
     mark = form.entry(_SAID + hashlib.sha256(content).hexdigest().encode())
     if form.closing is None:
         return mark + content
@@ -83,7 +85,7 @@ def is_own(path: Path) -> bool:
     """Whether a file bears a mark that fits its content. Raises OSError."""
     if _is_plain(path):
         return _attribute_fits(path)
-    form = _FORMS.get(path.suffix.lower())
+    form = _FORMS.get(ending_of(path))
     if form is None:
         return False
     with path.open("rb") as file:
@@ -92,7 +94,7 @@ def is_own(path: Path) -> bool:
 
 def _is_plain(path: Path) -> bool:
     """Whether files with this ending hold nothing but what their readers ask for."""
-    return path.name.lower().endswith(_PLAIN)
+    return ending_of(path) in _PLAIN
 
 
 def _attribute_fits(path: Path) -> bool:

@@ -49,8 +49,7 @@ def run(
             print(line)
     finally:
         files.write({json_path: lambda: json_text(answer), plot: lambda: _charts(found)})
-    for written in files.formats:
-        print(f"wrote {written}")
+    files.tell_written()
     raise_found(words, _drifts(found))
     read.raise_unusable()
 

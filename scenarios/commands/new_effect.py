@@ -49,7 +49,7 @@ def run(name: str, *, output: Path | None, answer: Path | None, force: bool = Fa
         found=f"Written by halltwin new-effect, for {origin.words}.",
     )
     files.write({path: text})
-    print(f"wrote {path}, for {origin.words}")
+    files.tell_written({path: f"for {origin.words}"})
 
 
 def _check_name(name: str) -> None:

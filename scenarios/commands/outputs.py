@@ -20,6 +20,7 @@ from typing import Any
 
 from scenarios.commands.inputs import ENDINGS
 from scenarios.commands.marks import is_own, mark_written, marked
+from twin.ending import ending_of
 from twin.errors import UserError
 from twin.regular_file import digest
 from twin.whole_file import check_writable, is_stream, target_of, write_together
@@ -45,6 +46,8 @@ HEADER = Format("C headers", (".h", ".hh", ".hpp"))
 PICTURE = Format("pictures", (".png", ".svg", ".pdf"))
 PYTHON = Format("effects", (".py",), marked=False)
 """A file to write one's own physics into."""
+
+_FILES = {end for form in (TABLE, JSON, TOML, HTML, HEADER, PICTURE, PYTHON) for end in form.endings}
 
 Given = tuple[Path | None, Format]
 
@@ -89,23 +92,29 @@ class OutputFiles:
         """
         asked = list(self.formats if paths is None else paths)
         self._check_inputs()
+        if self.folders:
+            for folder in {path.parent: None for path in asked}:
+                check_folder(folder)
         for path in asked:
-            if self.folders and not path.parent.exists():
-                _check_can_be_made(path.parent)
-            else:
+            if not self.folders or path.parent.exists():
                 check_writable(path)
         for path in asked:
             check_ending(path, self.formats[path])
-            if not (self.force or is_stream(path)):
+            if not (self.force or _adds_to_printed(path)):
                 _check_own(path, self.formats[path], self.unfinished.get(path, ()))
 
     def _check_inputs(self) -> None:
-        """Refuse an output that is an input, or the file that the printed answer goes to. Raises UserError."""
-        read = {identity for path in self.inputs if (identity := _identity(path))}
-        if (printed := _printed_to()) is not None:
-            read.add(printed)
+        """Refuse an output that is an input, or the file that the printed answer goes to. Raises UserError.
+
+        The printed answer is an output, too.
+        """
+        read = {identity: path for path in self.inputs if (identity := _identity(path))}
+        printed = _identity(1)
+        if printed is not None and printed in read:
+            raise UserError(f"{read[printed]}: is read, and standard output goes to it; print to another file")
         for path in self.formats:
-            if _identity(path) in read and not is_stream(path):
+            identity = _identity(path)
+            if identity in read or (identity is not None and identity == printed and not is_stream(path)):
                 raise _used_already(path)
 
     def write(
@@ -128,13 +137,25 @@ class OutputFiles:
             if self.formats[path].marked and not is_stream(path):
                 mark_written(path, content)
 
+    def tell_written(self, notes: Mapping[Path, str] | None = None) -> None:
+        """Print in one line which files were written, with a note in brackets where there is one.
+
+        What went to a device or a pipe is not told: whoever reads there would take the line for more of it.
+        """
+        notes = notes or {}
+        paths = [path for path in self.formats if not is_stream(path)]
+        names = [path.name if self.folders else str(path) for path in paths]
+        told = [f"{name} ({notes[path]})" if path in notes else name for path, name in zip(paths, names, strict=True)]
+        if told:
+            print(f"wrote {', '.join(told)}{f' to {paths[0].parent}' if self.folders else ''}")
+
     def _packed(self, path: Path, content: Any) -> bytes:
         """The bytes of a file, with its mark, compressed where the name says so."""
         form = self.formats[path]
         raw = _bytes_of(content() if callable(content) else content, path)
         if form.marked and not is_stream(path):
             raw = marked(path, raw)
-        return gzip.compress(raw, mtime=0) if path.suffix.lower() == ".gz" else raw
+        return gzip.compress(raw, mtime=0) if ending_of(path).endswith(".gz") else raw
 
 
 def _bytes_of(content: Any, path: Path) -> bytes:
@@ -146,7 +167,7 @@ def _bytes_of(content: Any, path: Path) -> bytes:
         return content.encode(errors="backslashreplace")
     from diagnosis.report.plotting import figure_bytes
 
-    return figure_bytes(content, path.suffix)
+    return figure_bytes(content, ending_of(path))
 
 
 def check_ending(path: Path, form: Format) -> None:
@@ -155,7 +176,7 @@ def check_ending(path: Path, form: Format) -> None:
         from diagnosis.report.plotting import check_format
 
         check_format(path)
-    elif not path.name.lower().endswith(form.endings) and not is_stream(path):
+    elif ending_of(path) not in form.endings and not is_stream(path):
         raise UserError(f"{path}: {form.words} end in {' or '.join(form.endings)}; give a name that does")
 
 
@@ -163,10 +184,11 @@ def _check_distinct(paths: Iterable[Path]) -> None:
     """Refuse two names of one file, also where the disk does not tell large letters from small."""
     seen: set[object] = set()
     for path in paths:
-        if is_stream(path):
+        identity = _identity(path)
+        if is_stream(path) and identity is None:
             continue
         name = unicodedata.normalize("NFC", str(target_of(path))).casefold()
-        names = {name, _identity(path) or name}
+        names = {name, identity or name}
         if names & seen:
             raise _used_already(path)
         seen |= names
@@ -179,7 +201,7 @@ def _used_already(path: Path) -> UserError:
 def _check_own(path: Path, form: Format, written: Collection[str]) -> None:
     """Refuse to replace a file that holds anything and is not as the program wrote it, by its mark or by a digest."""
     try:
-        if not path.exists() or path.stat().st_size == 0 or (form.marked and is_own(path)):
+        if _identity(path) is None or path.stat().st_size == 0 or (form.marked and is_own(path)):
             return
         if written and path.is_file() and digest(target_of(path)) in written:
             return
@@ -191,32 +213,33 @@ def _check_own(path: Path, form: Format, written: Collection[str]) -> None:
 
 def _files(path: Path) -> list[Path]:
     """The files that an input stands for: a folder stands for the sweeps in it."""
-    return [item for item in path.iterdir() if item.name.endswith(ENDINGS)] if path.is_dir() else [path]
+    return [item for item in path.iterdir() if ending_of(item) in ENDINGS] if path.is_dir() else [path]
 
 
-def _identity(path: Path) -> tuple[int, int] | None:
-    """What is the same for all names of a file; None where there is no file."""
+def _adds_to_printed(path: Path) -> bool:
+    """Whether a path is a name of the program's own output, which may go to a file that holds something already."""
+    return is_stream(path) and _identity(path) in (_identity(1), _identity(2))
+
+
+def _identity(file: Path | int) -> tuple[int, int] | None:
+    """What is the same for all names of a file, an open one by its number too; None for a device, a pipe or nothing."""
     try:
-        found = path.stat()
-    except OSError:
-        return None
-    return found.st_dev, found.st_ino
-
-
-def _printed_to() -> tuple[int, int] | None:
-    """The identity of the file that standard output goes to, where it goes to one."""
-    try:
-        found = os.fstat(1)
+        found = os.stat(file)
     except OSError:
         return None
     return (found.st_dev, found.st_ino) if stat.S_ISREG(found.st_mode) else None
 
 
-def _check_can_be_made(folder: Path) -> None:
-    """Refuse a folder that cannot be made: below a file, or where the user may not write. Raises UserError."""
-    there = next(parent for parent in folder.parents if parent.exists())
+def check_folder(folder: Path) -> None:
+    """Refuse what is a file, is named like one, or cannot be made, where a folder is to be. Raises UserError."""
+    there = next(parent for parent in (folder, *folder.parents) if parent.exists())
     if not there.is_dir():
-        raise UserError(f"{folder}: {there} is a file; give a folder to write to")
+        below = "" if there == folder else f"{there} "
+        raise UserError(f"{folder}: {below}is a file; several files are written: give the name of a folder")
+    if there == folder:
+        return
+    if ending_of(folder) in _FILES:
+        raise UserError(f"{folder}: is named like a file; several files are written: give the name of a folder")
     if not os.access(there, os.W_OK):
         raise UserError(f"{folder}: no permission to make it; give another path")
 

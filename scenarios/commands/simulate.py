@@ -67,5 +67,4 @@ def run(
             outputs.plot: lambda: trace_figure(traced, title=f"{shown_name(twin).removesuffix('.toml')}, seed {seed}"),
         }
     files.write(contents)
-    for path in files.formats:
-        print(f"wrote {path}" + (f" ({len(motion)} readings)" if path == outputs.sweep else ""))
+    files.tell_written({outputs.sweep: f"{len(motion)} readings"})

@@ -48,6 +48,7 @@ def run(folder: Path, *, seed: int, force: bool = False, field_mT: float = 5.0) 
     print(f"offset before {told[0]} mT, after {told[1]} mT: {told[2]} times smaller")
     for name, corner in corners.items():
         print(f"1/f corner {name}: {corner}")
+    files.tell_written()
 
 
 def _two_digits(value: float) -> str:

@@ -26,6 +26,7 @@ import numpy as np
 
 from scenarios.commands.file_lock import alone
 from scenarios.commands.interrupt import interruptible
+from scenarios.commands.outputs import check_folder
 from scenarios.studies.chunk_files import joined
 from scenarios.studies.identity import Identity, read_record
 from twin.bounded_input import LARGEST_TEXT_BYTES
@@ -54,6 +55,7 @@ class StudyFolder:
         something else or another command is at work there. Ctrl-C within ends the program with a line that says how
         to go on.
         """
+        check_folder(path)
         folder = cls(path.absolute())
         folder._refuse_foreign()
         made = folder._make()
@@ -84,8 +86,6 @@ class StudyFolder:
 
     def _refuse_foreign(self) -> None:
         """Raise UserError where the folder holds anything but a study or the beginning of one."""
-        if self.path.exists() and not self.path.is_dir():
-            raise UserError(f"{self.path}: exists and is no folder; give the name of a new folder")
         if not self.path.is_dir() or (self.path / _IDENTITY).exists():
             return
         for item in self.path.iterdir():

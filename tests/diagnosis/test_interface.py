@@ -57,8 +57,8 @@ def test_explain_answers_as_the_command_does(tmp_path: Path, monkeypatch: pytest
     json_path, report, twin = (tmp_path / name for name in ("a.json", "a.html", "a.toml"))
     ended = halltwin("explain", BENCH, "--json", json_path, "--report", report, "--extended", twin)
     found = bench()
-    assert ended.out == found.summary() + "\n"
-    command = "halltwin explain bench_sweep.csv --seed 0"
+    assert ended.out == f"{found.summary()}\nwrote {json_path}, {report}, {twin}\n"
+    command = f"halltwin explain {BENCH} --seed 0"
     assert answer_of(json_path) == found.to_dict() | {"command": command}
     assert to_dict(read_twin(twin)) == to_dict(found.extended)
     found.write_report(str(tmp_path / "b.html"))
@@ -78,7 +78,7 @@ def test_diagnose_answers_as_the_command_does(tmp_path: Path) -> None:
         json_path = tmp_path / "a.json"
         ended = halltwin("diagnose", *files, "--json", json_path)
         assert ended.out == f"{found.summary()}\nwrote {json_path}\n"
-        command = f"halltwin diagnose {' '.join(path.name for path in files)} --seed 0"
+        command = f"halltwin diagnose {' '.join(map(str, files))} --seed 0"
         assert answer_of(json_path) == found.to_dict() | {"command": command, "unusable": []}
 
 

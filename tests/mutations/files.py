@@ -44,9 +44,21 @@ FILES: tuple[Mutation, ...] = (
         "tests/scenarios/test_outputs.py",
         (
             "outputs.an_input_is_written_over",
-            "            if _identity(path) in read and not is_stream(path):",
-            "            if False:",
+            "            if identity in read or ",
+            "            if ",
             "::test_an_input_stays[link-simulate--o]",
+        ),
+        (
+            "outputs.an_open_file_is_no_input",
+            "            if identity in read or ",
+            "            if identity in read and not is_stream(path) or ",
+            "::test_an_input_that_is_open_stays[simulate--o]",
+        ),
+        (
+            "outputs.an_open_file_is_nobodys",
+            "    return is_stream(path) and _identity(path) in (_identity(1), _identity(2))",
+            "    return is_stream(path)",
+            "::test_an_open_file_of_somebody_else_stays",
         ),
         (
             "outputs.two_outputs_are_one_file",

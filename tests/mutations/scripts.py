@@ -41,10 +41,10 @@ SCRIPTS: tuple[Mutation, ...] = (
         "scenarios/cli/reproduce.py",
         "tests/diagnosis/report/test_provenance.py",
         (
-            "reproduce.folders_are_told",
-            "return shown_name(str(value)) or str(value)",
-            "return str(value)",
-            "::test_the_command_in_the_json_makes_the_same_answer[diagnose]",
+            "reproduce.folders_are_left_out",
+            "shown_path(str(item)) for item in",
+            "shown_path(str(item).rpartition('/')[2]) for item in",
+            "::test_files_of_one_name_and_patterns_are_told_as_they_were_typed",
         ),
         (
             "reproduce.outputs_are_told",

@@ -5,9 +5,10 @@ from __future__ import annotations
 import csv
 import inspect
 import os
+import re
 import shutil
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
@@ -35,6 +36,11 @@ class Case:
     outputs: dict[str, str] = field(default_factory=dict)
     inputs: tuple[str, ...] = ()
     folder: tuple[str, ...] = ()
+
+    @property
+    def told(self) -> str:
+        """What the command says that it wrote."""
+        return ", ".join(self.outputs.values()) or f"{', '.join(self.folder)} to out"
 
     @property
     def written(self) -> dict[str, str]:
@@ -149,6 +155,22 @@ def refused(folder: Path) -> Callable[..., str]:
     return asked
 
 
+@pytest.fixture
+def open_as() -> Iterator[Callable[[str], str]]:
+    """Open a file for reading and writing, and give its name by number."""
+    if not Path("/proc/self/fd").exists():
+        pytest.skip("the system gives open files no names")
+    numbers = []
+
+    def opened(name: str) -> str:
+        numbers.append(os.open(name, os.O_RDWR | os.O_CREAT))
+        return f"/proc/self/fd/{numbers[-1]}"
+
+    yield opened
+    for number in numbers:
+        os.close(number)
+
+
 def make_read_only(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     """Let the folders of this name be closed to writing, also for the superuser."""
     access = os.access
@@ -220,6 +242,35 @@ def test_an_input_stays(command: str, option: str, spelling: str, folder: Path, 
 
 
 @pytest.mark.parametrize(("command", "option"), NAMED)
+def test_an_input_that_is_open_stays(
+    command: str, option: str, folder: Path, refused: Callable[..., str], open_as: Callable[[str], str]
+) -> None:
+    """By the number under which a shell has opened it (``5<>sweep.csv``)."""
+    for name in CASES[command].inputs:
+        assert "read or written already" in refused(command, {option: open_as(name)}, "--force")
+
+
+def test_an_open_file_of_somebody_else_stays(
+    folder: Path, refused: Callable[..., str], open_as: Callable[[str], str]
+) -> None:
+    (folder / "log.txt").write_text("somebody's own")
+    name = open_as("log.txt")
+    assert "--force" in refused("simulate", {"-o": name})
+    assert halltwin("simulate", "-o", open_as("empty")).code == 0
+    assert (folder / "empty").read_text().startswith("time_s,")
+    # What is open is written behind what it holds.
+    assert halltwin("simulate", "-o", name, "--force").code == 0
+    assert (folder / "log.txt").read_text().startswith("somebody's owntime_s,")
+
+
+def test_two_names_of_one_open_file_are_one(
+    folder: Path, refused: Callable[..., str], open_as: Callable[[str], str]
+) -> None:
+    one, other = open_as("empty"), open_as("empty")
+    assert "read or written already" in refused("simulate", {"-o": one, "--trace": other}, "--force")
+
+
+@pytest.mark.parametrize(("command", "option"), NAMED)
 def test_an_output_is_no_other(command: str, option: str, folder: Path, refused: Callable[..., str]) -> None:
     outputs = CASES[command].outputs
     (folder / "link").symlink_to(folder / "sweeps")
@@ -248,7 +299,9 @@ def test_a_folder_that_cannot_be_one(
     command: str, folder: Path, refused: Callable[..., str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for place in ("sweep.csv", "sweep.csv/deeper"):
-        refused(command, {"-o": place}, "--force")
+        assert "is a file; several files are written: give the name of a folder" in refused(command, {"-o": place})
+    for place in ("turn.png", "deeper/TURN.CSV", ".svg"):
+        assert "is named like a file" in refused(command, {"-o": place}, "--force")
     make_read_only(monkeypatch, "sweeps")
     for place in ("sweeps", "sweeps/new/deeper"):
         assert "no permission" in refused(command, {"-o": place}, "--force")
@@ -259,8 +312,12 @@ def test_a_folder_that_cannot_be_one(
 
 @pytest.mark.parametrize("command", [name for name in CASES if name != "new-effect"])
 def test_own_files_are_known_and_edited_ones_are_not(command: str, folder: Path, refused: Callable[..., str]) -> None:
-    assert ask(command, {}).code == 0
-    written = [folder / name for name in CASES[command].written.values()]
+    ended = ask(command, {})
+    assert ended.code == 0
+    names = CASES[command].written.values()
+    (told,) = (line for line in ended.out.splitlines() if line.startswith("wrote "))
+    assert re.sub(r" \(.*?\)", "", told) == f"wrote {CASES[command].told}"
+    written = [folder / name for name in names]
     for path in written:
         if path.suffix in (".csv", ".gz") and not keeps_attributes(folder):
             assert not is_own(path)

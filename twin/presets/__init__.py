@@ -10,6 +10,7 @@ from pathlib import Path
 from twin.catalogue import CATALOGUE
 from twin.chain import Chain
 from twin.effect import Effect
+from twin.ending import ending_of
 from twin.files import TwinError, from_dict, read_twin
 from twin.known_names import nearest
 from twin.log import LOG
@@ -41,7 +42,7 @@ def read_twin_or_preset(given: str | Path, *, effects: tuple[Effect, ...] = CATA
         if Path(name).is_file():
             raise TwinError(f"{name}: is a preset and also a file here; give the file as .{os.sep}{name}, or rename it")
         return read_preset(name, effects=effects)
-    if not Path(name).suffix and not Path(name).exists():
+    if not ending_of(name) and not Path(name).exists():
         raise TwinError(
             f"{name}: is no preset{nearest(name, preset_names())}; "
             f"give one of {', '.join(preset_names())}, or a path ending in .toml"
@@ -53,4 +54,4 @@ def read_twin_or_preset(given: str | Path, *, effects: tuple[Effect, ...] = CATA
 
 def is_twin(given: str | Path) -> bool:
     """Whether a name stands for a twin rather than for a sweep: a preset's, or a path that ends in .toml."""
-    return str(given) in preset_names() or Path(given).suffix == ".toml"
+    return str(given) in preset_names() or ending_of(given) == ".toml"

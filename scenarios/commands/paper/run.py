@@ -33,7 +33,7 @@ def run(folder: Path, *, cases: int = 100, seed: int = 0, force: bool = False) -
     with progress_line() as listener:
         contents = _made(plt, names, folder, _work(cases, seed, listener))
     files.write(contents)
-    print(f"wrote {', '.join((*TABLES, *FIGURES))} to {folder}")
+    files.tell_written()
 
 
 def _work(cases: int, seed: int, listener: Listener) -> Work:

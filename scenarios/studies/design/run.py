@@ -139,6 +139,7 @@ def run(
 
             contents[picture] = map_figure(found, study)
         files.write(contents)
+    files.tell_written()
 
 
 def record(found: Mapping[str, Array], row: int, space: Space) -> dict[str, Any]:

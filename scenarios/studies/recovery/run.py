@@ -135,3 +135,4 @@ def run(
 
             contents |= {pictures[name]: figure for name, figure in map_figures(found).items()}
         files.write(contents)
+    files.tell_written()

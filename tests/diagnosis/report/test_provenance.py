@@ -56,13 +56,12 @@ def test_the_day_is_that_of_source_date_epoch(monkeypatch: pytest.MonkeyPatch) -
 def test_the_command_in_the_json_makes_the_same_answer(
     name: str, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Run where the sweeps lie, under another day's clock: only the date may differ."""
+    """Under another day's clock only the date may differ."""
     monkeypatch.setenv(EPOCH, "0")
     sweeps = sorted(folder.glob("s*.csv"))[: 1 if name == "explain" else None]
     first = answered(tmp_path, name, *sweeps, "--seed", "3")
-    assert first["command"] == shlex.join(["halltwin", name, *(path.name for path in sweeps), "--seed", "3"])
+    assert first["command"] == shlex.join(["halltwin", name, *map(str, sweeps), "--seed", "3"])
     monkeypatch.setenv(EPOCH, "86400")
-    monkeypatch.chdir(folder)
     again = answered(tmp_path, *shlex.split(first["command"])[1:])
     assert (first.pop("date"), again.pop("date")) == ("1970-01-01", "1970-01-02")
     # The digest of all else.
@@ -76,15 +75,27 @@ def test_outputs_and_the_way_it_is_run_are_no_part_of_the_command(folder: Path, 
     told = answered(
         tmp_path, "diagnose", folder / "s0.csv", "-v", "--plot", tmp_path / "a.png", "--fail-on", "undetermined"
     )
-    assert told["command"] == "halltwin diagnose s0.csv --seed 0"
+    assert told["command"] == f"halltwin diagnose {folder / 's0.csv'} --seed 0"
+
+
+def test_files_of_one_name_and_patterns_are_told_as_they_were_typed(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for place in ("a", "b"):
+        (tmp_path / place).mkdir()
+        (tmp_path / place / "s.csv").write_bytes((folder / f"s{'ab'.index(place)}.csv").read_bytes())
+    told = answered(tmp_path, "diagnose", "a/s.csv", "b/s.csv", "?/s.csv")
+    assert told["command"] == "halltwin diagnose a/s.csv b/s.csv '?/s.csv' --seed 0"
 
 
 def test_what_decides_the_answer_is(folder: Path, tmp_path: Path) -> None:
     told = answered(tmp_path, "monitor", folder, "--run-length", "200", "--seed", "1")
-    assert told["command"] == f"halltwin monitor {folder.name} --run-length 200.0 --seed 1"
+    assert told["command"] == f"halltwin monitor {folder} --run-length 200.0 --seed 1"
     gear = ROOT / "scenarios/data/gear_mesh.py"
     told = answered(tmp_path, "explain", folder / "s0.csv", "--effects", gear, "--twin", "paper-encoder")
-    assert told["command"] == "halltwin explain s0.csv --twin paper-encoder --effects gear_mesh.py --seed 0"
+    sweep = folder / "s0.csv"
+    assert told["command"] == f"halltwin explain {sweep} --twin paper-encoder --effects {gear} --seed 0"
 
 
 def test_the_report_says_it_too(folder: Path, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from typing import Any, BinaryIO
 from scenarios.bench.plan import MOST_READINGS
 from scenarios.bench.readings import Reading
 from scenarios.bench.sealed_lines import unsealed
+from scenarios.commands.settings import flat
 from twin.bounded_input import LARGEST_SWEEP_BYTES, LARGEST_TEXT_BYTES
 from twin.errors import UserError
 from twin.regular_file import opened
@@ -106,6 +107,7 @@ def _take_up(line: bytes, kept: Kept) -> None:
     """Take up a whole line. Raises ValueError."""
     entry, seal = unsealed(line[:-1], kept.seal)
     if not kept.size:
+        flat(entry)
         kept.head = entry
     elif "reading" in entry:
         kept.readings.append(_reading(entry["reading"], len(kept.readings)))

@@ -12,8 +12,11 @@ _LONGEST = 60
 
 
 def flat(content: Settings) -> dict[str, Any]:
-    """Nested settings by dotted name, as JSON gives them back."""
-    return _flat(json.loads(json.dumps(content)))
+    """Nested settings by dotted name, as JSON gives them back. Raises ValueError where they are nested without end."""
+    try:
+        return _flat(json.loads(json.dumps(content)))
+    except RecursionError:
+        raise ValueError("is nested too deep") from None
 
 
 def difference(begun: Settings, asked: Settings, options: Mapping[str, str]) -> str:

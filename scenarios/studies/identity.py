@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from diagnosis.report.provenance import version
-from scenarios.commands.settings import Settings, difference
+from scenarios.commands.settings import Settings, difference, flat
 from twin.bounded_input import LARGEST_TEXT_BYTES
 from twin.errors import UserError
 from twin.regular_file import content
+
+_ENTRIES = ("study", "version", "seed", "settings")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +31,7 @@ class Identity:
 
     def record(self) -> dict[str, Any]:
         """As plain values."""
-        return {"study": self.study, "version": version(), "seed": self.seed, "settings": self.settings}
+        return dict(zip(_ENTRIES, (self.study, version(), self.seed, self.settings), strict=True))
 
     def text(self) -> str:
         """The text of the record. Raises ValueError for a figure that is not finite."""
@@ -46,8 +48,9 @@ def read_record(record: Path) -> dict[str, Any]:
     """What a folder was begun with. Raises UserError where the record is none."""
     try:
         found = json.loads(content(record, most=LARGEST_TEXT_BYTES, expected="the record of a study"))
-        if not isinstance(found, dict) or not isinstance(found.get("settings"), dict):
-            raise ValueError("no settings")
+        if not isinstance(found, dict) or found.keys() != set(_ENTRIES) or not isinstance(found["settings"], dict):
+            raise ValueError("has not the entries of a record")
+        flat(found)
     except UserError:
         raise
     except (OSError, ValueError, RecursionError):

@@ -77,7 +77,13 @@ def test_another_seed_version_or_setting_is_refused_and_nothing_lost(
     assert content(tmp_path / "s") == before
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", json.dumps({"seed": 0})])
+RECORD = '{"study": "draws", "version": "1", "seed": 0, "settings": '
+DEEP = RECORD + '{"a": ' * 980 + "1" + "}" * 981
+DIGITS = RECORD + '{"a": ' + "1" * 5000 + "}}"
+SOMEBODYS = json.dumps({"settings": {"theme": "dark"}})
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", json.dumps({"seed": 0}), SOMEBODYS, DEEP, DIGITS])
 def test_a_broken_record_is_refused(tmp_path: Path, text: str) -> None:
     (tmp_path / "study.json").write_text(text)
     with pytest.raises(UserError, match=r"study\.json: is damaged or no record of a study"):

@@ -35,6 +35,8 @@ def _name(factor: Factor) -> str:
 
 UNITS = {_name(factor): factor.effect.params[factor.param].unit for factor in FACTORS} | {RESIDUAL: "1", LAG: "deg"}
 """Every name that a chart may bear, with the unit of its values."""
+LABELS = {_name(factor): factor.label for factor in FACTORS} | {RESIDUAL: "residual RMS", LAG: "lag"}
+"""What people read for each of these names."""
 
 
 @dataclass(frozen=True, eq=False)

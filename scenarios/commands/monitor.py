@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from diagnosis.factors.control_chart import BOTH, WEIGHT, Chart
-from diagnosis.factors.series import FEWEST_SWEEPS, RUN_LENGTH, UNITS, MonitoredSeries, monitor, turns_of
+from diagnosis.factors.series import FEWEST_SWEEPS, LABELS, RUN_LENGTH, UNITS, MonitoredSeries, monitor, turns_of
 from diagnosis.report.provenance import Provenance
+from diagnosis.report.row_counts import counts_of, left_out_words, rejected_words
 from scenarios.commands.fail_on import MONITOR, asked, raise_found
-from scenarios.commands.inputs import SweepFiles, the_same
+from scenarios.commands.inputs import SweepFiles, SweepsRead, the_same
 from scenarios.commands.monitor_text import show, way
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from twin.errors import UserError
+from twin.shown_name import shown_name
 from twin.sweep import Sweep
 
 SCHEMA = "halltwin.monitor/1"
@@ -34,24 +36,41 @@ def run(
     command: str | None = None,
 ) -> None:
     """Fit every sweep of the series, chart the factors, print what was signalled."""
-    words = asked(fail_on, (*MONITOR, *UNITS))
+    words = asked(fail_on, (*MONITOR, *UNITS, *LABELS.values()))
     made = Provenance.today(seed=seed, command=command)
     if not 10.0 <= run_length <= LONGEST_RUN:
         raise UserError(f"run length is {run_length:g}; expected 10 to {LONGEST_RUN:g} sweeps between false alarms")
     paths = given.paths()
     files = OutputFiles.checked([(json_path, JSON), (plot, PICTURE)], inputs=paths, force=force)
     read = given.read(paths)
-    found = monitor(series(read.sweeps), rng=np.random.default_rng(seed), run_length=run_length)
-    answer = {**to_dict(found, made), "unusable": read.listed()}
+    sweeps = series(read.sweeps)
+    found = monitor(sweeps, rng=np.random.default_rng(seed), run_length=run_length)
+    counts = readings_of(sweeps, found)
+    answer = {**to_dict(found, made), "readings": counts, "unusable": read.listed()}
     try:
         show(found)
-        for line in read.lines:
+        for line in filter(None, (left_out_words(counts), *_rejected_of_turns(read, sweeps), *read.lines)):
             print(line)
     finally:
         files.write({json_path: lambda: json_text(answer), plot: lambda: _charts(found)})
     files.tell_written()
     raise_found(words, _drifts(found))
     read.raise_unusable()
+
+
+def readings_of(sweeps: Sequence[Sweep], found: MonitoredSeries) -> list[dict[str, Any]]:
+    """What became of the readings of each sweep of the series, as plain values."""
+    return [
+        {"sweep": shown_name(sweep.name), **counts_of(sweep, sweep.numbers[fit.outliers].tolist())}
+        for sweep, fit in zip(sweeps, found.fits, strict=True)
+    ]
+
+
+def _rejected_of_turns(read: SweepsRead, sweeps: Sequence[Sweep]) -> Iterator[str]:
+    """Rows that could not be used of a sweep whose turns are the series: they belong to none of them."""
+    whole = read.sweeps[0]
+    if len(sweeps) > len(read.sweeps) and whole.rejected:
+        yield f"{shown_name(whole.name)}: {rejected_words(counts_of(whole, ()))}"
 
 
 def _charts(found: MonitoredSeries) -> Any:
@@ -137,6 +156,7 @@ def _drifts(found: MonitoredSeries) -> dict[str, str]:
     for item in found.signalled:
         assert item.signal is not None
         said = f"{way(item)}, signalled at sweep {item.signal + 1}"
-        drifts.setdefault(item.name, said)
-        drifts.setdefault("drift", f"{item.name} {said}")
+        for word in (item.name, LABELS[item.name]):
+            drifts.setdefault(word, said)
+        drifts.setdefault("drift", f"{LABELS[item.name]} {said}")
     return drifts

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.factors.control_chart import BACKWARD, BOTH, FORWARD, Chart
-from diagnosis.factors.series import MonitoredSeries
+from diagnosis.factors.series import LABELS, RESIDUAL, MonitoredSeries
 from diagnosis.report.plotting import style
 
 _LOOKS = {BOTH: ("#222222", "o"), FORWARD: ("#0072B2", ">"), BACKWARD: ("#D55E00", "<")}
@@ -26,7 +26,8 @@ def charts_figure(found: MonitoredSeries) -> Any:
         items = [item for item in found.charts if item.name == name]
         _row(left, right, items)
         unit = items[0].unit
-        left.set_ylabel(f"{name.removesuffix('_percent').removesuffix('_deg')}\n[{unit}]", fontsize=8)
+        label = f"log of {LABELS[name]}" if name == RESIDUAL else LABELS[name]
+        left.set_ylabel(f"{label}\n[{unit}]", fontsize=8)
     axes[0, 0].set_title("fitted factor; band: where its change began (95 %)", fontsize=9)
     axes[0, 1].set_title("smoothed deviation [standard deviations], with limits", fontsize=9)
     for axis in axes[-1]:

@@ -1,18 +1,22 @@
-"""A monitored series as a person reads it in a terminal: a table of the charts, and what drifts since when."""
+"""A monitored series as a person reads it in a terminal: the charts, and what drifts which way since when."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rich.console import Console
+import numpy as np
+from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
 from diagnosis.factors.control_chart import BOTH, Chart
-from diagnosis.factors.series import MonitoredSeries
+from diagnosis.factors.series import LABELS, RESIDUAL, MonitoredSeries
+from diagnosis.report.wording import decimals_of, unit_shown
 
 _WIDE = 100
 """Characters in a line from which on the scatter and the sweeps' names have room."""
+_NARROW = 72
+"""Characters in a line below which each chart is told in a sentence, not in a row of a table."""
 
 
 def show(found: MonitoredSeries, console: Console | None = None) -> None:
@@ -20,7 +24,7 @@ def show(found: MonitoredSeries, console: Console | None = None) -> None:
     console = console or Console(highlight=False)
     console.print(Text(_head(found)))
     console.print()
-    console.print(_table(found, wide=console.width >= _WIDE))
+    console.print(_table(found, wide=console.width >= _WIDE) if console.width >= _NARROW else _list(found))
     console.print()
     for line in _drifts(found):
         console.print(Text(line))
@@ -41,42 +45,82 @@ def _head(found: MonitoredSeries) -> str:
     )
 
 
+# ---- the charts -----------------------------------------------------------------------------------------------------
+
+
 def _table(found: MonitoredSeries, *, wide: bool) -> Table:
     table = Table(box=None, padding=(0, 2 if wide else 1, 0, 0))
-    table.add_column("factor", no_wrap=True)
-    table.add_column("readings", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
+    for head in ("factor", "readings", "unit"):
+        table.add_column(head, overflow="fold")
     for head in ("first", "last", "scatter") if wide else ("first", "last"):
         table.add_column(head, justify="right", no_wrap=True)
-    table.add_column("signal at", no_wrap=True)
-    table.add_column("began at (95 %)", no_wrap=True)
-    names = {item.name: 0 for item in found.charts}
-    for item in sorted(found.charts, key=lambda one: list(names).index(one.name)):
-        repeated, names[item.name] = names[item.name], 1
-        figures = [item.values[0], item.values[-1], item.scatter] if wide else [item.values[0], item.values[-1]]
+    table.add_column("signal at", overflow="fold")
+    table.add_column("began at (95 %)", overflow="fold")
+    before = ""
+    for item in _in_order(found):
+        figures = _figures(item)
         table.add_row(
-            "" if repeated else item.name,
+            "" if item.name == before else LABELS[item.name],
             item.travel,
-            item.unit,
-            *(f"{value:.5f}" for value in figures),
+            _unit(item),
+            *(figures if wide else figures[:2]),
             _signalled(found, item, wide=wide),
             _began(item),
             style="" if item.signal is None else "bold",
         )
+        before = item.name
     return table
+
+
+def _list(found: MonitoredSeries) -> RenderableType:
+    """The charts on a terminal that is too narrow for a table: nothing is cut."""
+    lines = []
+    for item in _in_order(found):
+        first, last, _ = _figures(item)
+        told = (
+            "" if item.signal is None else f"; signal at {_signalled(found, item, wide=False)}; began at {_began(item)}"
+        )
+        words = f"{LABELS[item.name]}, {item.travel}: {first} -> {last} {_unit(item)}".rstrip()
+        lines.append(Text(f"{words}{told}", style="" if item.signal is None else "bold"))
+    return Group(*lines)
+
+
+def _in_order(found: MonitoredSeries) -> list[Chart]:
+    """The charts of one factor one after the other."""
+    names = list(dict.fromkeys(item.name for item in found.charts))
+    return sorted(found.charts, key=lambda item: names.index(item.name))
+
+
+def _figures(item: Chart) -> tuple[str, str, str]:
+    """First and last value and the scatter of a value, to two digits of that.
+
+    The RMS of the residual is charted by its logarithm and told in deg.
+    """
+    first, last, scatter = float(item.values[0]), float(item.values[-1]), item.scatter
+    if item.name == RESIDUAL:
+        first, last = (float(np.degrees(np.exp(value))) for value in (first, last))
+        scatter *= first
+    decimals = decimals_of(scatter)
+    return f"{first:.{decimals}f}", f"{last:.{decimals}f}", f"{scatter:.{decimals}f}"
+
+
+def _unit(item: Chart) -> str:
+    return "deg" if item.name == RESIDUAL else unit_shown(item.unit)
 
 
 def _signalled(found: MonitoredSeries, item: Chart, *, wide: bool) -> str:
     if item.signal is None:
         return "-"
-    arrow = "up" if item.direction > 0 else "down"
     named = f" ({found.names[item.signal]})" if wide else ""
-    return f"{item.signal + 1}{named}, {arrow}"
+    return f"{item.signal + 1}{named}, {'up' if item.direction > 0 else 'down'}"
 
 
 def _began(item: Chart) -> str:
     change = item.change
     return "-" if change is None else f"{change.first + 1} ({change.low + 1}..{change.high + 1})"
+
+
+# ---- what drifts ----------------------------------------------------------------------------------------------------
 
 
 def _drifts(found: MonitoredSeries) -> Iterator[str]:
@@ -89,9 +133,17 @@ def _drifts(found: MonitoredSeries) -> Iterator[str]:
             continue
         told.add(item.name)
         low, high = (found.names[place] for place in (item.change.low, item.change.high))
-        unit = "" if item.unit == "1" else f" {item.unit}"
-        yield (
-            f"drift: {item.name} {way(item)}, first signalled at sweep {item.signal + 1} of {len(found.names)}; "
-            f"a {item.change.shape} of {item.change.size:+.3g}{unit} that began at sweep {item.change.first + 1}, "
-            f"95 %: {item.change.low + 1} ({low}) to {item.change.high + 1} ({high})"
-        )
+        when = f"first signalled at sweep {item.signal + 1} of {len(found.names)}"
+        between = f"{item.change.low + 1} ({low}) to {item.change.high + 1} ({high})"
+        what = f"a {item.change.shape} {_size(item)} that began at sweep {item.change.first + 1}, 95 %: {between}"
+        yield f"{LABELS[item.name]} drifts {way(item)}: {when}; {what}"
+
+
+def _size(item: Chart) -> str:
+    """By how much a factor has changed, to two digits of its scatter; the RMS of the residual by a ratio."""
+    assert item.change is not None
+    size = item.change.size
+    if item.name == RESIDUAL:
+        ratio = float(np.exp(size))
+        return f"to {ratio:.{decimals_of(item.scatter * ratio)}f} times"
+    return f"of {size:+.{decimals_of(item.scatter)}f} {_unit(item)}".rstrip()

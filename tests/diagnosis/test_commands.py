@@ -132,7 +132,7 @@ def test_compensate_mistakes(folder: Path, tmp_path: Path) -> None:
 def test_monitor_names_the_factor_that_drifts(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("matplotlib")
     monitor.run(SweepFiles([str(folder)]), json_path=tmp_path / "m.json", plot=tmp_path / "m.png")
-    assert "drift: gain_ratio up" in capsys.readouterr().out
+    assert "gain ratio drifts up" in capsys.readouterr().out
     first = json.loads((tmp_path / "m.json").read_text())["first"]
     assert first["factor"] == "gain_ratio"
     told = json.loads((tmp_path / "m.json").read_text())["factors"]["gain_ratio"]

@@ -142,7 +142,7 @@ def series(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_monitor(series: Path) -> None:
     ended = halltwin("monitor", series)
     assert ended.code == 0
-    assert "drift: lag_deg up" in ended.out
+    assert "lag drifts up" in ended.out
     failed = halltwin("monitor", series, "--fail-on", "gain_ratio,lag_deg")
     assert (failed.code, failed.out) == (1, ended.out)
     assert failed.err.startswith("halltwin: found lag_deg (up, signalled at sweep")

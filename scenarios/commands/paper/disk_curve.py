@@ -14,6 +14,8 @@ from twin.concentrator.disk import Disk
 from twin.hall.quadratic_nonlinearity import QUADRATIC_NONLINEARITY
 
 LARGEST_MT = 100.0
+ASSUMED_MT = 500.0
+"""In-plane field at which the disk saturates: a typical assumption; the paper names none."""
 PRINTED_NL_MT, PRINTED_UP_TO_MT = 0.5, 80.0
 """Section 2.1: the magnetic non-linearity, and the field that it is stated up to."""
 PRINTED_ERROR_DEG = 0.07682
@@ -59,8 +61,8 @@ class DiskCurve:
 
 
 def disk_curve(disk: Disk | None = None) -> DiskCurve:
-    """The curve of a disk; without one of the twin's own."""
-    disk = disk or Disk()
+    """The curve of a disk; without one that of the assumed saturation."""
+    disk = disk or Disk(saturation_mT=ASSUMED_MT)
     field: Array = np.linspace(0.0, LARGEST_MT, 201)
     seen = disk.saturation_mT * np.tanh(field / disk.saturation_mT)
     return DiskCurve(disk, field, seen, np.polynomial.polynomial.polyfit(field, seen / seen[-1], 2))

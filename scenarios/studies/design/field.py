@@ -12,7 +12,7 @@ import numpy as np
 from twin.angles import Array, channels_of
 from twin.catalogue import find
 from twin.chain import Chain
-from twin.effect import BoolArray
+from twin.effect import BoolArray, Effect
 from twin.magnet.assembly import NOMINAL_C, Assembly
 from twin.magnet.field import Series, basis, series_by_group
 from twin.magnet.placement import Placement, designs_of
@@ -128,10 +128,14 @@ def scaled_values(chain: Chain, magnet: Assembly) -> dict[str, dict[str, Any]]:
     for key, params in chain.values.items():
         effect = find(key, chain.effects)
         values = {**effect.null(), **params}
-        follows = () if effect.stage == _CONVERTER else effect.follow_field
-        factors = {name: effect.field_factor(name, values, **ratios) for name in follows if name in params}
+        factors = {name: effect.field_factor(name, values, **ratios) for name in followed(effect) if name in params}
         scaled[key] = {name: value * factors.get(name, 1.0) for name, value in params.items()}
     return scaled
+
+
+def followed(effect: Effect) -> tuple[str, ...]:
+    """The parameters of an effect that follow the field or the distance; the converter's range follows the signal."""
+    return () if effect.stage == _CONVERTER else effect.follow_field
 
 
 def errors_deg(chain: Chain, designs: Designs, motion: Motion) -> Array:

@@ -16,6 +16,7 @@ from diagnosis.report.provenance import Provenance
 from scenarios.commands.outputs import JSON, PICTURE, TABLE, TOML, OutputFiles, json_text
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from scenarios.studies.design.check import Check, check_design, design_twin
+from scenarios.studies.design.distance import distance_csv, distances
 from scenarios.studies.design.options import OPTIONS
 from scenarios.studies.design.space import AXES, MOST_DESIGNS, Space, require_mountable
 from scenarios.studies.design.study import Demand, DesignStudy, feasible, ranking
@@ -110,14 +111,15 @@ def run(
     seed: int,
 ) -> None:
     """The command: explore, list the best, check the winner, draw the map."""
-    from scenarios.studies.design.table import show
+    from scenarios.studies.design.table import show, show_distances
 
     require_within("best", results.best, 1, MOST_DESIGNS, whole=True)
     made = Provenance.today(seed=seed, command=results.command)
     study = study_of(twin, space, demand, seed=seed)
-    table, answer, best, picture = (output / name for name in ("designs.csv", "best.json", "best.toml", "map.png"))
+    table, answer, best, curves = (output / name for name in ("designs.csv", "best.json", "best.toml", "distance.csv"))
+    pictures = [output / name for name in ("map.png", "distance.png", "distance.svg")] if results.plot else []
     files = OutputFiles.checked(
-        [(table, TABLE), (answer, JSON), (best, TOML), (picture if results.plot else None, PICTURE)],
+        [(table, TABLE), (answer, JSON), (best, TOML), (curves, TABLE), *((path, PICTURE) for path in pictures)],
         inputs=[twin],
         force=results.force,
         folders=True,
@@ -128,16 +130,22 @@ def run(
         winner = int(order[0])
         check = check_design(study, found["design"][winner], found["grade"][winner])
         listed = order[: results.best]
+        over = distances(study, found["design"][listed], found["grade"][listed].astype(int))
         show(found, listed, study, check)
+        show_distances(over)
+        told = _answer(found, listed, study, check, made)
         contents: dict[Path | None, Any] = {
             table: _table(found, space),
-            answer: json_text(_answer(found, listed, study, check, made)),
+            answer: json_text(told | {"least_nonlinear": [one.to_dict() for one in over]}),
             best: twin_text(design_twin(study, found["design"][winner], found["grade"][winner])),
+            curves: distance_csv(over),
         }
         if results.plot:
+            from scenarios.studies.design.distance_plot import distance_figure
             from scenarios.studies.design.plot import map_figure
 
-            contents[picture] = map_figure(found, study)
+            contents[pictures[0]] = map_figure(found, study)
+            contents |= dict.fromkeys(pictures[1:], distance_figure(over)) if over else {}
         files.write(contents)
     files.tell_written()
 

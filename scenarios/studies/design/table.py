@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 from scenarios.studies.design.check import Check
+from scenarios.studies.design.distance import Distance
 from scenarios.studies.design.study import DesignStudy, feasible
 from twin.angles import Array, IntArray
 
@@ -52,6 +53,17 @@ def show(found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: 
         f"checked: its own twin simulated errs by {check.simulated_error_deg:.3f} deg ({check.error_deg:.3f} here); "
         f"magpylib has {check.magpylib_mT:.3f} mT on the axis ({check.field_mT:.3f} here)"
     )
+
+
+def show_distances(found: Sequence[Distance]) -> None:
+    """Print at which distance each magnet of the best designs is least non-linear."""
+    console = Console(highlight=False)
+    if not found:
+        console.print("least non-linear distance: none, as nothing in this twin depends on the field")
+        return
+    console.print("least non-linear distance, where what depends on the field errs least (25 C, on the axis):")
+    for one in found:
+        console.print(f"  {one.words()}")
 
 
 def _size(design: Array) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.command_line import halltwin
-from tests.pages import ROOT, block, figures, words
+from tests.pages import PAGES, ROOT, block, figures, words
 
 README = ROOT / "README.md"
 MOST_LINES = 200
@@ -55,3 +56,21 @@ def test_python_lines_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsy
     told = names["factors"].factors["gain_ratio"]
     truth = names["found"].extended.values["gain_mismatch"]["ratio"]
     assert told.value == pytest.approx(truth, abs=told.high - told.low)
+
+
+def test_extras_are_installed_by_the_same_words_everywhere() -> None:
+    """From the checkout, as the project is in no registry; and each is one that there is."""
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    sources = [path for folder in ("twin", "diagnosis", "scenarios", "tests") for path in (ROOT / folder).rglob("*.py")]
+    told = 0
+    for path in (*PAGES, *sources):
+        if path == Path(__file__):
+            continue
+        text = " ".join(path.read_text(encoding="utf-8").replace("`", "").split())
+        assert "install halltwin" not in text, path
+        assert "'halltwin[" not in text, path
+        for names, behind in re.findall(r"pip install '\.\[([a-z,]+)\]'(.{16})", text):
+            told += 1
+            assert set(names.split(",")) <= set(extras), path
+            assert behind == " in the checkout", path
+    assert told > 5

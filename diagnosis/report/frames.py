@@ -19,6 +19,8 @@ def data_frame(rows: Sequence[Mapping[str, Any]], *, columns: Sequence[str]) -> 
     try:
         import pandas as pd
     except ImportError:
-        raise UserError("a DataFrame needs pandas; pip install pandas, or take to_dict()") from None
+        raise UserError(
+            "a DataFrame needs pandas; pip install '.[tables]' in the checkout, or take to_dict()"
+        ) from None
     names = dict.fromkeys([*columns, *(name for row in rows for name in row)])
     return pd.DataFrame(list(rows), columns=list(names))

@@ -113,7 +113,7 @@ def as_twin(twin: TwinLike | None, *, effects: tuple[Effect, ...] | None = None)
 def checked_seed(seed: int) -> int:
     """The seed of a call of the interface. Raises UserError where it is none."""
     from twin.errors import UserError
-    from twin.limits import shown
+    from twin.shown import shown
 
     if isinstance(seed, bool) or not hasattr(seed, "__index__") or seed.__index__() < 0:
         raise UserError(f"seed is {shown(seed)}; expected a whole number, 0 or more")
@@ -154,7 +154,7 @@ def _values(column: Any, where: str) -> Array:
 def _cell(cell: Any, row: int, where: str) -> float:
     """The number of one cell."""
     from twin.errors import SweepError
-    from twin.limits import shown
+    from twin.shown import shown
 
     if type(cell).__name__ in _MISSING:
         return float("nan")

@@ -12,11 +12,12 @@ from twin.angles import Array, channels_of, wrap
 from twin.catalogue import CATALOGUE, base_name, find
 from twin.effect import ActsOn, Effect, Parameters
 from twin.known_names import nearest
-from twin.limits import OutOfRangeError, shown
+from twin.limits import OutOfRangeError
 from twin.magnet.assembly import Assembly
 from twin.motion import Motion
 from twin.parts import Parts
 from twin.reference.encoder import Encoder
+from twin.shown import shown
 from twin.sweep import Sweep
 
 Values = Mapping[str, Parameters]

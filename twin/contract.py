@@ -17,6 +17,8 @@ from twin.declaration import undeclared
 from twin.effect import Effect, Param, Role
 from twin.example import Example, example_of, full_motion, permuted, signal_for
 from twin.motion import Motion
+from twin.shown import shown_error
+from twin.surroundings import StreamTakenError, streams_kept
 
 ROUNDING_RAD = 1e-12
 """Rounding that is allowed: a double near 4 pi carries about 1e-15, a few operations and the arctangent add to it."""
@@ -56,39 +58,40 @@ class Result:
 def check(effect: Effect, *, example: Example | None = None, motion: Motion | None = None) -> Iterator[Result]:
     """Check every promise in turn; an exception in the effect's own code breaks the promise that was being checked."""
     motion = motion or full_motion()
-    with np.errstate(all="ignore"):
-        said = _asked(undeclared, effect)
-        yield Result("is declared and documented", not said, said)
-        if said:
-            return
-        try:
-            case = example or example_of(effect, motion)
-        except KeyboardInterrupt:
-            raise
-        except BaseException as error:
-            yield Result("has a grid of shapes", False, _raised(error))
-            return
-        for promise in PROMISES:
-            unasked = promise.unasked(effect, case)
-            if unasked:
-                yield Result(promise.name, None, unasked)
-                continue
-            said = _asked(promise.broken, effect, case, motion)
-            yield Result(promise.name, not said, said, promise.binding)
+    said = _asked(undeclared, effect)
+    yield Result("is declared and documented", not said, said)
+    if said:
+        return
+    cases = [] if example is None else [example]
+
+    def by_declaration() -> str:
+        cases.append(example_of(effect, motion))
+        return ""
+
+    said = "" if cases else _asked(by_declaration)
+    if said:
+        yield Result("has a grid of shapes", False, said)
+        return
+    for promise in PROMISES:
+        unasked = promise.unasked(effect, cases[0])
+        if unasked:
+            yield Result(promise.name, None, unasked)
+            continue
+        said = _asked(promise.broken, effect, cases[0], motion)
+        yield Result(promise.name, not said, said, promise.binding)
 
 
 def _asked(question: Callable[..., str], *given: Any) -> str:
     """The answer to a question, or that the effect's code raised an exception; an exit is one too."""
     try:
-        return question(*given)
+        with streams_kept(), np.errstate(all="ignore"):
+            return question(*given)
     except KeyboardInterrupt:
         raise
+    except StreamTakenError as error:
+        return f"behind its code {error}"
     except BaseException as error:
-        return _raised(error)
-
-
-def _raised(error: BaseException) -> str:
-    return f"its code raises {type(error).__name__}: {error}"
+        return f"its code raises {shown_error(error)}"
 
 
 # ---- what it does -----------------------------------------------------------------------------------------------

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from string import Formatter
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
 
 from twin.catalogue import STAGES
-from twin.effect import ActsOn, Effect, Footprint, Param, Role
+from twin.effect import ActsOn, Effect, Footprint, Line, Marks, Param, Role
+from twin.shown import shown
 
 NEEDS = frozenset(
     {
@@ -25,20 +26,74 @@ NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 _ACTING: tuple[Role, ...] = ("strength", "level", "per turn", "random")
 
 
+def mistyped(effect: Effect) -> str:
+    """Which part of a declaration is of another type than all others rely on, in words; "" where none is."""
+    for names, fits, expected in _TYPES:
+        for name in names:
+            value = getattr(effect, name)
+            if not fits(value):
+                return f"{name} is {shown(value)}; expected {expected}"
+    return ""
+
+
+def _of_words(value: Any) -> bool:
+    return all(isinstance(item, str) for item in value)
+
+
+_TYPES: tuple[tuple[tuple[str, ...], Callable[[Any], bool], str], ...] = (
+    (
+        ("name", "stage", "acts_on", "source", "signature", "footprint", "kind", "words"),
+        lambda value: isinstance(value, str),
+        "a text",
+    ),
+    (
+        ("params",),
+        lambda value: (
+            isinstance(value, Mapping) and _of_words(value) and all(isinstance(p, Param) for p in value.values())
+        ),
+        "names of parameters, each with a Param",
+    ),
+    (("needs",), lambda value: isinstance(value, frozenset | set) and _of_words(value), "a frozenset of words"),
+    (
+        ("zoomed", "fitted_shapes", "channel_shapes"),
+        lambda value: isinstance(value, tuple | list) and _of_words(value),
+        "a tuple of names of parameters",
+    ),
+    (("forward", "shapes", "begin", "derived", "angle_only", "figures"), callable, "a function"),
+    (
+        ("spread", "attainable", "stair", "drawing"),
+        lambda value: value is None or callable(value),
+        "a function, or None",
+    ),
+    (("line",), lambda value: value is None or isinstance(value, Line), "a Line, or None"),
+    (("marks",), lambda value: value is None or isinstance(value, Marks), "Marks, or None"),
+    (
+        ("baseline", "output_grid", "repeatable", "record_wide"),
+        lambda value: isinstance(value, bool | np.bool_),
+        "True or False",
+    ),
+    (("handicap",), lambda value: isinstance(value, int | float), "a number"),
+)
+"""Fields of an effect, whether a value fits them, and what is expected in words."""
+
+
 def undeclared(effect: Effect) -> str:
     """What is missing or wrong in a declaration, in words; "" where nothing is."""
-    if not NAME.fullmatch(effect.name):
-        return f"name is {effect.name!r}; expected lower-case words joined by underscores"
+    said = mistyped(effect)
+    if not said and not NAME.fullmatch(effect.name):
+        said = f"name is {shown(effect.name)}; expected lower-case words joined by underscores"
+    if said:
+        return said
     for name, value, known in (
         ("stage", effect.stage, STAGES),
         ("acts_on", effect.acts_on, get_args(ActsOn)),
         ("footprint", effect.footprint, get_args(Footprint)),
     ):
         if value not in known:
-            return f"{name} is {value!r}; expected one of {', '.join(known)}"
+            return f"{name} is {shown(value)}; expected one of {', '.join(known)}"
     for name, text in (("source", effect.source), ("signature", effect.signature)):
-        if not isinstance(text, str) or len(text.strip()) < (11 if name == "source" else 1):
-            return f"{name} is {text!r}; expected a few words: where it is defined, what it does to the error"
+        if len(text.strip()) < (11 if name == "source" else 1):
+            return f"{name} is {shown(text)}; expected a few words: where it is defined, what it does to the error"
     for need in effect.needs:
         unknown = [part for part in need.split("|") if part not in NEEDS]
         if unknown:

@@ -12,10 +12,12 @@ from typing import Any
 
 from twin.catalogue import CATALOGUE, in_order
 from twin.contract import check
+from twin.declaration import mistyped
 from twin.effect import Effect
 from twin.example import full_motion
 from twin.guarded import EffectError, guarded
-from twin.limits import shown
+from twin.shown import shown, shown_error
+from twin.surroundings import StreamTakenError, undisturbed
 
 GROUP = "halltwin.effects"
 """Entry points of this group name an :class:`Effect` or a sequence of them."""
@@ -38,12 +40,12 @@ def effects_with(own: Sequence[str | PathLike[str] | Effect] = ()) -> tuple[Effe
         for effect in effects:
             if any(effect is one for one in known):
                 continue
+            refuse_broken(effect, where)
             if effect.name in declared:
                 raise EffectError(
                     f"{where}: effect '{effect.name}' is declared by {declared[effect.name]} already; "
                     "give it another name, or leave one of them out"
                 )
-            refuse_broken(effect, where)
             declared[effect.name] = where
             known.append(effect)
             found.append(guarded(effect, where))
@@ -68,7 +70,8 @@ def effects_of(path: Path) -> tuple[Effect, ...]:
     if not path.is_file():
         raise EffectError(f"{path}: no such file; give a Python file that declares an Effect (halltwin new-effect)")
     try:
-        names = runpy.run_path(str(path), run_name=path.stem)
+        with undisturbed():
+            names = runpy.run_path(str(path), run_name=path.stem)
     except OSError as error:
         if error.filename != str(path):
             raise EffectError(_does_not_run(path, error)) from None
@@ -92,12 +95,17 @@ def refuse_broken(effect: Effect, where: str) -> None:
         broken = next((r for r in check(effect, motion=full_motion()) if r.kept is False and r.binding), None)
         said = "" if broken is None else f"{broken.said} (promise: {broken.promise})"
     if said:
-        raise EffectError(f"{where}: effect '{effect.name}': {said}; mend it, halltwin check-effect shows all promises")
+        raise EffectError(
+            f"{where}: effect {shown(effect.name)}: {said}; mend it, halltwin check-effect shows all promises"
+        )
 
 
 def unfit(effect: Effect) -> str:
     """Why an effect of the user's own may not be loaded even if it keeps every promise, in words; "" if it may."""
-    if str(effect.name).startswith(RESERVED):
+    said = mistyped(effect)
+    if said:
+        return said
+    if effect.name.startswith(RESERVED):
         return f"names that begin with '{RESERVED}' are for structure without a name"
     if effect.baseline:
         return "baseline is True; only the paper's error model is fitted always"
@@ -110,12 +118,13 @@ def _installed() -> Iterable[tuple[str, tuple[Effect, ...]]]:
     for entry in sorted(entries, key=lambda e: (e.dist.name if e.dist else "", e.name)):
         where = f"package {entry.dist.name if entry.dist else '?'}, entry point '{entry.name}'"
         try:
-            effects = _effects_in(entry.load())
+            with undisturbed():
+                effects = _effects_in(entry.load())
         except KeyboardInterrupt:
             raise
         except BaseException as error:
             raise EffectError(
-                f"{where}: cannot be loaded ({type(error).__name__}: {error}); mend or uninstall the package"
+                f"{where}: cannot be loaded ({shown_error(error)}); mend or uninstall the package"
             ) from None
         if not effects:
             raise EffectError(f"{where}: is no Effect and no sequence of them; mend or uninstall the package")
@@ -134,5 +143,7 @@ def _does_not_run(path: Path, error: BaseException) -> str:
     rows = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
     row = error.lineno if isinstance(error, SyntaxError) and error.filename == str(path) else (rows or [None])[-1]
     at = f"line {row}: " if row is not None else ""
-    text = error.msg if isinstance(error, SyntaxError) else error
-    return f"{path.name}: {at}{type(error).__name__}: {text}; mend the file"
+    if isinstance(error, StreamTakenError):
+        return f"{path.name}: once it has run, {error}"
+    said = f"{type(error).__name__}: {error.msg}" if isinstance(error, SyntaxError) else shown_error(error)
+    return f"{path.name}: {at}{said}; mend the file"

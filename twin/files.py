@@ -21,10 +21,10 @@ from twin.chain import Chain
 from twin.effect import Effect
 from twin.errors import UserError
 from twin.known_names import nearest
-from twin.limits import shown
 from twin.magnet.assembly import assembly_from, assembly_table
 from twin.parts import Parts, parts_from, parts_table
 from twin.reference.encoder import Encoder
+from twin.shown import shown
 from twin.tables import from_table, to_table
 from twin.whole_file import write_beside
 

@@ -14,6 +14,8 @@ from twin.angles import Array
 from twin.effect import Effect, Line, Marks, Parameters
 from twin.errors import UserError
 from twin.motion import Motion
+from twin.shown import shown_error
+from twin.surroundings import StreamTakenError, streams_kept
 
 
 class EffectError(UserError):
@@ -63,16 +65,19 @@ class Guard:
     def __call__(self, *given: Any, **named: Any) -> Any:
         """What the function returns. Raises EffectError."""
         try:
-            return self.call(*map(sealed, given), **named)
+            with streams_kept():
+                return self.call(*map(sealed, given), **named)
         except (KeyboardInterrupt, EffectError):
             raise
+        except StreamTakenError as error:
+            raise EffectError(f"{self.said}: {error}") from None
         except BaseException as error:
             # sys.exit() in an effect would end the program without a word.
             rows = [
                 one.lineno for one in traceback.extract_tb(error.__traceback__) if Path(one.filename).name == self.where
             ]
             at = f" in line {rows[-1]}" if rows else ""
-            raise EffectError(f"{self.said} raises {type(error).__name__}{at}: {error}{_advice(error)}") from None
+            raise EffectError(f"{self.said} raises {shown_error(error, at)}{_advice(error)}") from None
 
 
 class _Forward(Guard):
@@ -99,5 +104,5 @@ class _Forward(Guard):
 
 
 def _advice(error: BaseException) -> str:
-    read_only = isinstance(error, ValueError) and "read-only" in str(error)
+    read_only = isinstance(error, ValueError) and "read-only" in shown_error(error)
     return "; an effect may not write to what it is given: return a new array" if read_only else "; mend it"

@@ -7,20 +7,11 @@ from typing import Any
 import numpy as np
 
 from twin.errors import UserError
+from twin.shown import shown
 
 
 class OutOfRangeError(UserError):
     """A parameter lies outside its allowed range; the message names it, its value and the range."""
-
-
-def shown(value: Any, most: int = 60) -> str:
-    """A value as it may stand in a message: not longer than ``most`` characters."""
-    try:
-        text = repr(value)
-    except ValueError:
-        # Python writes out no whole number of more than 4300 digits.
-        text = f"a {type(value).__name__} too long to be shown"
-    return text if len(text) <= most else text[:most] + "..."
 
 
 def require_within(name: str, value: Any, lower: float, upper: float, unit: str = "", *, whole: bool = False) -> None:

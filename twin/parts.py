@@ -8,8 +8,9 @@ from typing import Any
 
 from twin.concentrator.disk import Disk
 from twin.hall.spinning_current import Plate
-from twin.limits import OutOfRangeError, require_within, shown
+from twin.limits import OutOfRangeError, require_within
 from twin.magnet.stray_field import FIELD_MT
+from twin.shown import shown
 from twin.tables import from_table, to_table
 
 

@@ -9,7 +9,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from twin.known_names import nearest
-from twin.limits import OutOfRangeError, shown
+from twin.limits import OutOfRangeError
+from twin.shown import shown
 
 Part = TypeVar("Part")
 

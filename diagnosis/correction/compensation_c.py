@@ -13,7 +13,7 @@ import numpy as np
 from diagnosis.correction.compensation import Correction
 from twin.angles import TAU, Array
 from twin.errors import UserError
-from twin.limits import shown
+from twin.shown import shown
 
 _TURN = 2.0**32
 _Q30 = 2.0**30

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.limits import shown
+from twin.shown import shown
 
 FOOTPRINTS = 4
 """Places where a cause can show: the mean, the spread, the values, and the sequence of the readings."""

@@ -30,7 +30,8 @@ def main() -> None:
     if said:
         # Names of files and cells may hold line breaks and control characters; the message stays one line.
         line = " ".join(said.split())
-        with contextlib.suppress(OSError):
+        # An effect of the user's own may have closed it.
+        with contextlib.suppress(OSError, ValueError):
             print(f"halltwin: {''.join(c if c.isprintable() else '?' for c in line)}", file=sys.stderr)
     streams.settle(sys.stderr)
     raise SystemExit(code)

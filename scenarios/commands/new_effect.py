@@ -21,7 +21,7 @@ from twin.declaration import NAME
 from twin.effect import Effect
 from twin.errors import UserError
 from twin.extensions import RESERVED, effects_of, effects_with, unfit
-from twin.limits import shown
+from twin.shown import shown
 
 _PLAIN = "structure of your own: a line of order 5 in the shaft angle, to begin with"
 
@@ -115,13 +115,13 @@ def check_run(path: Path) -> None:
     console = Console(highlight=False)
     broken = []
     for effect in effects:
-        table = Table(title=effect.name, title_justify="left", title_style="bold", box=None, padding=(0, 2, 0, 0))
+        table = Table(title=str(effect.name), title_justify="left", title_style="bold", box=None, padding=(0, 2, 0, 0))
         for head in ("promise", "", ""):
             table.add_column(head, no_wrap=head == "promise")
         for promise, kept, said in _results(effect):
             word = {True: ("kept", "green"), False: ("BROKEN", "red"), None: ("not asked", "dim")}[kept]
             table.add_row(promise, Text(*word), Text(said))
-            broken += [effect.name] if kept is False else []
+            broken += [str(effect.name)] if kept is False else []
         console.print(table)
         console.print()
     if broken:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tests.command_line import halltwin
+from tests.pages import ROOT
 from twin.chain import Chain
 from twin.example import full_motion
 from twin.extensions import EffectError, effects_with
@@ -136,3 +140,69 @@ EFFECT = """,
     assert ended.err.startswith("halltwin: stopping: the answer so far follows")
     assert ended.err.count("\n") == 1
     assert json.loads((tmp_path / "answer.json").read_text())["cut_short"]["stage"]
+
+
+DECLARED = {
+    "needs as a list": ("needs=frozenset({", "needs=list({", "needs is ['"),
+    "no name": ('name="gear_mesh"', "name=None", "effect None: name is None; expected a text"),
+    "a name that is none": ('name="gear_mesh"', "name=[]", "effect []: name is []; expected a text"),
+    "a long name": ('name="gear_mesh"', f"name={'x' * 500!r} + 'X'", "lower-case words"),
+    "no parameters": ("    params={", "    params=None and {", "params is None; expected names of parameters"),
+    "a word for a function": ("forward=forward,", "forward='forward',", "forward is 'forward'; expected a function"),
+    "a word for a line": ("forward=forward,", "forward=forward, line='x',", "line is 'x'; expected a Line, or None"),
+    "a list for True": ("forward=forward,", "forward=forward, baseline=[],", "baseline is []; expected True or False"),
+    "takes standard output": (
+        "def forward(",
+        "import sys\nsys.stdout = None\ndef forward(",
+        "once it has run, sys.",
+    ),
+    "takes it at a call": ("    twist_deg", "    import sys\n    sys.stdout = None\n    twist_deg", "sys.stdout is"),
+    "speaks of nothing": ("    twist_deg", "    raise Mute\n    twist_deg", "Mute: what it says cannot be shown"),
+}
+MUTE = """
+
+class Mute(Exception):
+    def __str__(self):
+        raise ValueError
+
+
+"""
+
+
+@pytest.mark.parametrize("case", DECLARED)
+def test_a_declaration_or_a_file_that_does_what_it_may_not_is_one_line(case: str, tmp_path: Path) -> None:
+    text, instead, said = DECLARED[case]
+    path = tmp_path / "gear_mesh.py"
+    source = GEAR.read_text().replace("\n\nTEETH", f"{MUTE}TEETH", 1)
+    assert text in source
+    path.write_text(source.replace(text, instead, 1))
+    told = refused("explain", SWEEP, "--effects", path)
+    assert told.startswith("halltwin: gear_mesh.py: ")
+    assert said in told
+    assert len(told) < 500
+    checked = halltwin("check-effect", path)
+    assert checked.code == 2
+    assert checked.err.startswith("halltwin: gear_mesh.py: ")
+
+
+def test_an_effect_that_closes_standard_output_is_told(tmp_path: Path) -> None:
+    """In a process of its own, whose standard output is then gone."""
+    path = tmp_path / "gear_mesh.py"
+    path.write_text(GEAR.read_text().replace("def forward(", "import sys\nsys.stdout.close()\n\n\ndef forward(", 1))
+    command = [sys.executable, "-m", "scenarios.cli.main", "causes", "--effects", str(path)]
+    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr.count("\n")) == (2, "", 1)
+    assert ended.stderr.startswith("halltwin: gear_mesh.py: once it has run, sys.stdout is closed or another one")
+
+
+def test_what_an_effect_sets_for_itself_holds_for_nobody_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "gear_mesh.py"
+    own = "import os, warnings\nnp.seterr(all='raise')\nwarnings.simplefilter('error')\nos.chdir('/')\n\n\n"
+    called = "    np.seterr(all='raise')\n    twist_deg"
+    path.write_text(
+        GEAR.read_text().replace("def forward(", f"{own}def forward(", 1).replace("    twist_deg", called, 1)
+    )
+    before = np.geterr(), list(warnings.filters), Path.cwd()
+    effects_with([path])
+    assert (np.geterr(), list(warnings.filters), Path.cwd()) == before

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from twin.angles import Array, channels_of
-from twin.limits import OutOfRangeError, shown
+from twin.limits import OutOfRangeError
 from twin.magnet.field import Series, series_of
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement, designs_of
 from twin.motion import Motion
+from twin.shown import shown
 from twin.tables import from_table, to_table
 
 NOMINAL_C = 25.0

@@ -105,3 +105,35 @@ def noise_at(field: float, *, stated_mT: float, stated_deg: float) -> Chain:
     values = {**NOISE.null(), "rms_deg": stated_deg}
     factor = NOISE.field_factor("rms_deg", values, field_ratio=field / stated_mT)
     return Chain().with_effect(NOISE.name, rms_deg=stated_deg * factor)
+
+
+def hysteresis_of(difference_deg: float) -> Chain:
+    """A chain whose readings of both directions are so far apart, behind a word of 12 bits."""
+    chain = Chain().with_effect("hysteresis", lag_deg=0.5 * difference_deg, memory_deg=1.0)
+    return chain.with_effect("output_quantisation", bits=12)
+
+
+FILTER_STEP_MS = 0.02
+"""Time from one raw reading to the next."""
+
+
+def filtered_deg(delay_ms: float) -> tuple[float, float]:
+    """RMS noise [deg] and delay [ms] of means over a window twice the delay, of readings while the shaft turns.
+
+    The raw noise is that which the fastest filter makes its published one of.
+    """
+    fastest = min(AS5600_FILTER)
+    rows, rows_fastest = (round(2.0 * delay / FILTER_STEP_MS) for delay in (delay_ms, fastest))
+    raw = Chain().with_effect(NOISE.name, rms_deg=AS5600_FILTER[fastest] * float(np.sqrt(rows_fastest)))
+    rpm = 100.0
+    points = round(60e3 / rpm / FILTER_STEP_MS)
+    seen = _windows(turning(raw, rpm, turns=-(-3000 * rows // points), points=points), rows)
+    # The mean over a window is that of its middle: half a window before its last reading, within half a reading.
+    shaft = _windows(6.0 * rpm * 1e-3 * FILTER_STEP_MS * np.arange(2 * rows), rows)
+    return float(np.std(seen)), float((2 * rows - 1) * FILTER_STEP_MS - shaft[-1] / (6.0 * rpm * 1e-3))
+
+
+def _windows(values: Array, rows: int) -> Array:
+    """Means of so many consecutive readings."""
+    whole = values.size // rows * rows
+    return np.asarray(values[:whole].reshape(-1, rows).mean(axis=1))

@@ -101,8 +101,8 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
 
 def _baseline(answer: Mapping[str, Any], read: Readings, found: Discovery) -> str:
     words = (
-        f"<p>{_text(statements.baseline_words(answer))}. What stands above the noise, the simulation gets wrong: "
-        f"{_text(statements.floor_words(answer))}.</p>"
+        f"<p>{_text(statements.baseline_words(answer))}. What stands above the noise, the simulation gets wrong "
+        f"({_text(statements.floor_words(answer))}).</p>"
     )
     limits = drawn.residual_limits(read)
     pictures = [

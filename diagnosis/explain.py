@@ -175,9 +175,10 @@ def _check_settings(settings: DiscoverySettings | None) -> None:
 def _check_on_interrupt(on_interrupt: str) -> None:
     """Raise UserError for a word that is none of the two."""
     from twin.errors import UserError
+    from twin.shown import shown
 
     if on_interrupt not in ("raise", "answer"):
-        raise UserError(f"on_interrupt is {on_interrupt!r}; expected 'raise' or 'answer'")
+        raise UserError(f"on_interrupt is {shown(on_interrupt)}; expected 'raise' or 'answer'")
 
 
 def _searched(own: OwnEffects, twin: TwinLike | None) -> tuple[Effect, ...]:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.errors import SweepError
+from twin.errors import SweepError, UserError
 from twin.files import SCHEMA
 from twin.sweep import Sweep
 
@@ -345,3 +345,10 @@ def test_part_of_a_turn_is_not_taken_for_radians() -> None:
 @pytest.mark.parametrize("command", ["spinning", "hardware"])
 def test_output_folder_that_cannot_be_made(command: str, good: Path) -> None:
     assert "good.csv" in refused(command, "-o", good / "folder")
+
+
+@pytest.mark.parametrize("most", [-1, 0, 1.5, float("nan"), float("inf"), "2GB", None, True, 10**400])
+def test_a_limit_of_bytes_that_is_none_is_refused(most: object) -> None:
+    with pytest.raises(UserError, match=r"^max_bytes is .{1,50}; expected a whole number of bytes") as caught:
+        Sweep.read(DATA / "bench_sweep.csv", max_bytes=most)  # type: ignore[arg-type]
+    assert len(str(caught.value)) < 150

@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
-from tests.fuzz.batch import Failure, batch
+from tests.fuzz.batch import Failure, batch, plain_mb
 from tests.fuzz.calls import content
-from tests.fuzz.trial import ANSWERED, FAILED, REFUSED, Ended, MemoryWatch, tried
+from tests.fuzz.trial import ANSWERED, FAILED, REFUSED, Ended, MemoryWatch, peak_mb, tried
 from twin.errors import UserError
 
 SHORT = {"sweeps": range(100), "explain": range(4), "twins": range(100), "logs": range(20), "options": range(8)}
 SEED = 13
+
+
+def _in_a_process(call: Callable[..., Any], *given: Any, **named: Any) -> Any:
+    """What a call returns in a fresh process, whose memory is not that of the tests before it."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        return pool.submit(call, *given, **named).result()
 
 
 @pytest.mark.parametrize("kind", SHORT)
@@ -20,7 +31,7 @@ def test_whatever_is_handed_in_is_answered_or_refused_in_one_line(kind: str) -> 
     if kind == "logs":
         pytest.importorskip("can")
         pytest.importorskip("cantools")
-    how, failures = batch(kind, SHORT[kind], seed=SEED, plain=1e6)
+    how, failures = _in_a_process(batch, kind, SHORT[kind], seed=SEED, plain=_in_a_process(plain_mb))
     assert [(one.number, one.said[-500:]) for one in failures] == []
     # A bank of inputs that are all refused at the door would try the door alone.
     assert ANSWERED in how
@@ -57,6 +68,18 @@ def test_what_is_neither_is_a_failure() -> None:
 def test_memory_beyond_ten_times_a_plain_run_is_a_failure() -> None:
     assert MemoryWatch(plain_mb=1.0).judged(Ended(ANSWERED)).how == FAILED
     assert MemoryWatch(plain_mb=1e6).judged(Ended(ANSWERED)).how == ANSWERED
+
+
+def blown_up() -> str:
+    """How a trial is judged that takes more than ten times the memory of a plain run."""
+    watch = MemoryWatch(plain_mb=peak_mb())
+    calm = watch.judged(Ended(ANSWERED)).how
+    much = np.ones(int(11.0 * watch.plain_mb) << 17)
+    return f"{calm} {watch.judged(Ended(ANSWERED)).how} {much.size > 0}"
+
+
+def test_memory_is_that_of_the_process_and_a_blow_up_is_a_failure() -> None:
+    assert _in_a_process(blown_up) == f"{ANSWERED} {FAILED} True"
 
 
 def test_an_input_that_fails_is_kept(tmp_path: Path) -> None:

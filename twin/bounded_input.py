@@ -7,8 +7,12 @@ import re
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from twin.errors import UserError
+from twin.shown import shown
 
 LARGEST_SWEEP_BYTES = 2_000_000_000
 """Most bytes of a sweep, decompressed: ten million readings in all nine columns take 1.1 GB as text."""
@@ -27,8 +31,16 @@ def bytes_of(size: str | float) -> int:
     except (KeyError, ValueError):
         count = -1.0
     if not 1.0 <= count <= 1e15:
-        raise UserError(f"max-size is {size!r}; expected a size from 1 to 1e15 bytes, such as 500MB or 2GB")
+        raise UserError(f"max-size is {shown(size)}; expected a size from 1 to 1e15 bytes, such as 500MB or 2GB")
     return int(count)
+
+
+def checked_bytes(most: Any) -> int:
+    """Most bytes of a sweep as a call from Python gives it. Raises UserError for what is no whole number from 1."""
+    number = isinstance(most, int | float | np.integer) and not isinstance(most, bool)
+    if not number or not 1 <= most <= 1e15 or most != int(most):
+        raise UserError(f"max_bytes is {shown(most)}; expected a whole number of bytes from 1 to 1e15")
+    return int(most)
 
 
 def blocks(path: Path, *, most: int, expected: str, raised_by: str = "") -> Iterator[bytes]:
@@ -74,7 +86,7 @@ def blocks(path: Path, *, most: int, expected: str, raised_by: str = "") -> Iter
         # A zero byte in a name: no file can bear it.
         if isinstance(error, UserError):
             raise
-        raise UserError(f"{str(path)!r}: is no name of a file ({error}); give the path of {expected}") from None
+        raise UserError(f"{shown(str(path))}: is no name of a file ({error}); give the path of {expected}") from None
 
 
 def whole(path: Path, *, most: int = LARGEST_TEXT_BYTES, expected: str) -> bytes:

@@ -17,7 +17,7 @@ from twin.declaration import undeclared
 from twin.effect import Effect, Param, Role
 from twin.example import Example, example_of, full_motion, permuted, signal_for
 from twin.motion import Motion
-from twin.shown import shown_error
+from twin.shown import shown, shown_error
 from twin.surroundings import StreamTakenError, streams_kept
 
 ROUNDING_RAD = 1e-12
@@ -204,7 +204,7 @@ def _lost_shapes(effect: Effect, case: Example, motion: Motion) -> str:
         for name, value in shape.items():
             param = effect.params.get(name)
             if param is None or param.role not in ("shape", "level"):
-                return f"shapes holds {name!r}, which is no parameter of role 'shape' or 'level'"
+                return f"shapes holds {shown(name)}, which is no parameter of role 'shape' or 'level'"
             if not param.lower <= value <= param.upper:
                 return f"shapes holds {name} = {value:g}, outside [{param.lower:g}, {param.upper:g}]"
     return ""
@@ -260,7 +260,7 @@ def _drawn_astray(effect: Effect, case: Example, motion: Motion) -> str:
     for name, values in drawn.items():
         param = effect.params.get(name)
         if param is None:
-            return f"draws {name!r}, which is no parameter"
+            return f"draws {shown(name)}, which is no parameter"
         array = np.asarray(values)
         if array.shape != strength.shape:
             return f"draws {name} of shape {array.shape}; expected {strength.shape}, one value a sweep"

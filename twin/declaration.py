@@ -97,7 +97,7 @@ def undeclared(effect: Effect) -> str:
     for need in effect.needs:
         unknown = [part for part in need.split("|") if part not in NEEDS]
         if unknown:
-            return f"needs {unknown[0]!r}, which no sweep provides; expected among {', '.join(sorted(NEEDS))}"
+            return f"needs {shown(unknown[0])}, which no sweep provides; expected among {', '.join(sorted(NEEDS))}"
     if not any(effect.roles(role) for role in _ACTING):
         return "has no strength: no parameter that makes it vanish at its null"
     unclear = next((said for name, param in effect.params.items() for said in _unclear(name, param)), "")
@@ -107,17 +107,17 @@ def undeclared(effect: Effect) -> str:
 def _unclear(name: str, param: Param) -> Iterator[str]:
     """What is wrong with a parameter's declaration, in words, one fault after the other."""
     if re.search(r"_\d+$", name) or not name.isidentifier():
-        yield f"parameter {name!r}: expected a name that ends in its unit and in no number after an underscore"
+        yield f"parameter {shown(name)}: expected a name that ends in its unit and in no number after an underscore"
     if not str(param.unit).strip():
         yield f'{name} has no unit; give one ("1" for a pure number)'
     if not str(param.doc).strip():
         yield f"{name} has no doc; say in a few words what it is"
     if param.role not in get_args(Role):
-        yield f"{name}: role is {param.role!r}; expected one of {', '.join(get_args(Role))}"
+        yield f"{name}: role is {shown(param.role)}; expected one of {', '.join(get_args(Role))}"
     if not np.isfinite([param.null, param.lower, param.upper]).all() or not param.typical > 0.0:
         yield f"{name}: null, lower, upper and typical must be finite, and typical positive"
     if param.mirror not in (None, -1, 0, 1):
-        yield f"{name}: mirror is {param.mirror!r}; expected -1, 1, or 0 where no value reads the same"
+        yield f"{name}: mirror is {shown(param.mirror)}; expected -1, 1, or 0 where no value reads the same"
     low, high = param.allowed or (param.lower, param.upper)
     if not param.lower <= low <= param.null <= high <= param.upper:
         yield f"{name}: allowed is {param.allowed}; expected a range within [lower, upper] that holds the null"
@@ -131,7 +131,7 @@ def _unsearchable(effect: Effect) -> str:
     named += [effect.line.param] if effect.line is not None else []
     for name in named:
         if name not in effect.params:
-            return f"zoomed, fitted_shapes or line name {name!r}, which is no parameter"
+            return f"zoomed, fitted_shapes or line name {shown(name)}, which is no parameter"
     if effect.line is not None and effect.line.clock != "channels" and len(effect.roles("phase")) != 1:
         return "has a line but not one parameter of role 'phase'"
     missing = {
@@ -142,7 +142,7 @@ def _unsearchable(effect: Effect) -> str:
     }[effect.footprint]
     # The baseline's noise is not searched for, and a burst by code of its own.
     exempt = effect.baseline or effect.name.startswith("unnamed_")
-    return f"footprint {effect.footprint!r} needs {missing}" if missing and not exempt else ""
+    return f"footprint {shown(effect.footprint)} needs {missing}" if missing and not exempt else ""
 
 
 def _untold(effect: Effect) -> str:
@@ -154,7 +154,7 @@ def _untold(effect: Effect) -> str:
     told = {} if effect.marks is None else effect.marks.told(1, 100)
     strange = next((name for name in told if name not in effect.params), None)
     if strange is not None:
-        return f"marks.told tells of {strange!r}, which is no parameter"
+        return f"marks.told tells of {shown(strange)}, which is no parameter"
     known = {*effect.params, *effect.figures(effect.null()), "largest_deg"}
     strange = next((name for _, name, _, _ in Formatter().parse(effect.words) if name and name not in known), None)
-    return f"words name {strange!r}, which is neither a parameter nor a figure" if strange is not None else ""
+    return f"words name {shown(strange)}, which is neither a parameter nor a figure" if strange is not None else ""

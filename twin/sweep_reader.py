@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.angles import Array
-from twin.bounded_input import LARGEST_SWEEP_BYTES, blocks
+from twin.bounded_input import LARGEST_SWEEP_BYTES, blocks, checked_bytes
 from twin.errors import SweepError, UserError
 from twin.sweep_columns import COLUMNS
 from twin.sweep_text import parse_csv
@@ -24,6 +24,7 @@ def read_columns(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> dict[st
     ``max_bytes``: most bytes after decompression. Raises SweepError.
     """
     try:
+        max_bytes = checked_bytes(max_bytes)
         content = blocks(path, most=max_bytes, expected=_EXPECTED, raised_by=RAISED_BY)
         first = next(content, b"")
         if first[:4] == _PARQUET:

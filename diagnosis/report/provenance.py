@@ -9,6 +9,7 @@ from importlib import metadata
 from typing import Any
 
 from twin.errors import UserError
+from twin.shown import shown
 
 EPOCH = "SOURCE_DATE_EPOCH"
 """Environment variable that says, in seconds since 1970, which day it is taken to be; see reproducible-builds.org."""
@@ -62,4 +63,4 @@ def day() -> str:
     try:
         return datetime.fromtimestamp(int(given), UTC).date().isoformat()
     except (ValueError, OverflowError, OSError):
-        raise UserError(f"{EPOCH} is {given!r}; expected whole seconds since 1970, or leave it unset") from None
+        raise UserError(f"{EPOCH} is {shown(given)}; expected whole seconds since 1970, or leave it unset") from None

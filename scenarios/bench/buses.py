@@ -10,6 +10,7 @@ from typing import Any, cast
 from scenarios.bench.faults import Bus, Fault, FaultyBus, Opener
 from scenarios.commands.once import check_once
 from twin.errors import UserError
+from twin.shown import shown
 
 _OWN_DEFAULTS: dict[str, dict[str, Any]] = {
     # Not past this machine, unless the user says so: a bench in one process and its sequence in another.
@@ -43,7 +44,7 @@ def parse_options(pairs: Sequence[str]) -> dict[str, Any]:
     for pair in pairs:
         key, sign, value = pair.partition("=")
         if not sign or not key:
-            raise UserError(f"bus option {pair!r}: expected KEY=VALUE, e.g. bitrate=500000")
+            raise UserError(f"bus option {shown(pair)}: expected KEY=VALUE, e.g. bitrate=500000")
         check_once("--bus-option", [*found, key])
         found[key] = _plain(value)
     return found

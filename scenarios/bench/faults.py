@@ -15,6 +15,7 @@ from scenarios.bench.messages import messages, with_byte_flipped, with_counter
 from twin.errors import UserError
 from twin.known_names import nearest
 from twin.limits import require_within
+from twin.shown import shown
 
 NODES = ("stepper", "reference", "hall", "chamber")
 AFTER_FRAMES = 200
@@ -58,16 +59,16 @@ def parse(text: str) -> tuple[Fault, ...]:
     kind, _, node = head.partition(":")
     kinds = (*_SHARES, *_HALL, *_ONCE)
     if kind not in kinds:
-        raise UserError(f"fault {text!r}: unknown kind{nearest(kind, kinds)}; expected one of {', '.join(kinds)}")
+        raise UserError(f"fault {shown(text)}: unknown kind{nearest(kind, kinds)}; expected one of {', '.join(kinds)}")
     known = ("hall",) if kind in _HALL else (*NODES, "bench") if kind in (*_SHARES, "bus_off") else NODES
     if node and node not in known:
-        raise UserError(f"fault {text!r}: unknown node{nearest(node, known)}; expected one of {', '.join(known)}")
+        raise UserError(f"fault {shown(text)}: unknown node{nearest(node, known)}; expected one of {', '.join(known)}")
     if not node and kind in _ONCE:
-        raise UserError(f"fault {text!r}: says not whose; expected {kind}:NODE, one of {', '.join(known)}")
+        raise UserError(f"fault {shown(text)}: says not whose; expected {kind}:NODE, one of {', '.join(known)}")
     try:
         value = float(given) if given else _ONCE.get(kind, _DEFAULT_SHARE)
     except ValueError:
-        raise UserError(f"fault {text!r}: {given!r} is not a number") from None
+        raise UserError(f"fault {shown(text)}: {shown(given)} is not a number") from None
     require_within(f"fault {kind}", value, 0.0, 1e9 if kind in _ONCE else 1.0)
     return tuple(Fault(kind, one, value) for one in ((node,) if node else known))
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
 from scenarios.cli.bench import bench
 from scenarios.cli.effects import causes, check_effect, new_effect
@@ -12,6 +13,22 @@ from scenarios.cli.simulation import hardware, paper, simulate, spinning
 from scenarios.cli.studies import design, generate, recover
 from scenarios.cli.sweeps import compensate, diagnose, explain, monitor
 from scenarios.cli.verbosity import with_verbosity
+
+
+class Command(TyperCommand):
+    """A command that refuses an empty value: as the name of a file it would mean the working folder."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """See click. Raises BadParameter."""
+        given, _, _ = self.make_parser(ctx).parse_args(args=list(args))
+        for param in self.get_params(ctx):
+            asked: Any = param
+            values = given.get(str(param.name))
+            empty = "" in (values if isinstance(values, list | tuple) else [values])
+            if empty and param.default != "":
+                raise typer.BadParameter("is empty; give a value", ctx=ctx, param=asked)
+        return super().parse_args(ctx, args)
+
 
 app = typer.Typer(
     name="halltwin",
@@ -59,4 +76,4 @@ for command in (
     design,
     recover,
 ):
-    app.command()(with_verbosity(command))
+    app.command(cls=Command)(with_verbosity(command))

@@ -11,6 +11,7 @@ from typing import Any
 
 from twin.errors import UserError
 from twin.known_names import nearest
+from twin.shown import shown
 
 
 class FoundError(Exception):
@@ -23,7 +24,7 @@ def asked(given: Sequence[str], known: Iterable[str]) -> tuple[str, ...]:
     listed = list(dict.fromkeys(known))
     for word in words:
         if word not in listed:
-            raise UserError(f"--fail-on is {word!r}{nearest(word, listed)}; expected among {', '.join(listed)}")
+            raise UserError(f"--fail-on is {shown(word)}{nearest(word, listed)}; expected among {', '.join(listed)}")
     return words
 
 

@@ -9,13 +9,14 @@ import numpy as np
 from scenarios.commands.once import check_once
 from twin.errors import UserError
 from twin.known_names import nearest
+from twin.shown import shown
 
 
 def interval(name: str, text: str, *, example: str) -> tuple[float, float]:
     """``low:high`` as two numbers in order; one number alone is both. Raises UserError with an example of it."""
     parts = _numbers(text, ":")
     if parts is None or len(parts) not in (1, 2) or parts[0] > parts[-1]:
-        raise UserError(f"{name} is {text!r}; expected low:high, e.g. {example}")
+        raise UserError(f"{name} is {shown(text)}; expected low:high, e.g. {example}")
     return parts[0], parts[-1]
 
 
@@ -30,7 +31,7 @@ def values(name: str, text: str) -> tuple[float, ...]:
     listed = _numbers(text, ",")
     if listed:
         return tuple(listed)
-    raise UserError(f"{name} is {text!r}; expected low:high:step such as 0.5:4:0.25, or numbers with commas")
+    raise UserError(f"{name} is {shown(text)}; expected low:high:step such as 0.5:4:0.25, or numbers with commas")
 
 
 def whole_values(name: str, text: str) -> tuple[int, ...]:
@@ -38,7 +39,7 @@ def whole_values(name: str, text: str) -> tuple[int, ...]:
     found = values(name, text)
     for value in found:
         if value != int(value):
-            raise UserError(f"{name} is {text!r}; expected whole numbers, found {value:g}")
+            raise UserError(f"{name} is {shown(text)}; expected whole numbers, found {value:g}")
     return tuple(int(value) for value in found)
 
 

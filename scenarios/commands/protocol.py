@@ -11,6 +11,7 @@ import numpy as np
 from twin.angles import TAU
 from twin.limits import OutOfRangeError, require_within
 from twin.motion import Motion
+from twin.shown import shown
 
 COLDEST_C, HOTTEST_C = -100.0, 300.0
 """Between these a magnet and a sensor are what their figures say."""
@@ -78,4 +79,4 @@ def numbers(name: str, text: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",") if part.strip()]
     except ValueError:
-        raise OutOfRangeError(f"{name} is {text!r}; expected numbers with commas between, e.g. 25,60") from None
+        raise OutOfRangeError(f"{name} is {shown(text)}; expected numbers with commas between, e.g. 25,60") from None

@@ -11,6 +11,7 @@ from twin.angles import Array
 from twin.known_names import nearest
 from twin.limits import OutOfRangeError, require_within
 from twin.magnet.materials import REFERENCE_C, grade
+from twin.shown import shown
 
 Shape = Literal["cylinder", "ring", "block"]
 Number = float | Array
@@ -43,7 +44,7 @@ class Magnet:
         if self.shape not in get_args(Shape):
             shapes = get_args(Shape)
             raise OutOfRangeError(
-                f"shape is {self.shape!r}{nearest(self.shape, shapes)}; expected one of {', '.join(shapes)}"
+                f"shape is {shown(self.shape)}{nearest(self.shape, shapes)}; expected one of {', '.join(shapes)}"
             )
         grade(self.grade)
         # Those of another shape too: they are read, handed on and written.

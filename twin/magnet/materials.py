@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from twin.known_names import nearest
 from twin.limits import OutOfRangeError
+from twin.shown import shown
 
 REFERENCE_C = 20.0
 """Temperature at which data sheets state the remanence [C]."""
@@ -40,5 +41,5 @@ def grade(name: str) -> Grade:
         return GRADES[name]
     except KeyError:
         raise OutOfRangeError(
-            f"grade is {name!r}{nearest(name, GRADES)}; expected one of {', '.join(GRADES)}"
+            f"grade is {shown(name)}{nearest(name, GRADES)}; expected one of {', '.join(GRADES)}"
         ) from None

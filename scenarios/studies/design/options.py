@@ -13,6 +13,7 @@ from twin.errors import UserError
 from twin.known_names import nearest
 from twin.limits import require_within
 from twin.magnet.magnet import Shape
+from twin.shown import shown
 
 OPTIONS = {
     "demand.max_error_deg": "--max-error",
@@ -47,7 +48,7 @@ def space_of(
     """The space. Raises UserError."""
     if shape not in get_args(Shape):
         shapes = get_args(Shape)
-        raise UserError(f"shape is {shape!r}{nearest(shape, shapes)}; expected one of {', '.join(shapes)}")
+        raise UserError(f"shape is {shown(shape)}{nearest(shape, shapes)}; expected one of {', '.join(shapes)}")
     check_once("--grade", grades)
     require_within("count", count, 1, MOST_DESIGNS, whole=True)
     return Space(

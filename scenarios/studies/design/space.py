@@ -18,6 +18,7 @@ from twin.limits import OutOfRangeError
 from twin.magnet.magnet import Magnet, Shape
 from twin.magnet.materials import grade
 from twin.magnet.placement import Placement
+from twin.shown import shown
 
 Sampling = Literal["grid", "lhs", "sobol"]
 AXES = {
@@ -64,7 +65,7 @@ class Space:
         if self.sampling not in get_args(Sampling):
             words = get_args(Sampling)
             raise UserError(
-                f"sampling is {self.sampling!r}{nearest(self.sampling, words)}; expected one of {', '.join(words)}"
+                f"sampling is {shown(self.sampling)}{nearest(self.sampling, words)}; expected one of {', '.join(words)}"
             )
         for name in self.grades:
             grade(name)

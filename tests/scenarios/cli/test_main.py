@@ -109,3 +109,18 @@ def test_an_empty_day_counts_as_unset() -> None:
     environment = {**os.environ, "SOURCE_DATE_EPOCH": ""}
     ended = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stderr) == (0, "")
+
+
+# ---- empty values ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_an_empty_value_is_refused_for_each_option(command: str) -> None:
+    """As the name of a file it would mean the working folder."""
+    for param in get_command(app).commands[command].params:
+        if getattr(param, "is_flag", False) or param.default == "" or param.name in ("help", "quiet", "verbose"):
+            continue
+        given = [""] if param.param_type_name == "argument" else [max(param.opts, key=len), ""]
+        ended = halltwin(command, *given)
+        assert (ended.code, ended.out) == (2, ""), param.name
+        assert "is empty; give a value" in " ".join(ended.err.split()), param.name

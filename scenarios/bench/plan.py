@@ -105,9 +105,30 @@ class Plan:
         ways = (1, -1) if self.both_directions else (1,)
         return itertools.product(self.temperatures_c or (None,), self.speeds_rpm, ways)
 
-    def run_in_deg(self, first: Stop) -> float:
-        """The angle to start from, so that the first reading is approached as those after it."""
-        return first.angle_deg - first.direction * max(RUN_IN_DEG, self.ramp_deg(first.speed_rpm))
+    def run_in_deg(self, first: Stop) -> list[float]:
+        """The angles to drive to one after the other before a reading, which may be any of the plan.
+
+        They lead over as much of the way to it as the concentrator remembers, with every reversal there: a run that
+        goes on behind a reversal finds the field that an undisturbed one has there.
+        """
+        stops = list(itertools.islice(self.stops(), first.index + 1))
+        begin = stops[0].angle_deg - stops[0].direction * max(RUN_IN_DEG, self.ramp_deg(stops[0].speed_rpm))
+        way = [first.angle_deg]
+        left, heading = max(RUN_IN_DEG, self.ramp_deg(first.speed_rpm)), 0.0
+        for before in [*(stop.angle_deg for stop in stops[-2::-1]), begin]:
+            if left <= 0.0:
+                break
+            step = way[-1] - before
+            if step * heading > 0.0:
+                way.pop()
+            if step:
+                left -= abs(step)
+                heading = step
+                way.append(before)
+        if max(way) - min(way) < 360.0:
+            # Over less than a turn to and fro the reference may not pass its index: begin farther back.
+            way[-1] -= math.copysign(RUN_IN_DEG, heading)
+        return way[:0:-1]
 
     def ramp_deg(self, speed_rpm: float) -> float:
         """Travel between standstill and this speed, with a margin: 6 deg/s is one turn a minute."""

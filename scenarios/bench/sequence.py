@@ -49,7 +49,8 @@ class Sequence:
         """Settings of the drive, and the run-in before the first reading."""
         settings = {"Settle": round(plan.settle_s * 1000.0), "Acceleration": round(plan.acceleration_rpm_per_s)}
         self._ask("MotionSettings", "MotionStatus", settings, lambda frame: True)
-        self.drive(plan.run_in_deg(first), plan.drive_rpm)
+        for angle in plan.run_in_deg(first):
+            self.drive(angle, plan.drive_rpm)
 
     def take(self, plan: Plan, stops: Iterable[Stop], keep: Callable[[Reading], None]) -> None:
         """Take the readings one after the other; ``keep`` gets each as soon as it is complete."""

@@ -110,6 +110,13 @@ STUDIES: tuple[Mutation, ...] = (
         (f"{_BENCH_TESTS}::test_a_full_disk_is_one_line_and_room_lets_it_go_on",),
     ),
     Mutation(
+        "journal.reversals",
+        "scenarios/bench/plan.py",
+        "            if step * heading > 0.0:\n",
+        "            if heading:\n",
+        (f"{_BENCH_TESTS}::test_a_run_that_goes_on_behind_a_reversal_finds_the_field_as_it_was",),
+    ),
+    Mutation(
         "journal.seal",
         "scenarios/bench/sealed_lines.py",
         "    if seal.encode() != found[2]:\n",

@@ -58,6 +58,22 @@ def test_a_killed_run_goes_on(tmp_path: Path, undisturbed: tuple[Path, Path]) ->
     assert all(json.loads(line) for line in finished_path(sweep).read_text().splitlines())
 
 
+@pytest.mark.parametrize("kept", [1, 30, 60, 61, 66, 119])
+def test_a_run_that_goes_on_behind_a_reversal_finds_the_field_as_it_was(tmp_path: Path, kept: int) -> None:
+    """The concentrator remembers 20 deg; a reversal that the run-in left out would show by 0.9 deg."""
+    twin = tmp_path / "lagging.toml"
+    write_twin(twin, quiet_encoder().with_effect("hysteresis", lag_deg=0.6, memory_deg=20.0))
+    whole, broken = (
+        Options(output=tmp_path / name, twin=str(twin), points=60, both_directions=True)
+        for name in ("whole.csv", "broken.csv")
+    )
+    run(whole)
+    lines = finished_path(whole.output).read_text().splitlines(keepends=True)
+    running_path(broken.output).write_text("".join(lines[: kept + 1]))
+    run(broken)
+    assert_same_readings(broken.output, whole.output)
+
+
 def test_a_journal_of_another_plan_is_not_continued(tmp_path: Path) -> None:
     sweep = tmp_path / "sweep.csv"
     with pytest.raises(UserError):

@@ -111,7 +111,9 @@ class Ended:
     @property
     def refused(self) -> bool:
         """Whether it was refused as it should be: exit code 2, one line."""
-        lines = [line for line in self.said.splitlines() if line.startswith("halltwin: ")]
+        # On a busy machine a study says on the way how far it is.
+        told = [line for line in self.said.splitlines() if line.startswith("halltwin: ")]
+        lines = [line for line in told if not line.startswith("halltwin: after ")]
         return self.code == 2 and len(lines) == 1 and "Traceback" not in self.said
 
     @property

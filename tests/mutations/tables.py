@@ -7,6 +7,7 @@ from tests.mutations.discovery import DISCOVERY
 from tests.mutations.files import FILES
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
+from tests.mutations.paper import PAPER
 from tests.mutations.parts import PARTS
 from tests.mutations.scripts import SCRIPTS
 from tests.mutations.settings import settings
@@ -17,4 +18,4 @@ from tests.mutations.studies import STUDIES
 
 def mutations() -> tuple[Mutation, ...]:
     """Every mutation, those by hand first."""
-    return (*BY_HAND, *NOISE, *DISCOVERY, *STAGES, *PARTS, *FILES, *STUDIES, *SCRIPTS, *settings(), *signs())
+    return (*BY_HAND, *NOISE, *DISCOVERY, *STAGES, *PAPER, *PARTS, *FILES, *STUDIES, *SCRIPTS, *settings(), *signs())

@@ -25,11 +25,13 @@ if TYPE_CHECKING:
     from diagnosis.error_model.fit import fit_baseline
     from diagnosis.error_model.result import BaselineFit
     from diagnosis.factors.findings import Findings
+    from diagnosis.factors.mounting import Mounting
 
 _LOADED_WHEN_USED = {
     "BaselineFit": "diagnosis.error_model.result",
     "DiscoverySettings": "diagnosis.discovery.settings",
     "Findings": "diagnosis.factors.findings",
+    "Mounting": "diagnosis.factors.mounting",
     "fit_baseline": "diagnosis.error_model.fit",
 }
 """Names of the package whose modules load NumPy: importing ``diagnosis`` does not wait for it."""
@@ -44,6 +46,7 @@ __all__ = [
     "Estimate",
     "Explanation",
     "Findings",
+    "Mounting",
     "OwnEffects",
     "Progress",
     "SweepLike",

@@ -12,6 +12,7 @@ from diagnosis.progress import Count, Listener
 
 if TYPE_CHECKING:
     from diagnosis.factors.mirror import KnownSense
+    from diagnosis.factors.mounting import Mounting
     from twin.chain import Chain
 
 
@@ -23,6 +24,7 @@ def diagnose(
     band_deg: float | None = None,
     twin: TwinLike | None = None,
     output_sense: int | None = None,
+    mounting: Mounting | None = None,
 ) -> Diagnosis:
     """Quantify the paper's error factors of a sweep, and say what each figure is worth.
 
@@ -42,11 +44,13 @@ def diagnose(
         Delta E of the paper's Eq. 7 [deg]: particles whose error leaves this band are discarded (Eq. 11), and the
         answer says how many, and whether the fitted curve keeps the band. Without it none is discarded.
     twin : str, os.PathLike or Chain, optional
-        A twin file, a preset's name or a chain: which way its output counts is taken from it, where the sweep holds
-        no raw channels.
+        A twin file, a preset's name or a chain: its magnet and air gap, for which millimetres and millitesla are
+        counted; and which way its output counts, where the sweep holds no raw channels.
     output_sense : {1, -1}, optional
         Which way the output counts: +1 where it is atan2(y, x) of the channels, -1 where it is minus that. Without
         it, channels and a twin, the quadratic term decides, or both solutions are given.
+    mounting : Mounting, optional
+        The magnet and its air gap, in place of the twin's.
 
     Returns
     -------
@@ -81,7 +85,15 @@ def diagnose(
     >>> x.low < 0.008 < x.high
     True
     """
-    return diagnose_many([sweep], robust=robust, seed=seed, band_deg=band_deg, twin=twin, output_sense=output_sense)[0]
+    return diagnose_many(
+        [sweep],
+        robust=robust,
+        seed=seed,
+        band_deg=band_deg,
+        twin=twin,
+        output_sense=output_sense,
+        mounting=mounting,
+    )[0]
 
 
 def diagnose_many(
@@ -92,6 +104,7 @@ def diagnose_many(
     band_deg: float | None = None,
     twin: TwinLike | None = None,
     output_sense: int | None = None,
+    mounting: Mounting | None = None,
     progress: Listener | None = None,
 ) -> Diagnoses:
     """Quantify the paper's error factors of many sweeps; those of equal length in one swarm.
@@ -110,6 +123,8 @@ def diagnose_many(
         As in :func:`diagnose`.
     output_sense : {1, -1}, optional
         As in :func:`diagnose`.
+    mounting : Mounting, optional
+        As in :func:`diagnose`; one air gap, that of the first sweep, or one for each.
     progress : callable, optional
         Called with a :class:`diagnosis.Progress` as the sweeps are read, fitted and judged.
 
@@ -139,7 +154,7 @@ def diagnose_many(
     import numpy as np
 
     from diagnosis.blas_threads import one_blas_thread
-    from diagnosis.factors.findings import quantify_many
+    from diagnosis.factors.findings import placed, quantify_many
     from diagnosis.report.provenance import Provenance
     from twin.errors import UserError
     from twin.limits import require_within
@@ -151,7 +166,8 @@ def diagnose_many(
     made = Provenance.today(seed=checked_seed(seed))
     if isinstance(sweeps, str | os.PathLike | Sweep) or hasattr(sweeps, "keys"):
         raise UserError("found a single sweep where several are expected; give a list of sweeps, or call diagnose")
-    told = _told(output_sense, as_twin(twin))
+    known = as_twin(twin)
+    told, place = _told(output_sense, known), mounting or _mounting(known)
     wanted = list(sweeps)
     count = Count(len(wanted), progress)
     read = [count.of("reading", done, as_sweep(sweep)) for done, sweep in enumerate(wanted, 1)]
@@ -159,7 +175,9 @@ def diagnose_many(
         raise UserError("found no sweep; give at least one")
     with one_blas_thread():
         band_rad = None if band_deg is None else float(np.radians(band_deg))
+        place.for_sweeps(len(read))
         found = quantify_many(read, rng=rng, robust=robust, band_rad=band_rad, count=count, told=told)
+        found = placed(found, place)
     return Diagnoses(tuple(Diagnosis(one, made) for one in found), made)
 
 
@@ -173,3 +191,10 @@ def _told(output_sense: int | None, twin: Chain | None) -> KnownSense | None:
             raise UserError(f"output_sense is {output_sense!r}; expected 1 or -1")
         return KnownSense(int(output_sense), "option")
     return None if twin is None else KnownSense(twin.output_sense, "twin")
+
+
+def _mounting(twin: Chain | None) -> Mounting:
+    """The magnet of a twin at its air gap; without one that is assumed."""
+    from diagnosis.factors.mounting import Mounting
+
+    return Mounting.unstated() if twin is None or twin.magnet is None else Mounting.of(twin.magnet)

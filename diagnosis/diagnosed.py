@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from diagnosis.factors.air_gaps import Law
+    from diagnosis.factors.air_gaps import AirGaps, Law
     from diagnosis.factors.findings import Findings
     from diagnosis.report.provenance import Provenance
     from twin.chain import Chain
@@ -154,10 +154,17 @@ class Diagnoses:
 
     @cached_property
     def air_gaps(self) -> tuple[Law, ...]:
-        """How the factors follow the field, where all sweeps hold raw channels of different amplitude; else empty."""
-        from diagnosis.factors.findings import gap_laws
+        """How the factors go over the air gaps, where these are known to differ; else empty."""
+        from diagnosis.factors.air_gaps import laws
 
-        return gap_laws(self._findings)
+        return () if self.air_gap_fit is None else laws(self.air_gap_fit)
+
+    @cached_property
+    def air_gap_fit(self) -> AirGaps | None:
+        """The joint fit of sweeps at several air gaps, by the magnet's field; None where the gaps are not known."""
+        from diagnosis.factors.findings import gap_fit
+
+        return gap_fit(self._findings, self._findings[0].mounting)
 
     def summary(self, width: int = 80) -> str:
         """The text that ``halltwin diagnose`` prints: all about a single sweep, or one line each.
@@ -186,7 +193,7 @@ class Diagnoses:
         """
         from diagnosis.report.diagnose_answer import to_json
 
-        return to_json(self._findings, self.air_gaps, self.made)
+        return to_json(self._findings, self.air_gap_fit, self.made)
 
     def to_dataframe(self) -> pd.DataFrame:
         """The factors as a table: one row a sweep.

@@ -1,82 +1,266 @@
-"""What sweeps at several air gaps tell of one sensor: which of its errors follow the field, and which do not.
+"""What sweeps at several air gaps tell of one sensor: which causes, each with its law over the magnet's own field.
 
-The field's strength is read from the amplitude of the channels. An error of the electronics keeps its share when the
-field changes, a quadratic term grows with the field (q = K1 mag / K2), a constant voltage and a stray field weigh less
-the stronger the field is, and a misalignment changes its share in a way of its own.
+All gaps are fitted together (:mod:`diagnosis.factors.gap_fit`), with every set of causes that could be behind the
+orders 1 and 2. A cause is named where every simplest set that fits has it; where two sets of equal size fit, the class
+is named; where none does, nothing is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from diagnosis.error_model.model import BETA, GAIN, QUAD, VX, VY
+from diagnosis.error_model.model import QUAD
+from diagnosis.factors.displacement import magnet_displacement
+from diagnosis.factors.gap_fit import GapFit, Problem
+from diagnosis.factors.gap_model import CAUSES, GapSweep, causes_of, expected
+from diagnosis.factors.mounting import Mounting
 from twin.angles import Array
 
-_SURE = 4.0
-_LAWS = (("stays", 0.0), ("grows with the field", 1.0), ("falls with the field", -1.0))
-_PARTS = (("offset", (VX, VY)), ("gain mismatch and phase", (GAIN, BETA)), ("quadratic term", (QUAD,)))
+SURE = 6.3e-5
+"""Probability by chance below which a simpler set of causes is rejected: four standard deviations."""
+MISFIT = 1e-3
+"""Probability of a chi2 as large below which no set of causes is said to hold the readings."""
+SEEN_SIGMA = 5.0
+"""Standard errors of a sensor's displacement from which a magnet's can be looked for: it shows in their product."""
+MOST_SWEEPS = 64
+"""More are not fitted together: the work goes with the square of their number."""
 SMALLEST_CHANGE = 0.1
-"""Relative change of the amplitude from which sweeps count as different air gaps."""
-
-
-@dataclass(frozen=True)
-class GapSweep:
-    """One sweep: fitted point (6,), its covariance (6, 6), amplitude of the channels in a common unit."""
-
-    point: Array
-    covariance: Array
-    amplitude: float
+"""Relative change of the field from which sweeps count as different air gaps."""
+_GAPS_TRIED = 60
+_PARTED_SIGMA = 6.0
+"""By how many standard errors two causes are to differ at a further gap: four are asked for, and either may be off."""
+BOTH = ("electronics", "sensor")
+ORDER_1: tuple[tuple[str, ...], ...] = ((), ("voltage",), ("reference",), ("voltage", "reference"))
+ORDER_2: tuple[tuple[str, ...], ...] = ((), ("electronics",), ("sensor",), BOTH)
+WITH_MAGNET = ("voltage", "magnet")
 
 
 @dataclass(frozen=True)
 class Law:
-    """How one factor goes with the field: the law that fits best, and by how many sigma the law "stays" fits worse."""
+    """How one part of the factors goes over the air gaps, and by how many sigma the law "stays" fits worse."""
 
     part: str
     best: str
     change_sigma: float
+    chi2: float = 0.0
+    degrees_of_freedom: int = 0
+    p: float = 1.0
+    """Of the best law."""
 
 
-def laws(sweeps: Sequence[GapSweep]) -> tuple[Law, ...]:
-    """The law that each factor follows, the simplest that fits. Empty where the amplitudes hardly differ."""
-    strength = np.array([sweep.amplitude for sweep in sweeps])
-    if len(sweeps) < 2 or np.ptp(strength) < SMALLEST_CHANGE * strength.max():
-        return ()
-    field = strength / strength.mean()
-    found = []
-    for part, rows in _PARTS:
-        misfit = {name: sum(_misfit(sweeps, k, field**power) for k in rows) for name, power in _LAWS}
-        best = min(misfit, key=lambda name: misfit[name])
-        change = float(np.sqrt(max(misfit["stays"] - misfit[best], 0.0)))
-        found.append(Law(part, best if change > _SURE else "stays", change))
-    return tuple(found)
+@dataclass(frozen=True, eq=False)
+class AirGaps:
+    """The joint fit of several air gaps."""
+
+    mounting: Mounting
+    names: tuple[str, ...]
+    order_1: tuple[tuple[str, ...], ...]
+    """The simplest sets of causes that hold the offsets, equally good ones side by side."""
+    order_2: tuple[tuple[str, ...], ...]
+    """The same for gain ratio and phase."""
+    fullest: GapFit
+    """With every cause that could be told from the others."""
+    fits: Mapping[tuple[str, ...], GapFit] = field(repr=False)
+    quadratic: Law
+    parting_mm: float | None
+    """The nearest air gap that would part electronics from a sensor off the axis; None where there is none in reach."""
+
+    @property
+    def misfit(self) -> bool:
+        """Whether no set of causes holds the readings."""
+        return self.fullest.p < MISFIT
+
+    @property
+    def best(self) -> GapFit:
+        """The fit of the simplest sets; of several equally good ones, that with the smallest chi2."""
+        return min((self.fit_of(one, two) for one in self.order_1 for two in self.order_2), key=lambda fit: fit.chi2)
+
+    def fit_of(self, order_1: tuple[str, ...], order_2: tuple[str, ...]) -> GapFit:
+        """The fit of a set of causes."""
+        return self.fits[joined(order_1, order_2)]
+
+    @property
+    def magnet_bound_mm(self) -> float | None:
+        """Upper end of the magnet's displacement [mm] where none is named; None where none can be told."""
+        fullest = self.fits.get(joined(WITH_MAGNET, BOTH))
+        if fullest is None or "sensor" not in self.named or "magnet" in self.named:
+            return None
+        found = magnet_displacement(fullest)
+        return None if found is None else found.high_mm
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The causes that every one of the simplest sets has; none where nothing fits."""
+        if self.misfit:
+            return ()
+        shared = (set.intersection(*map(set, sets)) for sets in (self.order_1, self.order_2))
+        return joined(*shared)
 
 
-def sentences(found: tuple[Law, ...]) -> tuple[str, ...]:
-    """The laws in words."""
-    said = []
-    for law in found:
-        if law.part == "gain mismatch and phase":
-            if law.best == "stays":
-                said.append("air gaps: gain ratio and phase keep their share: the electronics, no misalignment")
-            else:
-                said.append(f"air gaps: gain ratio and phase change ({law.change_sigma:.0f} sigma): misalignment")
-        elif law.part == "offset":
-            said.append(
-                f"air gaps: the offset {law.best}; a constant voltage and a stray field both fall with the field: "
-                "turn the housing in the stray field to part them"
-            )
-        else:
-            said.append(f"air gaps: the quadratic term {law.best}")
-    return tuple(said)
+def air_gaps(sweeps: Sequence[GapSweep], names: Sequence[str], mounting: Mounting, freedom: int) -> AirGaps | None:
+    """The joint fit; None where the air gaps are unknown or hardly differ. ``freedom``: of the sweeps' variances."""
+    start = start_gaps(sweeps, mounting)
+    if start is None:
+        return None
+    fits = _Fits(Problem(tuple(sweeps), mounting, start), freedom)
+    order_1 = _simplest(fits, [(one, BOTH) for one in fits.order_1()])
+    first = order_1[0]
+    order_2 = _simplest(fits, [(first, two) for two in ORDER_2 if "magnet" not in first or "sensor" in two])
+    for one in order_1:
+        for two in order_2:
+            fits[joined(one, two)]
+    full = [fits[joined(one, BOTH)] for one in fits.order_1()]
+    most = max(len(fit.causes) for fit in full)
+    return AirGaps(
+        mounting=mounting,
+        names=tuple(names),
+        order_1=order_1,
+        order_2=order_2,
+        fullest=min((fit for fit in full if len(fit.causes) == most), key=lambda fit: fit.chi2),
+        fits=fits,
+        quadratic=quadratic_law([sweep.point[QUAD] for sweep in sweeps], _errors(sweeps), mounting.field_mT(start)),
+        parting_mm=_parting_mm(sweeps[0], fits, first) if len(order_2) > 1 else None,
+    )
 
 
-def _misfit(sweeps: Sequence[GapSweep], row: int, shape: Array) -> float:
-    """Chi-squared of value = constant x shape; a gain counts from 1."""
-    value = np.array([sweep.point[row] - (1.0 if row == GAIN else 0.0) for sweep in sweeps])
-    weight = 1.0 / np.array([max(sweep.covariance[row, row], 1e-300) for sweep in sweeps])
-    size = np.sum(weight * shape * value) / np.sum(weight * shape**2)
-    return float(np.sum(weight * (value - size * shape) ** 2))
+class _Fits(dict[tuple[str, ...], GapFit]):
+    """Fits by their causes, made when they are first asked for, from the largest simpler one that is there."""
+
+    def __init__(self, problem: Problem, freedom: int) -> None:
+        super().__init__()
+        self.problem, self.freedom = problem, freedom
+
+    def __missing__(self, causes: tuple[str, ...]) -> GapFit:
+        simpler = [one for one in self if set(one) < set(causes)]
+        start = self[max(simpler, key=len)] if simpler else None
+        self[causes] = found = self.problem.fitted(causes, self.freedom, start=start)
+        return found
+
+    def order_1(self) -> tuple[tuple[str, ...], ...]:
+        """The sets of causes of order 1 that can be looked for."""
+        value, error = self[joined(("voltage",), BOTH)].pair("sensor")
+        return (*ORDER_1, WITH_MAGNET) if abs(value) > SEEN_SIGMA * error else ORDER_1
+
+
+def start_gaps(sweeps: Sequence[GapSweep], mounting: Mounting) -> Array | None:
+    """The air gaps [mm] as stated, or as amplitudes tell them; None where neither does or the field hardly differs."""
+    logs = [sweep.log_amplitude for sweep in sweeps]
+    if not 2 <= len(sweeps) <= MOST_SWEEPS or not all(sweep.usable for sweep in sweeps):
+        return None
+    if len(mounting.air_gap_mm) == len(sweeps):
+        gaps = np.array(mounting.air_gap_mm)
+    elif None not in logs:
+        gaps = mounting.gaps_by_amplitude([float(np.exp(one or 0.0)) for one in logs])
+    else:
+        return None
+    field = mounting.field_mT(gaps)
+    return gaps if np.ptp(field) >= SMALLEST_CHANGE * field.max() else None
+
+
+def quadratic_law(values: Sequence[float], errors: Array, field_mT: Array) -> Law:
+    """How the quadratic term goes: q = K1 mag / K2 grows with the field where it is the sensor's."""
+    value, weight = np.asarray(values), 1.0 / errors**2
+    shapes = {"none": 0.0 * field_mT, "stays": np.ones_like(field_mT), "grows with the field": field_mT}
+    chi2 = {}
+    for name, shape in shapes.items():
+        size = np.sum(weight * shape * value) / max(float(np.sum(weight * shape**2)), 1e-300)
+        chi2[name] = float(np.sum(weight * (value - size * shape) ** 2))
+    best = min(("stays", "grows with the field"), key=lambda name: chi2[name])
+    freedom = value.size - 1
+    if chi2["none"] - chi2[best] < _limit(1, 10**6):
+        best, freedom = "none", value.size
+    p = _chance(chi2[best], freedom)
+    change = float(np.sqrt(max(chi2["stays"] - chi2[best], 0.0)))
+    return Law("quadratic term", best if p >= MISFIT else "none fits", change, chi2[best], freedom, p)
+
+
+def laws(found: AirGaps) -> tuple[Law, ...]:
+    """The law of each part of the factors, in words of a line."""
+    best = found.best
+
+    def law(part: str, sets: Iterable[tuple[str, ...]], stays: tuple[str, ...]) -> Law:
+        words = " or ".join(" and ".join(_LAWS[name] for name in one) or "none" for one in sets)
+        worse = found.fits.get(stays)
+        change = 0.0 if worse is None else float(np.sqrt(max(worse.chi2 - best.chi2, 0.0)))
+        told = "none fits" if found.misfit else words
+        fit = found.fullest if found.misfit else best
+        return Law(part, told, change, fit.chi2, fit.degrees_of_freedom, fit.p)
+
+    rest_1 = tuple(name for name in best.causes if name not in BOTH)
+    return (
+        law("offset", found.order_1, joined(("reference",), BOTH)),
+        law("gain mismatch and phase", found.order_2, joined(rest_1, ("electronics",))),
+        found.quadratic,
+    )
+
+
+_LAWS = {
+    "voltage": "falls with the field",
+    "reference": "stays",
+    "electronics": "stays",
+    "sensor": "follows the field off the axis",
+    "magnet": "follows the field off the axis",
+}
+
+
+def joined(one: Iterable[str], two: Iterable[str]) -> tuple[str, ...]:
+    """The causes of both sets, in the order of CAUSES."""
+    held = {*one, *two}
+    return tuple(name for name in CAUSES if name in held)
+
+
+def _simplest(
+    fits: _Fits, candidates: Sequence[tuple[tuple[str, ...], tuple[str, ...]]]
+) -> tuple[tuple[str, ...], ...]:
+    """Of sets of causes of the orders 1 and 2 the smallest that are not rejected against the largest, the best first.
+
+    The sets differ in one order; what they have in that order is returned.
+    """
+    sets = {each: joined(*each) for each in candidates}
+    most = max(map(len, sets.values()))
+    largest = min((fits[one] for one in sets.values() if len(one) == most), key=lambda fit: fit.chi2)
+    held = {
+        each: one
+        for each, one in sets.items()
+        if fits[one].chi2 - largest.chi2 < _limit(2 * max(most - len(one), 1), largest.readings)
+    }
+    fewest = min(map(len, held.values()))
+    kept = sorted((each for each, one in held.items() if len(one) == fewest), key=lambda each: fits[held[each]].chi2)
+    varied = 0 if len({two for _, two in candidates}) == 1 else 1
+    return tuple(each[varied] for each in kept)
+
+
+def _parting_mm(sweep: GapSweep, fits: _Fits, order_1: tuple[str, ...]) -> float | None:
+    """The air gap nearest to those measured at which the electronics and a sensor off the axis differ for certain."""
+    rivals = [fits[joined(order_1, one)] for one in (("electronics",), ("sensor",))]
+    known, magnet = rivals[0].gap_mm, fits.problem.mounting.magnet
+    gaps = np.geomspace(0.3 * known.min(), 3.0 * known.max(), _GAPS_TRIED)
+    told = []
+    for fit in rivals:
+        causes = causes_of(fit.causes, np.tile(fit.numbers, (_GAPS_TRIED, 1)))
+        told.append(expected([sweep], magnet, causes, gaps[:, None])[0][:, 0])
+    whitened = (told[0] - told[1]) @ np.linalg.inv(np.linalg.cholesky(sweep.covariance)).T
+    enough = gaps[np.linalg.norm(whitened, axis=1) > _PARTED_SIGMA]
+    if not enough.size:
+        return None
+    return float(enough[np.argmin(np.min(np.abs(np.log(enough[:, None] / known)), axis=1))])
+
+
+def _limit(numbers: int, freedom: int) -> float:
+    """Difference of chi2 for so many numbers more that chance exceeds with the probability SURE."""
+    from scipy.special import fdtri
+
+    return float(numbers * fdtri(numbers, freedom, 1.0 - SURE))
+
+
+def _chance(chi2: float, freedom: int) -> float:
+    from scipy.special import chdtrc
+
+    return float(chdtrc(freedom, chi2)) if freedom > 0 else 1.0
+
+
+def _errors(sweeps: Sequence[GapSweep]) -> Array:
+    return np.array([sweep.quad_error for sweep in sweeps])

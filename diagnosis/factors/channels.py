@@ -38,6 +38,11 @@ class ChannelFit:
         """Mean of Ax and Ay."""
         return float(0.5 * (self.values[2] + self.values[3]))
 
+    @property
+    def amplitude_error(self) -> float:
+        """Relative standard error of the amplitude."""
+        return float(0.5 * np.sqrt(self.covariance[2:4, 2:4].sum()) / self.amplitude)
+
     def point(self) -> Array:
         """The visible parameters (6,) that the curve alone gives; its zero is 0, for it has none."""
         vx, vy, ax, ay, beta, quad = self.values

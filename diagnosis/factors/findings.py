@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,12 +12,14 @@ from diagnosis.error_model.fit import BATCH, fit_equal
 from diagnosis.error_model.model import Readings
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors import channels
-from diagnosis.factors.air_gaps import GapSweep, Law, laws
+from diagnosis.factors.air_gaps import AirGaps, air_gaps, start_gaps
 from diagnosis.factors.band_check import BandCheck, band_check
 from diagnosis.factors.channels import Added
+from diagnosis.factors.gap_model import GapSweep
 from diagnosis.factors.identifiability import Identifiability, identifiability
 from diagnosis.factors.mechanical import Mechanical, mechanical
 from diagnosis.factors.mirror import By, KnownSense, Mirror, judged
+from diagnosis.factors.mounting import Mounting
 from diagnosis.factors.repeats import between_angles
 from diagnosis.factors.senses import known_senses
 from diagnosis.factors.sentences import said_of_the_mirror_solution
@@ -41,6 +43,9 @@ class Findings:
     """What repeated readings did to the intervals, in words."""
     mirror: Mirror
     """Whether the mirror image of the fit, with both senses swapped, is a solution too."""
+    mounting: Mounting = field(default_factory=Mounting.unstated)
+    gap_mm: float | None = None
+    """Air gap of this sweep; None: the one of the mounting."""
     band: BandCheck | None = None
     """What the discard rule did, where a band was given."""
 
@@ -49,8 +54,13 @@ class Findings:
 
     @cached_property
     def mechanical(self) -> Mechanical:
-        """The mechanical causes that would make the same curve, for the twin's magnet."""
-        return mechanical(self.fit.point)
+        """The mechanical causes that would make the same curve, for the magnet and its air gap."""
+        return mechanical(self.fit, self.mounting, self.gap_mm)
+
+    @property
+    def mirror_mechanical(self) -> Mechanical | None:
+        """Those of the mirror solution; None where there is none."""
+        return None if self.mirror.other is None else mechanical(self.mirror.other, self.mounting, self.gap_mm)
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -95,6 +105,14 @@ def quantify_many(
     return found
 
 
+def placed(found: Sequence[Findings], mounting: Mounting) -> list[Findings]:
+    """The findings for this magnet, each at its own air gap: the stated one, or that which the amplitudes tell."""
+    known = mounting.for_sweeps(len(found))
+    gaps = None if known.assumed else start_gaps([_gap_sweep(item, item.fit) for item in found], known)
+    each = (known.air_gap_mm * len(found))[: len(found)] if gaps is None else gaps
+    return [replace(item, mounting=known, gap_mm=float(gap)) for item, gap in zip(found, each, strict=True)]
+
+
 def _fitted(
     angles: Sequence[tuple[Array, Array]],
     senses: Sequence[Senses | None],
@@ -129,7 +147,7 @@ def _judged(sweep: Sweep, fit: BaselineFit, by: By | None, band_rad: float | Non
     words = identifiability(counted, reference, radians(sweep.measured_deg), has_channels=has_channels)
     mirror = judged(fit, reference, counted=counted, covered_deg=words.covered_deg) if by is None else Mirror(by, None)
     band = None if band_rad is None else band_check(counted, band_rad)
-    return Findings(sweep, counted, words, added, repeated, mirror, band)
+    return Findings(sweep, counted, words, added, repeated, mirror, band=band)
 
 
 def _both(found: Findings, fit: BaselineFit, other: BaselineFit, band_rad: float | None) -> Findings:
@@ -140,12 +158,26 @@ def _both(found: Findings, fit: BaselineFit, other: BaselineFit, band_rad: float
     return replace(main, mirror=replace(found.mirror, other=second))
 
 
-def gap_laws(found: Sequence[Findings]) -> tuple[Law, ...]:
-    """How the factors follow the field, where all sweeps hold raw channels of different amplitude."""
-    curves = [item.added.curve for item in found if item.added is not None]
-    if len(curves) < len(found):
-        return ()
-    return laws([GapSweep(f.fit.point, f.fit.covariance, c.amplitude) for f, c in zip(found, curves, strict=True)])
+def gap_fit(found: Sequence[Findings], mounting: Mounting) -> AirGaps | None:
+    """The joint fit of several air gaps, by the magnet's field; None where the gaps are not known to differ."""
+    fits = _of_one_sense(found)
+    sweeps = [_gap_sweep(item, fit) for item, fit in zip(found, fits, strict=True)]
+    freedom = sum(fit.degrees_of_freedom for fit in fits)
+    return air_gaps(sweeps, [item.sweep.name for item in found], mounting, freedom)
+
+
+def _gap_sweep(item: Findings, fit: BaselineFit) -> GapSweep:
+    amplitude = None if item.added is None else (item.added.curve.amplitude, item.added.curve.amplitude_error)
+    return GapSweep.of(fit, radians(item.sweep.reference_deg), amplitude)
+
+
+def _of_one_sense(found: Sequence[Findings]) -> list[BaselineFit]:
+    """The fits of one sensor: where some sweeps decide between the mirror solutions they do so for the others."""
+    decided = sum(item.fit.senses.output for item in found if item.mirror.decided)
+    return [
+        item.mirror.other if decided * item.fit.senses.output < 0 and item.mirror.other is not None else item.fit
+        for item in found
+    ]
 
 
 def curve_deg(fit: BaselineFit, shaft_deg: Array) -> Array:

@@ -9,9 +9,9 @@ import numpy as np
 
 from diagnosis.error_model.model import NAMES
 from diagnosis.error_model.result import BaselineFit
-from diagnosis.factors.air_gaps import Law
+from diagnosis.factors.air_gaps import AirGaps, laws
 from diagnosis.factors.findings import Findings
-from diagnosis.factors.mechanical import mechanical
+from diagnosis.report.gap_answer import gap_answer
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.row_counts import counts_of
 from twin.baseline import FACTORS
@@ -19,13 +19,14 @@ from twin.baseline import FACTORS
 SCHEMA = "halltwin.diagnose/1"
 
 
-def to_json(found: Sequence[Findings], over_gaps: Sequence[Law], made: Provenance) -> dict[str, Any]:
-    """The answer to one or many sweeps, with the laws that their factors follow over the air gaps."""
+def to_json(found: Sequence[Findings], over_gaps: AirGaps | None, made: Provenance) -> dict[str, Any]:
+    """The answer to one or many sweeps, with what their air gaps tell together."""
     return {
         "schema": SCHEMA,
         **made.to_dict(),
         "sweeps": [one_sweep(item) for item in found],
-        "air_gaps": [dict(vars(law)) for law in over_gaps],
+        "air_gaps": [] if over_gaps is None else [dict(vars(law)) for law in laws(over_gaps)],
+        "air_gap_fit": None if over_gaps is None else gap_answer(over_gaps),
     }
 
 
@@ -75,7 +76,7 @@ def _mirror_solution(found: Findings) -> dict[str, Any] | None:
         "output": other.senses.output,
         "rms_deg": _degrees(other.rms_rad),
         "parameters": _six(other),
-        "mechanical": dict(vars(mechanical(other.point))),
+        "mechanical": vars(found.mirror_mechanical) | {},
     }
 
 

@@ -9,7 +9,6 @@ import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from diagnosis.factors.air_gaps import Law, sentences
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
 from diagnosis.report.row_counts import diagnosed_rows, left_out_words
 from diagnosis.report.wording import figure, plain
@@ -26,8 +25,8 @@ def text(answer: Mapping[str, Any], *, width: int) -> str:
     """The answer in lines of at most this many characters: all about a single sweep, or one line each for many."""
     sweeps = answer["sweeps"]
     lines = one_sweep(sweeps[0], width=width) if len(sweeps) == 1 else many_sweeps(sweeps, width=width)
-    laws = tuple(Law(**law) for law in answer["air_gaps"])
-    return "\n".join([*lines, *_listed(sentences(laws), width)])
+    over_gaps = answer["air_gap_fit"]
+    return "\n".join([*lines, *_listed(over_gaps["sentences"] if over_gaps else (), width)])
 
 
 def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:
@@ -179,16 +178,29 @@ def mechanical_words(equivalent: Mapping[str, Any]) -> str:
     ways = []
     if equivalent["off_axis_mm"] is not None:
         towards = equivalent["off_axis_direction_deg"]
-        ways.append(f"a sensor {equivalent['off_axis_mm']:.2f} mm off the axis towards {towards:.0f} deg or opposite")
+        length = _between(equivalent, "off_axis", "mm")
+        ways.append(f"a sensor {length} off the axis towards {towards:.0f} deg or opposite")
     if equivalent["tilt_deg"] is not None:
-        tilt, towards = equivalent["tilt_deg"], equivalent["tilt_direction_deg"]
-        ways.append(f"a sensor tilted {tilt:.1f} deg towards {towards:.0f} deg")
-    same = " or ".join(ways) if ways else "no misalignment within the twin's range"
+        towards = equivalent["tilt_direction_deg"]
+        ways.append(f"a sensor tilted {_between(equivalent, 'tilt', 'deg')} towards {towards:.0f} deg")
+    same = " or ".join(ways) if ways else "no misalignment before this magnet"
+    place = f"{equivalent['magnet']} at {plain(equivalent['air_gap_mm'])} mm"
+    known = " (assumed: --twin, --magnet and --air-gap name yours)" if equivalent["assumed"] else ""
+    stray = ", ".join(f"{plain(equivalent[f'stray_{axis}_mT'])}" for axis in "xy")
     return (
-        f"would look the same: gain ratio and phase ({plain(equivalent['order_2_deg'])} deg of order 2) as {same}; "
-        f"offset x and y as a stray field of {plain(equivalent['stray_x_mT'])}, {plain(equivalent['stray_y_mT'])} mT "
-        f"beside a magnet of {plain(equivalent['field_mT'])} mT"
+        f"would look the same: gain ratio and phase ({plain(equivalent['order_2_deg'])} deg of order 2) as {same}, "
+        f"before {place}{known}; offset x and y as a stray field of {stray} mT beside a magnet of "
+        f"{plain(equivalent['field_mT'])} mT, or as a magnet off the shaft where the sensor is off the axis too. "
+        "Sweeps at further air gaps part these from the electronics"
     )
+
+
+def _between(equivalent: Mapping[str, Any], name: str, unit: str) -> str:
+    """A displacement or tilt with the ends of its interval."""
+    digits = 2 if unit == "mm" else 1
+    low, high = (equivalent[f"{name}_{end}_{unit}"] for end in ("low", "high"))
+    ends = " .. ".join("open" if end is None else f"{end:.{digits}f}" for end in (low, high))
+    return f"{equivalent[f'{name}_{unit}']:.{digits}f} {unit} ({ends})"
 
 
 def _range_words(search: Mapping[str, Any]) -> str:

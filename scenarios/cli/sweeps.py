@@ -71,13 +71,30 @@ def diagnose(
     ] = None,
     twin: Annotated[
         str | None,
-        typer.Option(metavar="TWIN", help="Take from this twin which way its output counts: a TOML file or a preset."),
+        typer.Option(
+            metavar="TWIN", help="Twin TOML or preset: its magnet, its air gap and which way its output counts."
+        ),
     ] = None,
     output_sense: Annotated[
         int | None,
         typer.Option(
             metavar="+1|-1", help="Which way the output counts: +1 where it is atan2(y, x) of the channels, -1 against."
         ),
+    ] = None,
+    magnet: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME=VALUE,...",
+            help="The magnet for which mm and mT are counted, as in a twin's [magnet], e.g. "
+            "diameter_mm=6,height_mm=2.5,grade=N35H.",
+        ),
+    ] = None,
+    air_gap: Annotated[
+        str | None,
+        typer.Option(metavar="mm,mm,...", help="Air gap in mm of each sweep in order, or of the first one."),
+    ] = None,
+    air_gap_error: Annotated[
+        float | None, typer.Option(metavar="mm", help="Standard uncertainty of an air gap in mm. Without: 0.05.")
     ] = None,
     force: Force = False,
     max_size: MaxSize = "2GB",
@@ -89,6 +106,7 @@ def diagnose(
     """Quantify the paper's error factors of one or many sweeps: values, intervals, what cannot be known."""
     from scenarios.commands.diagnose import Outputs, run
     from scenarios.commands.inputs import SweepFiles
+    from scenarios.commands.known import Known
     from twin.bounded_input import bytes_of
 
     run(
@@ -96,8 +114,9 @@ def diagnose(
         outputs=Outputs(json=json, plot=plot, convergence=convergence, force=force),
         seed=seed,
         band=band,
-        twin=twin,
-        output_sense=output_sense,
+        known=Known(
+            twin=twin, output_sense=output_sense, magnet=magnet, air_gap=air_gap, air_gap_error_mm=air_gap_error
+        ),
         fail_on=fail_on or (),
         command=command_line(context),
     )

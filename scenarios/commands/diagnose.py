@@ -10,6 +10,7 @@ from diagnosis import diagnose_many
 from scenarios.commands.error_band import band_deg
 from scenarios.commands.fail_on import DIAGNOSE, asked, in_diagnoses, raise_found
 from scenarios.commands.inputs import SweepFiles, check_panels
+from scenarios.commands.known import Known
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from scenarios.commands.progress import progress_line
 from scenarios.commands.terminal import terminal_width
@@ -29,8 +30,7 @@ def run(
     given: SweepFiles,
     *,
     outputs: Outputs | None = None,
-    twin: str | None = None,
-    output_sense: int | None = None,
+    known: Known | None = None,
     seed: int = 0,
     band: str | None = None,
     fail_on: Sequence[str] = (),
@@ -39,16 +39,15 @@ def run(
     """Diagnose what the names stand for; print the answer; write JSON and pictures where asked."""
     words = asked(fail_on, DIAGNOSE)
     delta_e_deg = None if band is None else band_deg(band)
+    arguments = (known or Known()).arguments()
     paths = given.paths()
     to = outputs or Outputs()
     wanted = [(to.json, JSON), (to.plot, PICTURE), (to.convergence, PICTURE)]
-    files = OutputFiles.checked(wanted, inputs=[*paths, band, twin], force=to.force)
+    files = OutputFiles.checked(wanted, inputs=[*paths, band, known.twin if known else None], force=to.force)
     read = given.read(paths)
     check_panels(to.plot, len(read.sweeps))
     with progress_line() as listener:
-        found = diagnose_many(
-            read.sweeps, seed=seed, band_deg=delta_e_deg, twin=twin, output_sense=output_sense, progress=listener
-        )
+        found = diagnose_many(read.sweeps, seed=seed, band_deg=delta_e_deg, progress=listener, **arguments)
     found = replace(found, made=replace(found.made, command=command))
     answer = {**found.to_dict(), "unusable": read.listed()}
     try:

@@ -12,6 +12,8 @@ import pytest
 
 from scenarios.commands import compensate, diagnose, monitor
 from scenarios.commands.inputs import SweepFiles, sweep_paths
+from scenarios.commands.known import Known
+from tests.diagnosis.factors.gap_sweeps import Truth
 from twin.angles import TAU
 from twin.chain import Chain
 from twin.errors import UserError
@@ -68,21 +70,52 @@ def test_diagnose_many_and_twice_the_same_bytes(
 
 
 def test_diagnose_uses_several_air_gaps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    angle = TAU * np.arange(180) / 180
-    rng = np.random.default_rng(0)
-    for name, field in (("near", 1.0), ("far", 0.6)):
-        # A misalignment grows as the sensor comes nearer; the channels are in volts.
-        chain = device(1.0 + 0.01 * field)
-        clean = chain.channels(Motion.from_angle(angle))
-        x, y = clean * field
-        measured = np.degrees(np.arctan2(y, x)) + 0.01 * rng.standard_normal(180)
-        columns = {"reference_deg": np.degrees(angle), "measured_deg": measured, "vx": x, "vy": y}
-        Sweep.from_columns(columns).write(tmp_path / f"{name}.csv")
-    diagnose.run(SweepFiles([str(tmp_path)]), outputs=diagnose.Outputs(json=tmp_path / "a.json"))
-    assert "air gaps: gain ratio and phase change" in capsys.readouterr().out
-    laws = {law["part"]: law["best"] for law in json.loads((tmp_path / "a.json").read_text())["air_gaps"]}
-    assert laws["gain mismatch and phase"] == "grows with the field"
-    assert laws["quadratic term"] == "stays"
+    """The truth: a sensor 0.67 mm off the axis of this magnet, whose first gap of 1 mm is stated."""
+    folder = tmp_path / "gaps"
+    folder.mkdir()
+    rng = np.random.default_rng(5)
+    for gap in (1.0, 2.0, 3.0):
+        columns = Truth(sensor=0.6 + 0.3j).sweep(gap, rng)
+        Sweep.from_columns(columns).write(folder / f"gap{gap:.0f}.csv")
+    answer = tmp_path / "a.json"
+    known = Known(magnet="shape=cylinder,diameter_mm=6,height_mm=2.5", air_gap="1")
+    diagnose.run(SweepFiles([str(folder)]), outputs=diagnose.Outputs(json=answer), known=known)
+    shown = " ".join(capsys.readouterr().out.split())
+    content = json.loads(answer.read_text())
+    found = content["air_gap_fit"]
+    assert found["fits"] is True
+    assert found["named"] == ["sensor"]
+    off = found["sensor_off_axis"]
+    assert off["low_mm"] < abs(0.6 + 0.3j) < off["high_mm"]
+    assert found["gaps_mm"] == pytest.approx([1.0, 2.0, 3.0], abs=0.05)
+    for sentence in found["sentences"]:
+        assert " ".join(sentence.split()) in shown
+    laws = {law["part"]: law["best"] for law in content["air_gaps"]}
+    assert laws["gain mismatch and phase"] == "follows the field off the axis"
+    # Each sweep's own equivalent is counted at its own gap, which the amplitudes tell.
+    for sweep, gap in zip(content["sweeps"], (1.0, 2.0, 3.0), strict=True):
+        own = sweep["mechanical"]
+        assert own["air_gap_mm"] == pytest.approx(gap, abs=0.05)
+        assert own["off_axis_low_mm"] < abs(0.6 + 0.3j) < own["off_axis_high_mm"]
+
+
+@pytest.mark.parametrize(
+    ("known", "said"),
+    [
+        (Known(magnet="diameter=6"), "magnet has no 'diameter'"),
+        (Known(magnet=""), "magnet is ''; expected NAME=VALUE"),
+        (Known(magnet="diameter_mm"), "magnet has 'diameter_mm'; expected NAME=VALUE"),
+        (Known(air_gap="1,x"), "air_gap is '1,x'; expected numbers"),
+        (Known(air_gap=","), "found no air gap"),
+        (Known(air_gap="1,2,3"), "found 3 air gaps for 1 sweep"),
+        (Known(air_gap="-1"), "air_gap_mm is -1 mm; expected from"),
+        (Known(air_gap="1", air_gap_error_mm=2.0), "gap_error_mm is 2 mm"),
+        (Known(twin="no-such-preset"), "no-such-preset"),
+    ],
+)
+def test_what_is_known_is_checked(folder: Path, known: Known, said: str) -> None:
+    with pytest.raises(UserError, match=said):
+        diagnose.run(SweepFiles([str(folder / "sweep00.csv")]), known=known)
 
 
 def test_inputs(folder: Path, tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ _DESIGN = "tests/scenarios/test_design.py"
 _GAPS = "diagnosis/factors/air_gaps.py"
 _MIRROR = "diagnosis/factors/mirror.py"
 _MIRROR_TESTS = "tests/diagnosis/factors/test_mirror.py"
-_LAW = "tests/diagnosis/factors/test_findings.py::test_an_exact_law_leaves_nothing_of_the_change"
+_GAP_TESTS = "tests/diagnosis/factors/test_air_gaps.py"
 
 ERROR_MODEL: tuple[Mutation, ...] = (
     Mutation(
@@ -98,19 +98,63 @@ FACTORS: tuple[Mutation, ...] = (
         ("tests/diagnosis/factors/test_band_check.py::test_a_device_keeps_its_own_band_and_particles_are_discarded",),
     ),
     Mutation(
-        "air_gaps.falls_twice",
+        "air_gaps.misfit_passes",
         _GAPS,
-        '("falls with the field", -1.0)',
-        '("falls with the field", -2.0)',
-        (_LAW,),
+        "return self.fullest.p < MISFIT",
+        "return self.fullest.p < 0.0",
+        (f"{_GAP_TESTS}::test_what_nothing_explains_is_said_to_fit_nothing",),
         short=True,
     ),
     Mutation(
-        "air_gaps.grows_twice",
+        "air_gaps.first_set_that_fits",
         _GAPS,
-        '("grows with the field", 1.0)',
-        '("grows with the field", 2.0)',
-        (_LAW,),
+        "return tuple(each[varied] for each in kept)",
+        "return tuple(each[varied] for each in kept[:1])",
+        (f"{_GAP_TESTS}::test_two_causes_that_the_gaps_cannot_part_are_given_together_with_the_gap_that_would",),
+    ),
+    Mutation(
+        "air_gaps.quadratic_grows_twice",
+        _GAPS,
+        '"grows with the field": field_mT}',
+        '"grows with the field": field_mT**2}',
+        (f"{_GAP_TESTS}::test_the_quadratic_term_has_a_law_or_none",),
+    ),
+    Mutation(
+        "air_gaps.voltage_keeps_its_share",
+        "diagnosis/factors/gap_model.py",
+        "offset = causes.voltage / scale",
+        "offset = causes.voltage / 100.0",
+        (f"{_GAP_TESTS}::test_expected_factors_are_those_of_magpylibs_field",),
+    ),
+    Mutation(
+        "air_gaps.gaps_known_exactly",
+        "diagnosis/factors/gap_fit.py",
+        "(stated - gaps[:, : stated.size]) / self.mounting.gap_error_mm)",
+        "(stated - gaps[:, : stated.size]) / 1e-6)",
+        (f"{_GAP_TESTS}::test_causes_are_named_and_displacements_come_back",),
+    ),
+    Mutation(
+        "air_gaps.senses_not_shared",
+        "diagnosis/factors/findings.py",
+        "item.mirror.other if decided * item.fit.senses.output < 0 and item.mirror.other is not None else item.fit",
+        "item.fit",
+        (f"{_GAP_TESTS}::test_sweeps_that_decide_between_the_mirror_solutions_decide_for_the_others",),
+    ),
+    Mutation(
+        "mechanical.another_magnet",
+        "diagnosis/factors/mechanical.py",
+        "field = coefficients(magnet, np.full(_NODES, gap_mm), **{name: value})",
+        "field = coefficients(Magnet(), np.full(_NODES, gap_mm), **{name: value})",
+        ("tests/diagnosis/factors/test_mounting.py::test_equivalents_are_counted_for_the_magnet_given",),
+    ),
+    Mutation(
+        "mechanical.gap_known_exactly",
+        "diagnosis/factors/mechanical.py",
+        "reach = _NORMAL_95 * place.gap_error_mm",
+        "reach = 1e-9 * place.gap_error_mm",
+        (
+            "tests/diagnosis/factors/test_mounting.py::test_the_interval_of_a_displacement_holds_what_the_gap_leaves_open",
+        ),
     ),
     Mutation(
         "mirror.any_odds_decide",

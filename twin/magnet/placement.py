@@ -25,6 +25,7 @@ from twin.limits import OutOfRangeError, require_within
 from twin.magnet.magnet import Magnet, Number
 
 LARGEST_TILT_DEG = 60.0
+SMALLEST_GAP_MM = 1e-3
 LARGEST_GAP_MM = 200.0
 LARGEST_SHIFT_MM = 100.0
 LARGEST_STRAY_MT = 1000.0
@@ -48,7 +49,7 @@ class Placement:
     stray_z_mT: Number = 0.0
 
     def __post_init__(self) -> None:
-        require_within("air_gap_mm", self.air_gap_mm, 1e-3, LARGEST_GAP_MM, "mm")
+        require_within("air_gap_mm", self.air_gap_mm, SMALLEST_GAP_MM, LARGEST_GAP_MM, "mm")
         for item in fields(self):
             value = getattr(self, item.name)
             if "tilt" in item.name:

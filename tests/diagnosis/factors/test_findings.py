@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis.error_model.fit import fit_baseline
-from diagnosis.error_model.model import GAIN, NOMINAL, QUAD, VX, VY, Readings
-from diagnosis.factors.air_gaps import GapSweep, Law, laws
+from diagnosis.error_model.model import NOMINAL, Readings
 from diagnosis.factors.channels import fit_curve, output_sense
 from diagnosis.factors.findings import curve_deg, quantify_many
 from diagnosis.factors.identifiability import identifiability
@@ -131,7 +130,7 @@ def test_mechanical_equivalents_are_what_was_simulated() -> None:
     fit = fit_baseline(
         reference, chain.readings(Motion.from_angle(reference)), rng=np.random.default_rng(0), senses=(1, 1)
     )
-    found = mechanical(fit.point)
+    found = mechanical(fit)
     assert found.off_axis_mm == pytest.approx(0.4, abs=1e-3)
     assert found.off_axis_direction_deg == pytest.approx(30.0, abs=0.5)
     assert (found.stray_x_mT, found.stray_y_mT) == (pytest.approx(0.3, rel=0.02), pytest.approx(-0.2, rel=0.02))
@@ -145,7 +144,8 @@ def test_mechanical_equivalents_are_what_was_simulated() -> None:
 def test_no_misalignment_reaches_a_gain_ratio_of_two() -> None:
     point = NOMINAL.copy()
     point[2] = 2.0
-    found = mechanical(point)
+    fit = fit_baseline(turn(360), measured(point, turn(360)), rng=np.random.default_rng(0), senses=(1, 1))
+    found = mechanical(fit)
     assert found.off_axis_mm is None
     assert found.tilt_deg is None
 
@@ -169,48 +169,6 @@ def test_curve_and_sense_from_channels() -> None:
     assert found.amplitude == pytest.approx(1005.0, rel=1e-6)
     assert output_sense(np.arctan2(y, x), x, y) == 1
     assert output_sense(-np.arctan2(y, x), x, y) == -1
-
-
-def test_air_gaps_part_misalignment_from_electronics() -> None:
-    covariance = 1e-8 * np.eye(6)
-    fields = np.array([1.0, 0.8, 0.6])
-
-    def at(field: float, gain: float) -> GapSweep:
-        return GapSweep(np.array([0.01 / field, 0.0, gain, 0.0, 0.002 * field, 0.0]), covariance, field)
-
-    constant = {law.part: law.best for law in laws([at(field, 1.01) for field in fields])}
-    assert constant == {
-        "offset": "falls with the field",
-        "gain mismatch and phase": "stays",
-        "quadratic term": "grows with the field",
-    }
-    moving = {law.part: law.best for law in laws([at(field, 1.0 + 0.01 * field) for field in fields])}
-    assert moving["gain mismatch and phase"] == "grows with the field"
-    assert laws([at(1.0, 1.0), at(0.99, 1.0)]) == ()
-
-
-@pytest.mark.parametrize(
-    ("part", "row", "null", "power", "said"),
-    [
-        ("offset", VX, 0.0, -1.0, "falls with the field"),
-        ("offset", VY, 0.0, -1.0, "falls with the field"),
-        ("gain mismatch and phase", GAIN, 1.0, 1.0, "grows with the field"),
-        ("quadratic term", QUAD, 0.0, 1.0, "grows with the field"),
-    ],
-)
-def test_an_exact_law_leaves_nothing_of_the_change(part: str, row: int, null: float, power: float, said: str) -> None:
-    """A constant voltage is a share of the signal that goes with 1/field, a square term V = a B + b B^2 one with field.
-
-    Where a part follows its law exactly, the law misses by nothing, so the change counts all by which a constant
-    share misses the values, in standard errors.
-    """
-    field, error = np.array([1.0, 0.7, 0.5, 0.4]), 1e-4
-    values = 0.01 * field**power
-    point = np.tile([0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (field.size, 1))
-    point[:, row] = null + values
-    found = laws([GapSweep(one, error**2 * np.eye(6), b) for one, b in zip(point, field, strict=True)])
-    expected = np.sqrt(np.sum((values - values.mean()) ** 2)) / error
-    assert {law.part: law for law in found}[part] == Law(part, said, pytest.approx(expected, rel=1e-9))
 
 
 def test_repeated_angles_are_not_independent() -> None:

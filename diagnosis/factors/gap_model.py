@@ -1,0 +1,158 @@
+"""What offset, gain ratio and phase of sweeps at several air gaps should be, by the magnet's field and a few causes.
+
+The field at the sensor is that of the magnet itself, misplaced or not (:mod:`twin.magnet.field`). Each cause has a law
+over the gap of its own:
+
+- ``voltage``: a constant voltage, or a stray field, weighs less the stronger the field is: an offset in mT;
+- ``reference``: an eccentric reference makes the same order 1 at every gap;
+- ``electronics``: gain mismatch and phase keep their share, as a tilt of the sensor does;
+- ``sensor``: the sensor off the shaft's axis. With p the point from the magnet's axis, u its squared length and S the
+  series of the potential, the field is exp(i a) (S + u S' + p^2 S') (:mod:`twin.magnet.axis_series`): its
+  counter-rotating share, order 2 in the angle, is s^2 S'/S to leading order for a displacement s = x + iy;
+- ``magnet``: the magnet off the shaft's axis too, by m at a = 0, makes an order 1 of -2 s m S'/S. Alone it makes no
+  error of the angle at any gap: the field turns as a whole.
+
+So s^2 and s m are the coordinates of a displacement, in mm^2: of s and m both signs, or none, are known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.error_model.model import BETA, GAIN, QUAD, VX, VY, Readings
+from diagnosis.error_model.result import BaselineFit
+from diagnosis.factors.mounting import coefficients
+from twin.angles import Array
+from twin.magnet.field import basis
+from twin.magnet.magnet import Magnet
+from twin.magnet.placement import LARGEST_GAP_MM, SMALLEST_GAP_MM
+
+ROWS = (VX, VY, GAIN, BETA)
+"""The factors that are held against the field; zero and quadratic term are left free at each gap."""
+CAUSES = ("voltage", "reference", "electronics", "sensor", "magnet")
+"""Two numbers each: mT; rad; share and rad; mm^2; mm^2."""
+_MOST_ANGLES = 240
+_ROUNDING = 1e-8
+"""Standard error that a factor has at least: a simulated sweep without noise leaves none."""
+_LARGEST_ERROR = 0.3
+"""Of a factor that a sweep does not determine."""
+
+
+@dataclass(frozen=True, eq=False)
+class GapSweep:
+    """One sweep as the joint fit takes it: its fitted factors, and what a change of its angles does to them."""
+
+    point: Array
+    covariance: Array
+    """Of the factors ROWS (4, 4)."""
+    angle_rad: Array
+    """Field angles a (n,), at which expected angles are held against the fitted curve."""
+    shaft_rad: Array
+    """The same readings of the reference (n,)."""
+    curve_rad: Array
+    """atan2(y, x) of the fitted factors there (n,)."""
+    to_factors: Array
+    """Least squares from a change of the angles to one of the factors ROWS (4, n)."""
+    quad_error: float
+    """Standard error of the quadratic term."""
+    log_amplitude: float | None = None
+    """Of the raw channels; None without."""
+    log_amplitude_error: float = 0.0
+
+    @property
+    def usable(self) -> bool:
+        """Whether these readings determine all four factors."""
+        return bool(np.all(np.diagonal(self.covariance) < _LARGEST_ERROR**2) and np.isfinite(self.log_amplitude or 0.0))
+
+    @classmethod
+    def of(cls, fit: BaselineFit, reference_rad: Array, amplitude: tuple[float, float] | None = None) -> GapSweep:
+        """From a sweep's fit; ``amplitude``: that of the raw channels and its relative error."""
+        used = np.flatnonzero(~fit.outliers)
+        shaft = reference_rad[used[np.unique(np.linspace(0, used.size - 1, _MOST_ANGLES).astype(int))]]
+        readings = Readings.of(shaft, np.zeros_like(shaft), sensor_sense=float(fit.senses.sensor))
+        residual, slopes = readings.linearised(fit.point)
+        back = np.linalg.pinv(slopes @ slopes.T) @ slopes
+        return cls(
+            point=fit.point,
+            covariance=fit.covariance[np.ix_(ROWS, ROWS)] + _ROUNDING**2 * np.eye(len(ROWS)),
+            angle_rad=fit.senses.sensor * shaft + fit.point[-1],
+            shaft_rad=shaft,
+            curve_rad=-residual,
+            to_factors=back[list(ROWS)],
+            quad_error=float(fit.standard_errors[QUAD]),
+            log_amplitude=None if amplitude is None else float(np.log(max(amplitude[0], 0.0) or np.nan)),
+            log_amplitude_error=0.0 if amplitude is None else amplitude[1],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Causes:
+    """Values of the causes for a batch: each (batch, 2), zero where a cause is absent."""
+
+    voltage: Array
+    reference: Array
+    electronics: Array
+    sensor: Array
+    magnet: Array
+
+
+def causes_of(names: Sequence[str], numbers: Array) -> Causes:
+    """The causes of a batch of numbers (batch, ...), two for each name in order; those without a name at zero."""
+    none = np.zeros((len(numbers), 2))
+    given = {name: numbers[:, 2 * k : 2 * k + 2] for k, name in enumerate(names)}
+    return Causes(**{name: given.get(name, none) for name in CAUSES})
+
+
+def expected(sweeps: Sequence[GapSweep], magnet: Magnet, causes: Causes, gap_mm: Array) -> tuple[Array, Array]:
+    """The factors ROWS (batch, sweeps, 4) and the logarithm of the channels' amplitude (batch, sweeps), up to a scale.
+
+    ``gap_mm`` (batch, sweeps) are the air gaps. One pass of the field's series over all gaps and the whole batch.
+    """
+    batch, count = gap_mm.shape
+    gap_mm = np.clip(gap_mm, SMALLEST_GAP_MM, LARGEST_GAP_MM)
+    sensor, centre = displacements(causes)
+    # A trial step of the fit may ask for a magnet far off the shaft; none is off by more than its radius.
+    reach = float(magnet.reach_mm)
+    centre = centre * np.minimum(1.0, reach / np.maximum(np.abs(centre), 1e-300))
+    placed = {
+        "sensor_x_mm": sensor.real,
+        "sensor_y_mm": sensor.imag,
+        "magnet_x_mm": centre.real,
+        "magnet_y_mm": centre.imag,
+    }
+    flat = {name: np.repeat(value, count) for name, value in placed.items()}
+    field = coefficients(magnet, gap_mm.ravel(), **flat).reshape(batch, count, 3, -1)
+    nominal = coefficients(magnet, gap_mm.ravel()).reshape(batch, count, 3, -1)[:, :, 0, 1]
+    factors = np.stack([_factors(sweep, field[:, k], nominal[:, k], causes) for k, sweep in enumerate(sweeps)], axis=1)
+    forwards = 0.5 * np.hypot(field[:, :, 0, 1] + field[:, :, 1, 2], field[:, :, 1, 1] - field[:, :, 0, 2])
+    return factors, np.log(forwards)
+
+
+def displacements(causes: Causes) -> tuple[Array, Array]:
+    """Displacements x + iy [mm] (batch,) of sensor and magnet; of the two pairs of signs that with s to the right."""
+    squared = causes.sensor[:, 0] + 1j * causes.sensor[:, 1]
+    product = causes.magnet[:, 0] + 1j * causes.magnet[:, 1]
+    sensor = np.sqrt(squared)
+    centre = np.divide(product, sensor, out=np.zeros_like(product), where=(sensor != 0.0) & (product != 0.0))
+    return sensor, centre
+
+
+def _factors(sweep: GapSweep, field_mT: Array, nominal_mT: Array, causes: Causes) -> Array:
+    """The factors (batch, 4) of one sweep in a field (batch, 3, terms)."""
+    orders = (field_mT.shape[-1] - 1) // 2
+    table = basis(sweep.angle_rad, orders)
+    scale = nominal_mT[:, None]
+    along, across = field_mT[:, 0] @ table / scale, field_mT[:, 1] @ table / scale
+    gain, phase = 1.0 + causes.electronics[:, :1], causes.electronics[:, 1:]
+    turned = across * np.cos(phase) + along * np.sin(phase)
+    quad = sweep.point[QUAD]
+    offset = causes.voltage / scale
+    x = along + quad * along**2 + offset[:, :1]
+    y = gain * (turned + quad * turned**2 + offset[:, 1:])
+    angle = np.arctan2(y, x)
+    angle += causes.reference[:, :1] * np.cos(sweep.shaft_rad) + causes.reference[:, 1:] * np.sin(sweep.shaft_rad)
+    change = np.angle(np.exp(1j * (angle - sweep.curve_rad)))
+    return np.asarray(sweep.point[list(ROWS)] + change @ sweep.to_factors.T)

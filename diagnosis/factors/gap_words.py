@@ -1,0 +1,168 @@
+"""What several air gaps tell, in words: causes by name, classes that are not told apart, or a misfit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from diagnosis.factors.air_gaps import AirGaps
+from diagnosis.factors.displacement import Displacement, magnet_displacement, sensor_displacement
+from diagnosis.factors.gap_fit import GapFit
+from diagnosis.factors.gap_model import ROWS
+from diagnosis.factors.mounting import Mounting
+from twin.baseline import FACTORS
+
+_MOST_PLACES = 3
+_CLEAR_SIGMA = 3.0
+_ALTERNATIVES = {
+    "voltage": "a constant voltage or a stray field",
+    "reference": "an eccentric reference",
+    "magnet": "a magnet off the shaft beside the sensor",
+}
+
+
+def magnet_words(mounting: Mounting) -> str:
+    """The magnet, and whether somebody has named it."""
+    return f"{mounting.body}{' (assumed: name yours by --twin or --magnet)' if mounting.assumed else ''}"
+
+
+def sentences(found: AirGaps) -> tuple[str, ...]:
+    """The answer of several air gaps."""
+    fit = found.fullest if found.misfit else found.best
+    gaps = ", ".join(f"{gap:.2f}" for gap in fit.gap_mm)
+    said = [f"air gaps: {gaps} mm before {magnet_words(found.mounting)}"]
+    if found.misfit:
+        return (*said, *_misfit(fit, found.names, found.mounting))
+    if found.best.degrees_of_freedom < 1:
+        said.append(f"air gaps: {len(found.names)} of them leave nothing to check the causes by; one more would")
+    return (*said, *_order_2(found), *_order_1(found), *_magnet(found), _quadratic(found))
+
+
+def _misfit(fit: GapFit, names: tuple[str, ...], mounting: Mounting) -> Iterator[str]:
+    """By how much nothing fits, and where."""
+    yield (
+        "air gaps: neither the electronics nor a displacement of sensor and magnet explains how offset, gain ratio and "
+        f"phase go over the gaps: chi^2 = {fit.chi2:.0f} at {fit.degrees_of_freedom} degrees of freedom "
+        f"(p = {fit.p:.1g}); no cause is named"
+    )
+    places = [_place(fit, names, *place) for place in farthest(fit)]
+    moved = [
+        f"{name}, at {gap:.2f} mm instead of {stated:.2f} mm"
+        for name, gap, stated in zip(names, fit.gap_mm, mounting.air_gap_mm, strict=False)
+        if abs(gap - stated) > _CLEAR_SIGMA * mounting.gap_error_mm
+    ]
+    if places:
+        yield f"air gaps: farthest off are {'; '.join(places)}"
+    if moved:
+        yield f"air gaps: the causes would rather have {'; '.join(moved)}"
+    if not (places or moved):
+        yield "air gaps: what does not fit are the amplitudes of the channels to the field at these gaps"
+
+
+def farthest(fit: GapFit) -> list[tuple[int, int]]:
+    """Sweep and factor (place in ROWS) of what lies farthest from what is expected, the farthest first."""
+    order = np.argsort(-np.abs(fit.misses), axis=None)[:_MOST_PLACES]
+    places = zip(*np.unravel_index(order, fit.misses.shape), strict=True)
+    return [(int(sweep), int(row)) for sweep, row in places if abs(fit.misses[sweep, row]) > _CLEAR_SIGMA]
+
+
+def _place(fit: GapFit, names: tuple[str, ...], sweep: int, row: int) -> str:
+    factor = FACTORS[ROWS[row]]
+    size = f"{fit.differences[sweep, row] * factor.per_coordinate:+.2g} {factor.shown_unit}".rstrip()
+    sigma = abs(fit.misses[sweep, row])
+    return f"the {factor.label} of {names[sweep]} at {fit.gap_mm[sweep]:.2f} mm by {size} ({sigma:.0f} standard errors)"
+
+
+def _order_2(found: AirGaps) -> Iterator[str]:
+    """Gain ratio and phase."""
+    if len(found.order_2) > 1:
+        yield _either(found)
+        return
+    (causes,) = found.order_2
+    if not causes:
+        yield "air gaps: gain ratio and phase are compatible with none at every gap"
+    if "electronics" in causes:
+        part = "part of gain ratio and phase" if "sensor" in causes else "gain ratio and phase"
+        value, error = found.best.pair("electronics")
+        yield (
+            f"air gaps: {part} (gain ratio {1.0 + value.real:.5f}, phase {np.degrees(value.imag):+.3f} deg, "
+            f"±{1.96 * error:.2g} and ±{np.degrees(1.96 * error):.2g} deg) keep their share: the electronics, or a "
+            "tilted sensor; mounting the sensor anew parts the two"
+        )
+    off = sensor_displacement(found.best)
+    if off is not None:
+        yield (
+            "air gaps: gain ratio and phase follow this magnet's field off its axis: the sensor is "
+            f"{_length(off)} off the shaft's axis, towards {_direction(off)} or opposite"
+        )
+
+
+def _either(found: AirGaps) -> str:
+    """Electronics or displacement, and what would part them."""
+    off = sensor_displacement(found.fit_of(found.order_1[0], ("sensor",)))
+    assert off is not None
+    further = "a wider range of gaps" if found.parting_mm is None else f"a sweep at {found.parting_mm:.2g} mm"
+    return (
+        f"air gaps: gain ratio and phase are the electronics', or those of a sensor {_length(off)} off the axis: these "
+        f"gaps cannot tell, {further} would"
+    )
+
+
+def _order_1(found: AirGaps) -> Iterator[str]:
+    """The offsets."""
+    if len(found.order_1) > 1:
+        ways = ", or ".join(" with ".join(_ALTERNATIVES[name] for name in one) for one in found.order_1)
+        yield f"air gaps: the offsets are those of {ways}: these gaps cannot tell"
+        return
+    (causes,) = found.order_1
+    if not causes:
+        yield "air gaps: the offsets are compatible with none at every gap"
+    if "voltage" in causes:
+        value, error = found.best.pair("voltage")
+        yield (
+            "air gaps: the offset falls with the field, as a constant voltage and a stray field of "
+            f"{value.real:.3g}, {value.imag:.3g} mT (±{1.96 * error:.2g}) do: turning the housing in the stray field "
+            "parts the two"
+        )
+    if "reference" in causes:
+        size = float(np.degrees(abs(found.best.pair("reference")[0])))
+        yield f"air gaps: {size:.3g} deg of order 1 keep their size at every gap: an eccentric reference"
+
+
+def _magnet(found: AirGaps) -> Iterator[str]:
+    """The magnet, which shows in the offsets beside the sensor's displacement alone."""
+    bound = found.magnet_bound_mm
+    centre = magnet_displacement(found.best)
+    if centre is not None and "magnet" in found.named:
+        yield (
+            f"air gaps: the magnet is {_length(centre)} off the shaft too, towards {_direction(centre)} where the "
+            "field points along the sensor's x axis, or opposite where the sensor is"
+        )
+    elif bound is not None:
+        yield f"air gaps: the magnet is off the shaft by less than {bound:.2g} mm (97.5 %)"
+    elif len(found.order_1) == 1:
+        yield (
+            "air gaps: a magnet off the shaft makes no error while the sensor is on the axis: sweeps with the sensor "
+            "shifted on purpose, by half a millimetre, would show it"
+        )
+
+
+def _quadratic(found: AirGaps) -> str:
+    law = found.quadratic
+    if law.best == "none":
+        return "air gaps: the quadratic term is compatible with none at every gap"
+    if law.best == "none fits":
+        return (
+            f"air gaps: the quadratic term neither stays nor grows with the field: chi^2 = {law.chi2:.0f} at "
+            f"{law.degrees_of_freedom} degrees of freedom (p = {law.p:.1g})"
+        )
+    return f"air gaps: the quadratic term {law.best}"
+
+
+def _length(found: Displacement) -> str:
+    return f"{found.mm:.3f} mm ({found.low_mm:.3f} .. {found.high_mm:.3f})"
+
+
+def _direction(found: Displacement) -> str:
+    return f"{found.direction_deg:.1f} ±{found.direction_half_deg:.1f} deg"

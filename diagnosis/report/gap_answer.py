@@ -1,0 +1,57 @@
+"""The joint fit of several air gaps as plain values: ``air_gap_fit`` in the JSON of ``halltwin diagnose``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from diagnosis.factors.air_gaps import AirGaps
+from diagnosis.factors.displacement import Displacement, magnet_displacement, sensor_displacement
+from diagnosis.factors.gap_fit import GapFit
+from diagnosis.factors.gap_model import ROWS
+from diagnosis.factors.gap_words import farthest, sentences
+from twin.baseline import FACTORS
+
+
+def gap_answer(found: AirGaps) -> dict[str, Any]:
+    """What the gaps tell; causes are named only where something fits."""
+    best = found.fullest if found.misfit else found.best
+    return {
+        "magnet": found.mounting.body,
+        "assumed": found.mounting.assumed,
+        "gaps_mm": [float(gap) for gap in best.gap_mm],
+        "fits": not found.misfit,
+        "named": list(found.named),
+        "order_1": [list(one) for one in found.order_1],
+        "order_2": [list(one) for one in found.order_2],
+        "sensor_off_axis": _displacement(None if found.misfit else sensor_displacement(best)),
+        "magnet_off_shaft": _displacement(None if found.misfit else magnet_displacement(best)),
+        "magnet_bound_mm": found.magnet_bound_mm,
+        "parting_mm": found.parting_mm,
+        **_goodness(best),
+        "sets": [{"set": list(causes), **_goodness(fit)} for causes, fit in sorted(found.fits.items())],
+        "farthest": [_place(found, best, *place) for place in farthest(best)],
+        "sentences": list(sentences(found)),
+    }
+
+
+def _goodness(fit: GapFit) -> dict[str, Any]:
+    return {"chi2": fit.chi2, "degrees_of_freedom": fit.degrees_of_freedom, "p": fit.p}
+
+
+def _displacement(found: Displacement | None) -> dict[str, float] | None:
+    """Keys of the JSON say what the length is of."""
+    if found is None:
+        return None
+    told = dict(vars(found))
+    return {"value_mm": told.pop("mm"), **told}
+
+
+def _place(found: AirGaps, fit: GapFit, sweep: int, row: int) -> dict[str, Any]:
+    """A factor of a sweep that lies off what is expected: by how much, in its unit and in standard errors."""
+    factor = FACTORS[ROWS[row]]
+    return {
+        "sweep": found.names[sweep],
+        "factor": factor.name,
+        "difference": float(fit.differences[sweep, row]) * factor.per_coordinate * factor.scale,
+        "sigma": float(abs(fit.misses[sweep, row])),
+    }

@@ -1,0 +1,83 @@
+"""Sweeps at several air gaps with a known truth, from magpylib's field and without any code of the twin or the fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+TAU = 2.0 * np.pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class Truth:
+    """One sensor before one magnet; displacements x + iy in mm, fields and voltages in mT."""
+
+    sensor: complex = 0j
+    magnet: complex = 0j
+    gain: float = 1.0
+    beta: float = 0.0
+    voltage: complex = 0j
+    stray: complex = 0j
+    tilt_deg: float = 0.0
+    """Of the sensor towards its x axis."""
+    eccentric_rad: float = 0.0
+    quad_per_mT: float = 0.0
+    diameter_mm: float = 6.0
+    height_mm: float = 2.5
+
+    def sweep(
+        self, gap_mm: float, rng: np.random.Generator, *, noise_deg: float = 0.02, n: int = 360, channels: bool = True
+    ) -> dict[str, Array]:
+        """The columns of one turn at one air gap."""
+        theta = TAU * np.arange(n) / n
+        field = self.field_mT(theta + 0.4, gap_mm)
+        tilt = np.radians(self.tilt_deg)
+        along = (field[0] + self.stray.real) * np.cos(tilt) - field[2] * np.sin(tilt)
+        across = (field[1] + self.stray.imag) * np.cos(self.beta) + along * np.sin(self.beta)
+        x = along + self.quad_per_mT * along**2 + self.voltage.real
+        y = self.gain * (across + self.quad_per_mT * across**2 + self.voltage.imag)
+        read = np.arctan2(y, x) + np.radians(noise_deg) * rng.standard_normal(n)
+        reference = theta + self.eccentric_rad * np.cos(theta)
+        columns = {"reference_deg": np.degrees(reference), "measured_deg": np.degrees(read)}
+        if not channels:
+            return columns
+        # Ten millivolts a millitesla, and a ten-thousandth of noise.
+        noise = 1e-4 * np.max(np.abs(x)) * rng.standard_normal((2, n))
+        return {**columns, "vx": 10.0 * (x + noise[0]), "vy": 10.0 * (y + noise[1])}
+
+    def field_mT(self, angle_rad: Array, gap_mm: float) -> Array:
+        """The field (3, n) at the sensor while the magnet turns by the angle, its centre going round with it."""
+        import magpylib
+
+        body = magpylib.magnet.Cylinder(polarization=(-1.21, 0.0, 0.0), dimension=(self.diameter_mm, self.height_mm))
+        seen = self.sensor * np.exp(-1j * angle_rad) - self.magnet
+        height = np.full(angle_rad.size, gap_mm + 0.5 * self.height_mm)
+        own = 1e3 * body.getB(np.stack([seen.real, seen.imag, height], axis=-1)).reshape(-1, 3)
+        plane = (own[:, 0] + 1j * own[:, 1]) * np.exp(1j * angle_rad)
+        return np.stack([plane.real, plane.imag, own[:, 2]])
+
+
+CASES: dict[str, tuple[Truth, frozenset[str]]] = {
+    "nothing": (Truth(), frozenset()),
+    "electronics": (
+        Truth(gain=1.006, beta=0.004, voltage=0.4 - 0.3j),
+        frozenset({"voltage", "electronics"}),
+    ),
+    "stray field": (Truth(stray=0.5 - 0.3j), frozenset({"voltage"})),
+    "sensor": (Truth(sensor=0.6 + 0.3j), frozenset({"sensor"})),
+    "sensor, a little": (Truth(sensor=0.15 + 0.1j), frozenset({"sensor"})),
+    "sensor and electronics": (
+        Truth(sensor=0.6 + 0.3j, gain=1.006, beta=0.004),
+        frozenset({"sensor", "electronics"}),
+    ),
+    "sensor, magnet and electronics": (
+        Truth(sensor=0.6 + 0.3j, magnet=0.1 - 0.25j, gain=1.006, beta=0.004, voltage=0.3 - 0.2j),
+        frozenset({"voltage", "electronics", "sensor", "magnet"}),
+    ),
+    "magnet alone": (Truth(magnet=0.3 + 0.2j), frozenset()),
+    "eccentric reference": (Truth(eccentric_rad=0.004), frozenset({"reference"})),
+}
+"""What is wrong, and the causes to be named for it."""

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from diagnosis.factors.air_gaps import AirGaps, Law
     from diagnosis.factors.findings import Findings
     from diagnosis.report.provenance import Provenance
+    from diagnosis.thermal.over_temperature import OverTemperature
     from twin.chain import Chain
     from twin.sweep import Sweep
 
@@ -120,6 +121,15 @@ class Diagnosis:
         return self._alone.plot()
 
     @property
+    def over_temperature(self) -> OverTemperature | None:
+        """The law of each factor, where the sweep holds temperatures more than 5 K apart; else None."""
+        return self._alone.over_temperature
+
+    def plot_over_temperature(self) -> Figure:
+        """Draw each factor over temperature, see :meth:`Diagnoses.plot_over_temperature`."""
+        return self._alone.plot_over_temperature()
+
+    @cached_property
     def _alone(self) -> Diagnoses:
         return Diagnoses((self,), self.made)
 
@@ -166,6 +176,25 @@ class Diagnoses:
 
         return gap_fit(self._findings, self._findings[0].mounting)
 
+    @cached_property
+    def over_temperature(self) -> OverTemperature | None:
+        """The law of each factor where the sweeps hold temperatures more than 5 K apart; else None.
+
+        All sweeps count as recordings of one sensor; None also where some of them count the other way round.
+        """
+        import numpy as np
+
+        from diagnosis.blas_threads import one_blas_thread
+        from diagnosis.thermal.over_temperature import find_laws
+        from diagnosis.thermal.recording import counts_as, joined, over_temperature
+
+        sweeps = [item.sweep for item in self.items]
+        if not over_temperature(sweeps) or len({counts_as(sweep) for sweep in sweeps}) > 1:
+            return None
+        senses = self.items[0].findings.fit.senses
+        with one_blas_thread():
+            return find_laws(joined(sweeps), rng=np.random.default_rng(0), senses=(senses.sensor, senses.output))
+
     def summary(self, width: int = 80) -> str:
         """The text that ``halltwin diagnose`` prints: all about a single sweep, or one line each.
 
@@ -193,7 +222,7 @@ class Diagnoses:
         """
         from diagnosis.report.diagnose_answer import to_json
 
-        return to_json(self._findings, self.air_gap_fit, self.made)
+        return to_json(self._findings, self.air_gap_fit, self.over_temperature, self.made)
 
     def to_dataframe(self) -> pd.DataFrame:
         """The factors as a table: one row a sweep.
@@ -246,6 +275,29 @@ class Diagnoses:
         from diagnosis.report.diagnose_plot import convergence_figure
 
         return convergence_figure(self._findings)
+
+    def plot_over_temperature(self) -> Figure:
+        """Draw each factor over temperature: its law with the interval, and what each temperature by itself gives.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A figure of its own: pyplot does not know it, and matplotlib's settings stay as they are.
+
+        Raises
+        ------
+        twin.errors.UserError
+            Where matplotlib is not installed, or the sweeps tell nothing of temperature.
+        """
+        from diagnosis.report.temperature_plot import laws_figure
+        from twin.errors import UserError
+
+        if self.over_temperature is None:
+            raise UserError(
+                "nothing to draw over temperature; expected sweeps of one sensor whose temperature_c differ by more "
+                "than 5 K"
+            )
+        return laws_figure(self.over_temperature)
 
     @property
     def _findings(self) -> tuple[Findings, ...]:

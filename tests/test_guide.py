@@ -38,6 +38,20 @@ def test_own_effect_is_its_real_output(
         assert told == pytest.approx(found, rel=0.03, abs=3e-4)
 
 
+def test_over_temperature_is_its_real_output(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Words as they stand, figures to a few percent; half widths are not compared."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
+    page = GUIDE / "temperature.md"
+    simulate = re.search(r"^halltwin (simulate .*)$", page.read_text(encoding="utf-8"), re.M)
+    assert simulate
+    halltwin(*(ROOT / word if word.startswith("scenarios/") else word for word in simulate[1].split()))
+    out, shown = halltwin("compensate", "warm.csv").out, block(page, "warm")
+    assert words(out) == words(shown)
+    for told, found in zip(figures(shown), figures(out), strict=True):
+        assert told == pytest.approx(found, rel=0.1, abs=3e-4)
+
+
 @pytest.mark.parametrize(("name", "path"), [("own", OWN), ("latency", ROOT / "twin/link/latency.py")])
 def test_shown_declaration_is_the_shipped_file(name: str, path: Path) -> None:
     assert path.read_text(encoding="utf-8").endswith(f"\n{block(OWN_PAGE, name, 'python')}\n")

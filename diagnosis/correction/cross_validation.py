@@ -1,4 +1,4 @@
-"""How well a correction does on readings it never saw."""
+"""How well a correction does on readings it never saw: on blocks held out, and at a temperature held out."""
 
 from __future__ import annotations
 
@@ -8,11 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.angles import TAU, Array, wrap
+from diagnosis.thermal.laws import FROM_C
+from diagnosis.thermal.recording import Recording
+from twin.angles import TAU, Array, IntArray, wrap
 
 BLOCKS = 10
 FOLDS = 5
 _GRID = 720
+Shaft = Callable[[Array, Array], Array]
+"""From readings [rad] and their temperatures [C] to shaft angles [rad]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,32 +54,62 @@ def folds(rows: int) -> Iterator[NDArray[np.bool_]]:
         yield block % count == fold
 
 
-def cross_validated(
-    reference_rad: Array, measured_rad: Array, correct: Callable[[Array, Array], Callable[[Array], Array]]
-) -> BeforeAfter:
-    """Calibrate on the rows outside each fold and hold the correction against those inside.
+def cross_validated(recording: Recording, level: IntArray, correct: Callable[[Recording], Shaft]) -> BeforeAfter:
+    """Calibrate on the readings outside each fold and hold the correction against those inside.
 
-    ``correct`` takes reference and measured readings and returns a function from readings to shaft angles.
+    ``level`` (n,) numbers the temperatures, each of which is cut into blocks of its own.
     """
-    before, after = np.zeros(reference_rad.size), np.zeros(reference_rad.size)
-    for mask in folds(reference_rad.size):
-        shaft = correct(reference_rad[~mask], measured_rad[~mask])
-        one = against(reference_rad[mask], measured_rad[mask], shaft)
+    before, after = np.zeros(len(recording)), np.zeros(len(recording))
+    for mask in _folds_of_all(level):
+        one = on(recording.part(mask), correct(recording.part(~mask)))
         before[mask], after[mask] = one.before_rad, one.after_rad
     return BeforeAfter(before, after)
 
 
-def against(reference_rad: Array, measured_rad: Array, shaft: Callable[[Array], Array]) -> BeforeAfter:
-    """Errors of a finished correction on other readings (n,).
+def between(recording: Recording, level: IntArray, correct: Callable[[Recording], Shaft]) -> dict[int, BeforeAfter]:
+    """By level: calibrate on all other temperatures and hold the correction against this one.
 
-    The error before is that of the same correction without its shape: its slope and its zero alone.
+    Only levels between others are held out: beyond those it has seen a correction stays what it is at their end.
+    """
+    inner = range(1, int(level.max(initial=0)))
+    return {k: on(recording.part(level == k), correct(recording.part(level != k))) for k in inner}
+
+
+def on(recording: Recording, shaft: Shaft) -> BeforeAfter:
+    """Errors of a finished correction on other readings, each at its own temperature.
+
+    The error before is that of the same correction without its shape: its slope and its zero at 25 C alone.
     """
     grid = TAU * np.arange(_GRID) / _GRID
-    corrected = shaft(grid)
+    corrected = shaft(grid, np.full(_GRID, FROM_C))
     turning = [np.mean(np.exp(1j * (slope * grid - corrected))) for slope in (1.0, -1.0)]
     slope = 1.0 if abs(turning[0]) >= abs(turning[1]) else -1.0
     zero = np.angle(turning[0] if slope > 0 else turning[1])
-    return BeforeAfter(wrap(slope * measured_rad - zero - reference_rad), wrap(shaft(measured_rad) - reference_rad))
+    return BeforeAfter(
+        wrap(slope * recording.measured_rad - zero - recording.reference_rad),
+        wrap(shaft(recording.measured_rad, recording.temperature_c) - recording.reference_rad),
+    )
+
+
+def against(reference_rad: Array, measured_rad: Array, shaft: Callable[[Array], Array]) -> BeforeAfter:
+    """Errors on other readings (n,) of a finished correction that knows no temperature."""
+    readings = Recording.at_one_temperature(reference_rad, measured_rad, FROM_C)
+    return on(readings, lambda measured, _: shaft(measured))
+
+
+def _folds_of_all(level: IntArray) -> Iterator[NDArray[np.bool_]]:
+    """Masks (n,) of the held-out readings: of each level a fold, and not the same, so that no angle is lost to all."""
+    parts = []
+    for k in range(int(level.max(initial=0)) + 1):
+        rows = np.flatnonzero(level == k)
+        parts.append([rows[mask] for mask in folds(rows.size)])
+    for number in range(min(FOLDS, level.size // 4)):
+        held = np.zeros(level.size, dtype=np.bool_)
+        for k, part in enumerate(parts):
+            if number < len(part):
+                held[part[(number + k) % len(part)]] = True
+        if held.any():
+            yield held
 
 
 def _without_zeros(error: Array, turn: Array) -> Array:

@@ -11,22 +11,27 @@ from diagnosis.error_model.model import NAMES
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.air_gaps import AirGaps, laws
 from diagnosis.factors.findings import Findings
+from diagnosis.report import temperature_answer
 from diagnosis.report.gap_answer import gap_answer
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.row_counts import counts_of
+from diagnosis.thermal.over_temperature import OverTemperature
 from twin.baseline import FACTORS
 
 SCHEMA = "halltwin.diagnose/1"
 
 
-def to_json(found: Sequence[Findings], over_gaps: AirGaps | None, made: Provenance) -> dict[str, Any]:
-    """The answer to one or many sweeps, with what their air gaps tell together."""
+def to_json(
+    found: Sequence[Findings], over_gaps: AirGaps | None, thermal: OverTemperature | None, made: Provenance
+) -> dict[str, Any]:
+    """The answer to one or many sweeps, with what their air gaps tell together, and their temperatures."""
     return {
         "schema": SCHEMA,
         **made.to_dict(),
         "sweeps": [one_sweep(item) for item in found],
         "air_gaps": [] if over_gaps is None else [dict(vars(law)) for law in laws(over_gaps)],
         "air_gap_fit": None if over_gaps is None else gap_answer(over_gaps),
+        "temperature": None if thermal is None else temperature_answer.to_dict(thermal, sweeps=len(found)),
     }
 
 

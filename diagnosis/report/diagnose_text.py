@@ -9,6 +9,7 @@ import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from diagnosis.report import temperature_text
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
 from diagnosis.report.row_counts import diagnosed_rows, left_out_words
 from diagnosis.report.wording import figure, plain
@@ -25,8 +26,9 @@ def text(answer: Mapping[str, Any], *, width: int) -> str:
     """The answer in lines of at most this many characters: all about a single sweep, or one line each for many."""
     sweeps = answer["sweeps"]
     lines = one_sweep(sweeps[0], width=width) if len(sweeps) == 1 else many_sweeps(sweeps, width=width)
-    over_gaps = answer["air_gap_fit"]
-    return "\n".join([*lines, *_listed(over_gaps["sentences"] if over_gaps else (), width)])
+    over_gaps, thermal = answer["air_gap_fit"], answer["temperature"]
+    over_temperature = [] if thermal is None else ["", *temperature_text.lines(thermal, width)]
+    return "\n".join([*lines, *_listed(over_gaps["sentences"] if over_gaps else (), width), *over_temperature])
 
 
 def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:

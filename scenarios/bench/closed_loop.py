@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnosis.correction.compensation import Correction, correction_of, to_dict
+from diagnosis.correction.compensation import Correction, correction_of
+from diagnosis.correction.correction_file import to_dict
 from scenarios.bench.faults import Opener
 from scenarios.bench.loading import numbers
 from scenarios.bench.measure import Measured, Measurement, finish, journal_of, measure

@@ -123,7 +123,13 @@ def diagnose(
 
 
 def compensate(
-    source: Annotated[str, typer.Argument(metavar="SOURCE", help="Measured sweep, twin TOML, or preset.")],
+    sources: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="SOURCES...",
+            help="Measured sweep, or sweeps of one sensor at several temperatures; or a twin TOML or preset.",
+        ),
+    ],
     header: Annotated[
         Path | None,
         written("Write a C header with fixed-point code.", metavar="FILE.h"),
@@ -153,14 +159,17 @@ def compensate(
         list[str] | None, fail_on_option("worse (the error is larger with the correction, on held-out readings too)")
     ] = None,
 ) -> None:
-    """Turn a sweep or a twin into a continuous correction, and measure it on readings it never saw."""
+    """Turn sweeps or a twin into a continuous correction, and measure it on readings it never saw.
+
+    Over several temperatures each factor is told sensitive or immune, and the correction follows the sensitive ones.
+    """
     from scenarios.commands.compensate import Outputs, run
     from scenarios.commands.inputs import SweepFiles
     from twin.bounded_input import bytes_of
 
     outputs = Outputs(header=header, table=table, points=points, toml=toml, plot=plot, prefix=prefix, force=force)
     run(
-        source,
+        sources,
         outputs=outputs,
         check=SweepFiles(check or (), bytes_of(max_size)),
         temperature_c=temperature,

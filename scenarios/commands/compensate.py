@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
-import io
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from diagnosis.correction.calibration import calibrate
-from diagnosis.correction.compensation import Correction, correction_of, to_dict
+from diagnosis.correction.compensation import Correction, correction_of
 from diagnosis.correction.compensation_c import check_prefix, header
-from diagnosis.correction.cross_validation import BeforeAfter, against, cross_validated
-from diagnosis.report.row_counts import counts_of, diagnosed_rows, rejected_words
+from diagnosis.correction.correction_file import to_dict
+from diagnosis.report.row_counts import counts_of, rejected_words
 from diagnosis.report.wording import plain
-from scenarios.commands.compensate_text import MadeOf, show
+from scenarios.commands.compensate_judge import Judged, held_out, on_others
+from scenarios.commands.compensate_source import Readings, readings_of
+from scenarios.commands.compensate_table import table, temperatures_c
+from scenarios.commands.compensate_text import made_of, show
 from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
-from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels
+from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels, sweep_paths
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
-from twin.angles import TAU, Array, radians
 from twin.chain import Chain
-from twin.effect import BoolArray
 from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.limits import require_within
@@ -35,7 +32,6 @@ _FEWEST_POINTS = 4
 _MOST_POINTS = 65536
 _COARSEST_DEG = 10.0
 _NONE = SweepFiles()
-_NO_ROWS: BoolArray = np.zeros(0, dtype=bool)
 
 
 @dataclass(frozen=True)
@@ -55,7 +51,7 @@ class Outputs:
 
 
 def run(
-    source: str | Path,
+    sources: Sequence[str | Path],
     *,
     outputs: Outputs,
     check: SweepFiles = _NONE,
@@ -65,7 +61,7 @@ def run(
     seed: int = 0,
     fail_on: Sequence[str] = (),
 ) -> None:
-    """Correction of a sweep or of a twin; errors on the sweeps of ``check``, or on held-out blocks of the sweep.
+    """Correction of a twin or of sweeps; errors on the sweeps of ``check``, or on what is held out of those given.
 
     Raises FoundError, after all is written, where the correction makes the error larger on a sweep of ``check``.
     """
@@ -76,38 +72,52 @@ def run(
     require_within("tolerance", tolerance_deg, 0.0, _COARSEST_DEG, "deg")
     check_prefix(outputs.prefix)
     effects = effects_with(effect_files)
-    twin = read_twin_or_preset(source, effects=effects) if is_twin(source) else Chain(effects=effects)
-    checked_on = check.paths()
-    files = _files(outputs, inputs=[Path(source), *checked_on, *effect_files])
+    of_twin = _is_one_twin(sources)
+    twin = read_twin_or_preset(sources[0], effects=effects) if of_twin else Chain(effects=effects)
+    checked_on, paths = check.paths(), [Path(sources[0])] if of_twin else _paths(sources)
+    files = _files(outputs, inputs=[*paths, *checked_on, *effect_files])
     others = check.read(checked_on)
-    sweep = None if is_twin(source) else Sweep.read(source, max_bytes=check.max_bytes)
-    check_panels(outputs.plot, len(others.sweeps) if checked_on or sweep is None else 1)
-    if sweep is None:
+    given = SweepsRead(()) if of_twin else _read(paths, check.max_bytes)
+    check_panels(outputs.plot, len(others.sweeps) if checked_on or of_twin else 1)
+    readings = None if of_twin else readings_of(given.sweeps, tolerance_deg=tolerance_deg, seed=seed)
+    if readings is None:
         correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)
-        made_of, gross = MadeOf(shown_name(source), "", tolerance_deg), _NO_ROWS
     else:
-        correction, made_of, gross = _made_of(sweep, shown_name(source), tolerance_deg, seed)
-    judged = _judge(correction, sweep, others, tolerance_deg, seed)
-    show(made_of, correction, [row for one in judged for row in _rows(*one, other=bool(checked_on), gross=gross)])
-    for line in (*_rejected(others), *others.lines):
+        correction = readings.correction
+    judged = _judge(correction, readings, others)
+    source = shown_name(paths[0]) if len(paths) == 1 else f"{len(given.sweeps)} sweeps"
+    rows = _rows(judged, other=bool(checked_on))
+    show(made_of(readings, source, tolerance_deg), correction, [(one.name, one.found) for one in rows])
+    for line in (*_rejected(others), *given.lines, *others.lines):
         print(line)
-    _write(
-        files, outputs, correction, source=shown_name(source), judged=_with_own_zero(judged) if checked_on else judged
-    )
+    shown = [one.without_zeros() for one in judged] if checked_on else judged
+    _write(files, outputs, correction, source=source, judged=shown, readings=readings, tolerance_deg=tolerance_deg)
     _say_where_worse(judged, fails=bool(checked_on or words))
-    others.raise_unusable()
+    SweepsRead((*given.sweeps, *others.sweeps), (*given.unusable, *others.unusable)).raise_unusable()
 
 
-def _made_of(sweep: Sweep, name: str, tolerance_deg: float, seed: int) -> tuple[Correction, MadeOf, BoolArray]:
-    """The correction of a sweep, what is told of its readings, and which (n,) were set aside as gross errors."""
-    found = calibrate(*_angles(sweep), rng=np.random.default_rng(seed))
-    gross = found.fit.outliers
-    counts = counts_of(sweep, sweep.numbers[gross].tolist())
-    readings = f"{counts['rows']} readings; {diagnosed_rows(counts)}"
-    # Of the mean of so many readings; and no better than the orders that were left out.
-    known_deg = float(np.degrees(found.fit.sigma_rad)) / np.sqrt(counts["fitted"])
-    made_of = MadeOf(name, readings, max(known_deg, tolerance_deg))
-    return correction_of(found.chain, tolerance_deg=tolerance_deg), made_of, gross
+def _is_one_twin(sources: Sequence[str | Path]) -> bool:
+    """Whether the sources are one twin. Raises UserError where one of several is."""
+    twins = [source for source in sources if is_twin(source)]
+    if twins and len(sources) > 1:
+        raise UserError(
+            f"{shown_name(twins[0])} is a twin beside other sources; give one twin alone, or the sweeps of one sensor"
+        )
+    return bool(twins)
+
+
+def _paths(sources: Sequence[str | Path]) -> list[Path]:
+    """The files of sweeps; a single name that is no folder or pattern stands for itself, there or not."""
+    only = Path(sources[0])
+    if len(sources) == 1 and not only.is_dir() and (only.exists() or not set(str(only)) & set("*?[")):
+        return [only]
+    return sweep_paths([str(source) for source in sources])
+
+
+def _read(paths: Sequence[Path], max_bytes: int) -> SweepsRead:
+    if len(paths) == 1:
+        return SweepsRead((Sweep.read(paths[0], max_bytes=max_bytes),))
+    return SweepFiles(max_bytes=max_bytes).read(paths)
 
 
 def _rejected(others: SweepsRead) -> list[str]:
@@ -122,60 +132,41 @@ def _files(outputs: Outputs, *, inputs: Sequence[Path]) -> OutputFiles:
     return OutputFiles.checked(asked, inputs=inputs, force=outputs.force)
 
 
-def _angles(sweep: Sweep) -> tuple[Array, Array]:
-    return radians(sweep.reference_deg), radians(sweep.measured_deg)
-
-
-def _of_readings(tolerance_deg: float, seed: int) -> Callable[[Array, Array], Correction]:
-    """Readings -> correction, the same way for the whole sweep and for each fold."""
-
-    def build(reference: Array, measured: Array) -> Correction:
-        found = calibrate(reference, measured, rng=np.random.default_rng(seed))
-        return correction_of(found.chain, tolerance_deg=tolerance_deg)
-
-    return build
-
-
-def _judge(
-    correction: Correction, sweep: Sweep | None, others: SweepsRead, tolerance_deg: float, seed: int
-) -> list[tuple[str, BeforeAfter, Sweep]]:
+def _judge(correction: Correction, readings: Readings | None, others: SweepsRead) -> list[Judged]:
     if others.sweeps:
-        return [(f"on {one.name}", against(*_angles(one), correction.shaft), one) for one in others.sweeps]
-    if sweep is None:
-        return []
-    build = _of_readings(tolerance_deg, seed)
-    found = cross_validated(*_angles(sweep), lambda reference, measured: build(reference, measured).shaft)
-    return [("on held-out blocks", found, sweep)]
+        return on_others(correction.shaft, others.sweeps)
+    return [] if readings is None else held_out(readings)
 
 
-def _rows(
-    name: str, found: BeforeAfter, tested: Sweep, *, other: bool, gross: BoolArray
-) -> list[tuple[str, BeforeAfter]]:
+def _rows(judged: Sequence[Judged], *, other: bool) -> list[Judged]:
     """As it is and, where the reference may have found its zero anew, with each turn's own zero taken out.
 
-    Of the sweep that the correction is made of also without its gross errors, which all others count.
+    Of the readings that the correction is made of also without their gross errors, which all others count.
     """
-    rows, turn = [(name, found)], _turns(tested)
-    apart = other or np.unique(turn).size > 1
-    if apart:
-        rows.append(("  each turn's own zero taken out", found.per_turn(turn)))
-    if not other and gross.any():
-        kept = found.among(~gross)
-        left_out = f"without the {np.count_nonzero(gross)} set aside"
-        rows.append((f"  and {left_out}" if apart else f"  {left_out}", kept.per_turn(turn[~gross]) if apart else kept))
+    rows = []
+    for one in judged:
+        if one.part:
+            rows.append(replace(one.without_zeros() if other or one.own_zeros else one, name=f"  {one.name}"))
+            continue
+        apart, kept = other or one.several_turns, one.without_gross()
+        rows.append(one)
+        if apart:
+            rows.append(replace(one.without_zeros(), name="  each turn's own zero taken out"))
+        if kept is not None:
+            rows.append(replace(kept.without_zeros() if apart else kept, name=f"  {'and ' * apart}{kept.name}"))
     return rows
 
 
-def _say_where_worse(judged: Sequence[tuple[str, BeforeAfter, Sweep]], *, fails: bool) -> None:
+def _say_where_worse(judged: Sequence[Judged], *, fails: bool) -> None:
     """Say on which readings the correction makes the error larger; raise FoundError there where that is a failure.
 
     Judged with each turn's own zero taken out: a reference that was mounted anew says nothing about the correction.
     """
     larger = []
-    for name, found, tested in judged:
-        before, after = found.per_turn(_turns(tested)).rms_deg
+    for one in judged:
+        before, after = one.without_zeros().found.rms_deg
         if after > before:
-            larger.append(f"{name} ({plain(before, 4)} -> {plain(after, 4)} deg RMS, own zero taken out)")
+            larger.append(f"{one.name} ({plain(before, 4)} -> {plain(after, 4)} deg RMS, own zero taken out)")
     if larger:
         said = f"the correction makes the error larger {', '.join(larger)}; do not load it"
         if fails:
@@ -183,53 +174,48 @@ def _say_where_worse(judged: Sequence[tuple[str, BeforeAfter, Sweep]], *, fails:
         print(said)
 
 
-def _turns(sweep: Sweep) -> Array:
-    return np.zeros(len(sweep)) if sweep.turn is None else sweep.turn
-
-
-Judged = list[tuple[str, BeforeAfter, Sweep]]
-
-
-def _with_own_zero(judged: Judged) -> Judged:
-    """Each turn's own zero taken out: another sweep's reference may have found its zero anew."""
-    return [(f"{name}, own zero taken out", found.per_turn(_turns(tested)), tested) for name, found, tested in judged]
-
-
-def _write(files: OutputFiles, outputs: Outputs, correction: Correction, *, source: str, judged: Judged) -> None:
+def _write(
+    files: OutputFiles,
+    outputs: Outputs,
+    correction: Correction,
+    *,
+    source: str,
+    judged: Sequence[Judged],
+    readings: Readings | None,
+    tolerance_deg: float,
+) -> None:
     files.write(
         {
             outputs.header: lambda: header(correction, source=f"from {source}", prefix=outputs.prefix),
-            outputs.table: lambda: _table(correction, outputs.points),
-            outputs.toml: lambda: _toml(correction),
-            outputs.plot: lambda: _picture(judged),
+            outputs.table: lambda: table(correction, outputs.points, tolerance_deg),
+            outputs.toml: lambda: _toml(correction, readings),
+            outputs.plot: lambda: _picture(judged, readings),
         }
     )
-    files.tell_written({} if outputs.table is None else {outputs.table: f"{outputs.points} points"})
+    several = 1 if outputs.table is None else temperatures_c(correction, tolerance_deg).size
+    points = f"{outputs.points} points{f' at {several} temperatures' if several > 1 else ''}"
+    files.tell_written({} if outputs.table is None else {outputs.table: points})
 
 
-def _toml(correction: Correction) -> str:
+def _toml(correction: Correction, readings: Readings | None) -> str:
     import tomli_w
 
-    return tomli_w.dumps(to_dict(correction))
+    from diagnosis.report.temperature_answer import to_dict as laws
+
+    content = to_dict(correction)
+    if readings is not None and readings.calibration.over is not None:
+        content["factors"] = {
+            name: law["verdict"]
+            for name, law in laws(readings.calibration.over, sweeps=len(readings.sweeps))["factors"].items()
+        }
+    return tomli_w.dumps(content)
 
 
-def _picture(judged: Judged) -> Any:
+def _picture(judged: Sequence[Judged], readings: Readings | None) -> Any:
+    if readings is not None and readings.calibration.over is not None:
+        from scenarios.commands.compensate_plot import over_temperature_figure
+
+        return over_temperature_figure(judged, readings.calibration.over)
     from scenarios.commands.compensate_plot import before_after_figure
 
-    return before_after_figure(judged)
-
-
-def _table(correction: Correction, points: int) -> str:
-    """CSV: reading, correction to add to slope x reading - zero, and the shaft angle."""
-    reading = TAU * np.arange(points) / points
-    out = io.StringIO()
-    out.write("reading_deg,correction_deg,shaft_deg\n")
-    rows = zip(
-        np.degrees(reading),
-        np.degrees(correction.correction(reading)),
-        np.degrees(correction.shaft(reading)) % 360.0,
-        strict=True,
-    )
-    for row in rows:
-        out.write(",".join(f"{value:.6f}" for value in row) + "\n")
-    return out.getvalue()
+    return before_after_figure([one for one in judged if not one.part])

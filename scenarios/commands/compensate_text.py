@@ -16,7 +16,13 @@ from rich.text import Text
 
 from diagnosis.correction.compensation import Correction
 from diagnosis.correction.cross_validation import BeforeAfter
+from diagnosis.report.row_counts import counts_of, diagnosed_rows, left_out_words
+from diagnosis.report.temperature_answer import to_dict
+from diagnosis.report.temperature_text import lines
 from diagnosis.report.wording import decimals_of, rms_shown
+from scenarios.commands.compensate_source import Readings
+from scenarios.commands.terminal import terminal_width
+from twin.shown_name import shown_name
 
 Rows = Sequence[tuple[str, BeforeAfter]]
 _HEADS = ("RMS / deg", "largest / deg")
@@ -28,32 +34,70 @@ _NARROW = 72
 class MadeOf:
     """What a correction was made of: a name, what became of the readings in words, and how well it is known [deg].
 
-    ``readings`` is empty for a twin.
+    ``readings`` is empty for a twin. ``temperature``: what they say of it, line by line.
     """
 
     name: str
     readings: str
     uncertainty_deg: float
+    temperature: Sequence[str] = ()
 
 
-def show(made_of: MadeOf, correction: Correction, rows: Rows, console: Console | None = None) -> None:
+def made_of(readings: Readings | None, name: str, tolerance_deg: float) -> MadeOf:
+    """What is told of the readings, of which there are none where a twin is corrected."""
+    if readings is None:
+        return MadeOf(name, "", tolerance_deg)
+    counts, end = [], 0
+    for sweep in readings.sweeps:
+        start, end = end, end + len(sweep)
+        gross = sweep.numbers[readings.calibration.gross[start:end]].tolist()
+        counts.append({"sweep": shown_name(sweep.name), **counts_of(sweep, gross)})
+    rows, fitted = (sum(one[key] for one in counts) for key in ("rows", "fitted"))
+    told = diagnosed_rows(counts[0]) if len(counts) == 1 else left_out_words(counts) or "all fitted"
+    # Of the mean of so many readings; and no better than the orders that were left out.
+    known_deg = float(np.degrees(readings.calibration.sigma_rad)) / np.sqrt(fitted)
+    return MadeOf(name, f"{rows} readings; {told}", max(known_deg, tolerance_deg), _of_temperature(readings))
+
+
+def show(made: MadeOf, correction: Correction, rows: Rows, console: Console | None = None) -> None:
     """Print a correction and the errors [deg] of the readings that it was tried on, by their name."""
     console = console or Console(highlight=False)
-    decimals = decimals_of(made_of.uncertainty_deg)
-    if made_of.readings:
-        console.print(Text(f"{made_of.name}   {made_of.readings}"))
+    decimals = decimals_of(made.uncertainty_deg)
+    if made.readings:
+        console.print(Text(f"{made.name}   {made.readings}"))
     console.print(
         Text(
-            f"{'' if made_of.readings else f'{made_of.name}: '}shaft = {correction.slope:+d} x reading "
+            f"{'' if made.readings else f'{made.name}: '}shaft = {correction.slope:+d} x reading "
             f"{-np.degrees(correction.zero_rad):+.{decimals}f} deg + {correction.series.shape[1]} orders, "
-            f"the largest {_largest_deg(correction):.{decimals}f} deg"
+            f"the largest {_largest_deg(correction):.{decimals}f} deg{_following(correction)}"
         )
     )
+    for line in made.temperature:
+        console.print(Text(line))
     if correction.left_out:
         left_out = ", ".join(correction.left_out)
         console.print(Text(f"not in the correction, because a single angle reading cannot tell it: {left_out}"))
     if rows:
         console.print(_table(rows) if console.width >= _NARROW else _list(rows))
+
+
+def _following(correction: Correction) -> str:
+    drift = correction.drift
+    if drift is None:
+        return ""
+    orders = drift.series.shape[2]
+    which = f"zero and orders 1 to {orders}" if orders > 1 else "zero and order 1" if orders else "the zero"
+    return f"; {which} follow{'s' if orders == 0 else ''} the temperature, {drift.low_c:.1f} .. {drift.high_c:.1f} C"
+
+
+def _of_temperature(readings: Readings) -> list[str]:
+    """What the readings say of the temperature."""
+    over = readings.calibration.over
+    if over is not None:
+        said = lines(to_dict(over, sweeps=len(readings.sweeps)), terminal_width())
+        return said if over.followed.any() else [*said, "- the correction is the same at every temperature"]
+    words = readings.temperature_words
+    return [] if words is None else [words]
 
 
 def _table(rows: Rows) -> Table:

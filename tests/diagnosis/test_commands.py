@@ -132,7 +132,7 @@ def test_compensate_a_sweep(folder: Path, tmp_path: Path, capsys: pytest.Capture
     outputs = compensate.Outputs(
         header=tmp_path / "c.h", table=tmp_path / "t.csv", points=32, toml=tmp_path / "c.toml", plot=tmp_path / "p.png"
     )
-    compensate.run(folder / "sweep00.csv", outputs=outputs)
+    compensate.run([folder / "sweep00.csv"], outputs=outputs)
     shown = capsys.readouterr().out
     assert "on held-out blocks" in shown
     assert "halltwin_correct" in (tmp_path / "c.h").read_text()
@@ -145,7 +145,7 @@ def test_compensate_a_sweep(folder: Path, tmp_path: Path, capsys: pytest.Capture
 def test_compensate_a_twin_on_another_sweep(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_twin(tmp_path / "twin.toml", device())
     compensate.run(
-        tmp_path / "twin.toml", outputs=compensate.Outputs(), check=SweepFiles([str(folder / "sweep01.csv")])
+        [tmp_path / "twin.toml"], outputs=compensate.Outputs(), check=SweepFiles([str(folder / "sweep01.csv")])
     )
     line = next(text for text in capsys.readouterr().out.splitlines() if text.startswith("on sweep01.csv"))
     before, after = (float(line.split()[place]) for place in (2, 4))
@@ -156,10 +156,10 @@ def test_compensate_a_twin_on_another_sweep(folder: Path, tmp_path: Path, capsys
 def test_compensate_mistakes(folder: Path, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     with pytest.raises(UserError, match="points is 1"):
-        compensate.run(folder / "sweep00.csv", outputs=compensate.Outputs(points=1))
+        compensate.run([folder / "sweep00.csv"], outputs=compensate.Outputs(points=1))
     write_twin(tmp_path / "twin.toml", device())
     with pytest.raises(UserError, match="nothing to draw"):
-        compensate.run(tmp_path / "twin.toml", outputs=compensate.Outputs(plot=tmp_path / "p.png"))
+        compensate.run([tmp_path / "twin.toml"], outputs=compensate.Outputs(plot=tmp_path / "p.png"))
 
 
 def test_monitor_names_the_factor_that_drifts(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,6 +11,8 @@ import pytest
 
 from diagnosis.correction.cross_validation import BeforeAfter
 from diagnosis.factors.series import monitor
+from diagnosis.thermal.recording import joined
+from scenarios.commands.compensate_judge import Judged
 from scenarios.commands.compensate_plot import before_after_figure
 from scenarios.commands.monitor_plot import charts_figure
 from scenarios.commands.paper import run as paper
@@ -47,7 +49,9 @@ def legend_of(figure: Any) -> set[str]:
 def drawn() -> Iterator[Any]:
     """Pictures of commands, of sweeps there and back."""
     yield pytest.param(lambda: trace_figure(trace(DEVICE, BOTH, seed=0), title="device"), id="simulate --plot")
-    yield pytest.param(lambda: before_after_figure([("on it", _errors(), _sweep())]), id="compensate --plot")
+    yield pytest.param(
+        lambda: before_after_figure([Judged("on it", "it", _errors(), joined([_sweep()]))]), id="compensate --plot"
+    )
     sweeps = [DEVICE.simulate(BOTH, seed=seed) for seed in range(5)]
     yield pytest.param(lambda: charts_figure(monitor(sweeps, rng=np.random.default_rng(0))), id="monitor --plot")
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +9,15 @@ import pytest
 from hypothesis import given, settings
 
 from diagnosis.correction.calibration import calibrate
-from diagnosis.correction.compensation import Correction, correction_of, from_dict, to_dict
+from diagnosis.correction.compensation import Correction, correction_of
 from diagnosis.correction.compensation_c import header, sine_polynomial
+from diagnosis.correction.correction_file import from_dict, to_dict
 from diagnosis.correction.cross_validation import against, cross_validated, folds
 from diagnosis.error_model.model import twin_values
+from diagnosis.thermal.recording import Recording
 from tests.benchmarks.compensation import FILES, POINTS, look_up_table, mean_of_draws
 from tests.diagnosis.cases import NOISE_RAD, measured, points, senses, turn
+from tests.diagnosis.correction.c_program import run_header
 from tests.measured import REAL
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain
@@ -74,40 +75,12 @@ def test_sine_polynomial_is_good_to_nine_digits() -> None:
     np.testing.assert_allclose(powers @ sine_polynomial(), np.sin(0.5 * np.pi * t), atol=1e-9)
 
 
-PROGRAM = """
-#include <stdio.h>
-#include <inttypes.h>
-#include "correction.h"
-int main(void)
-{
-    uint32_t word;
-    while (scanf("%" SCNu32, &word) == 1)
-        printf("%" PRIu32 " %u\\n", test_correct(word), (unsigned)test_correct_u16((uint16_t)(word >> 16)));
-    return 0;
-}
-"""
-
-
-def run_header(correction: Correction, words: Array, folder: Path) -> Array:
-    """Results (n, 2) of the compiled 32-bit and 16-bit functions at the words (n,)."""
-    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    if compiler is None:
-        pytest.skip("no C compiler here: the header is not compiled")
-    (folder / "correction.h").write_text(header(correction, source="a test", prefix="test"))
-    (folder / "program.c").write_text(PROGRAM)
-    strict = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-pedantic"]
-    subprocess.run([compiler, *strict, "-o", "program", "program.c"], cwd=folder, check=True)
-    text = "\n".join(str(int(word)) for word in words)
-    out = subprocess.run(["./program"], cwd=folder, input=text, capture_output=True, text=True, check=True).stdout
-    return np.array([line.split() for line in out.splitlines()], dtype=np.float64)
-
-
 @pytest.mark.parametrize("chain", [Chain(), rich_chain(), Chain().with_effect("gain_mismatch", ratio=1.9)])
 def test_compiled_header_is_the_python_correction(chain: Chain, tmp_path: Path) -> None:
     correction = correction_of(chain)
     edges = [0.0, 2.0**30, 2.0**31, 3 * 2.0**30, 2.0**32 - 1, 1.0]
     words = np.concatenate([np.random.default_rng(0).integers(0, 2**32, 5000).astype(np.float64), edges])
-    found = run_header(correction, words, tmp_path)
+    found = run_header(header(correction, source="a test", prefix="test"), words, tmp_path)
     expected = correction.shaft(words / 2.0**32 * TAU)
     assert np.degrees(np.max(np.abs(wrap(found[:, 0] / 2.0**32 * TAU - expected)))) < 5e-6
     short = correction.shaft(np.floor(words / 2.0**16) / 2.0**16 * TAU)
@@ -150,10 +123,12 @@ def test_held_out_error_of_a_simulated_sweep() -> None:
     reference = turn(360)
     reading = rich_chain().readings(Motion.from_angle(reference)) + NOISE_RAD * rng.standard_normal(360)
 
-    def correct(theta: Array, m: Array):  # type: ignore[no-untyped-def]
-        return correction_of(calibrate(theta, m, rng=np.random.default_rng(0)).chain).shaft
+    def correct(part: Recording):  # type: ignore[no-untyped-def]
+        chain = calibrate(part.reference_rad, part.measured_rad, rng=np.random.default_rng(0)).chain
+        return correction_of(chain).shaft
 
-    found = cross_validated(reference, reading, correct)
+    recording = Recording.at_one_temperature(reference, reading, 25.0)
+    found = cross_validated(recording, recording.unit, correct)
     before, after = found.rms_deg
     assert before > 2.0
     assert after < 0.03

@@ -1,0 +1,102 @@
+"""What a correction is made of: a twin, or the readings of one sweep or of several at different temperatures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from diagnosis.correction.calibration import Calibration, calibrate, calibrate_over_temperature
+from diagnosis.correction.compensation import Correction, correction_of, correction_over
+from diagnosis.correction.cross_validation import Shaft
+from diagnosis.thermal.recording import SMALLEST_SPAN_K, Recording, joined, over_temperature
+from twin.errors import UserError
+from twin.shown_name import shown_name
+from twin.sweep import Sweep
+
+
+@dataclass(frozen=True, eq=False)
+class Readings:
+    """The readings of one sensor, and how corrections are made of them: of all, and of parts in the same way."""
+
+    sweeps: tuple[Sweep, ...]
+    tolerance_deg: float
+    seed: int
+
+    @property
+    def title(self) -> str:
+        """What a picture calls them."""
+        first = self.sweeps[0].name
+        return first if len(self.sweeps) == 1 else f"{first} and {len(self.sweeps) - 1} more"
+
+    @cached_property
+    def recording(self) -> Recording:
+        """All readings. Raises UserError where a sweep counts the other way round."""
+        return joined(self.sweeps)
+
+    @cached_property
+    def over_temperature(self) -> bool:
+        """Whether they hold temperatures far enough apart for the factors to follow them."""
+        return over_temperature(self.sweeps)
+
+    @cached_property
+    def calibration(self) -> Calibration:
+        """The calibration by all readings."""
+        return self.calibrated(self.recording)
+
+    @property
+    def own_zeros(self) -> bool:
+        """Whether the reference was set anew on the way."""
+        over = self.calibration.over
+        return over is not None and over.own_zeros
+
+    @cached_property
+    def correction(self) -> Correction:
+        """The correction by all readings."""
+        return self.corrected(self.calibration)
+
+    def shaft_of(self, recording: Recording) -> Shaft:
+        """The correction that some of the readings make."""
+        return self.corrected(self.calibrated(recording)).shaft
+
+    def calibrated(self, recording: Recording) -> Calibration:
+        """The calibration by some of the readings."""
+        rng = np.random.default_rng(self.seed)
+        if self.over_temperature:
+            return calibrate_over_temperature(recording, rng=rng)
+        return calibrate(recording.reference_rad, recording.measured_rad, rng=rng)
+
+    def corrected(self, found: Calibration) -> Correction:
+        """The correction of a calibration; it follows the temperature where a factor does."""
+        if found.over is None or not found.over.followed.any():
+            return correction_of(found.chain, tolerance_deg=self.tolerance_deg)
+        return correction_over(found.at, found.span.low_c, found.span.high_c, tolerance_deg=self.tolerance_deg)
+
+    @property
+    def temperature_words(self) -> str | None:
+        """What is said of temperatures that are taken as one; None where none was recorded, or laws say it."""
+        recorded = [sweep for sweep in self.sweeps if sweep.temperature_c is not None]
+        if self.over_temperature or not recorded:
+            return None
+        low, high = self.recording.temperature_c.min(), self.recording.temperature_c.max()
+        at = f"{low:.1f}" if high - low < 0.05 else f"{low:.1f} .. {high:.1f}"
+        return f"temperature {at} C, taken as one: at others the correction is as good as the sensor is immune"
+
+
+def readings_of(sweeps: Sequence[Sweep], *, tolerance_deg: float, seed: int) -> Readings:
+    """The readings of sweeps. Raises UserError for several that are no measurement over temperature."""
+    found = Readings(tuple(sweeps), tolerance_deg, seed)
+    if len(sweeps) > 1 and not found.over_temperature:
+        for sweep in sweeps:
+            if sweep.temperature_c is None:
+                raise UserError(
+                    f"{shown_name(sweep.name)}: several sweeps make one correction over temperature, and this one has "
+                    "no temperature_c; add the column, or give one sweep"
+                )
+        raise UserError(
+            f"{len(sweeps)} sweeps hold temperatures within {SMALLEST_SPAN_K:g} K of each other; one correction over "
+            "temperature needs more between them: give one sweep, or add sweeps at other temperatures"
+        )
+    return found

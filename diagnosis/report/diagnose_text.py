@@ -26,9 +26,11 @@ def text(answer: Mapping[str, Any], *, width: int) -> str:
     """The answer in lines of at most this many characters: all about a single sweep, or one line each for many."""
     sweeps = answer["sweeps"]
     lines = one_sweep(sweeps[0], width=width) if len(sweeps) == 1 else many_sweeps(sweeps, width=width)
+    bands = bands_words(sweeps) if len(sweeps) > 1 else []
     over_gaps, thermal = answer["air_gap_fit"], answer["temperature"]
+    said = [*bands, *(over_gaps["sentences"] if over_gaps else ())]
     over_temperature = [] if thermal is None else ["", *temperature_text.lines(thermal, width)]
-    return "\n".join([*lines, *_listed(over_gaps["sentences"] if over_gaps else (), width), *over_temperature])
+    return "\n".join([*lines, *_listed(said, width), *over_temperature])
 
 
 def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:
@@ -59,6 +61,18 @@ def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:
         "",
         *_listed(sweep["sentences"], width),
     ]
+
+
+def bands_words(sweeps: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Which of many sweeps keep the band; empty without one."""
+    asked = [sweep for sweep in sweeps if "band" in sweep]
+    if not asked:
+        return []
+    out = [sweep["sweep"] for sweep in asked if sweep["band"]["readings_outside"]]
+    kept, size = len(asked) - len(out), _deg(asked[0]["band"]["delta_e_deg"])
+    more = f" and {len(out) - 5} more" if len(out) > 5 else ""
+    rest = f"; not {', '.join(out[:5])}{more}" if out else ""
+    return [f"Delta E {size} (Eq. 7): {kept} of {len(asked)} sweeps stay within it of their fitted curve{rest}"]
 
 
 def band_words(band: Mapping[str, Any], particles: int) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 from diagnosis.progress import Count, Listener
 from diagnosis.report.plotting import style
 from scenarios.commands.outputs import PICTURE, TABLE, OutputFiles
-from scenarios.commands.paper import channels, devices, disk_curve, search_figures, table_1
+from scenarios.commands.paper import channels, delta_e, devices, disk_curve, search_figures, table_1
 from scenarios.commands.paper.held import Held, held_csv, lines
 from scenarios.commands.paper.work import Work
 from scenarios.commands.progress import progress_line
@@ -19,7 +19,8 @@ from twin.limits import require_within
 from twin.sweep_file import csv_text
 
 MOST_CASES = 100_000
-Drawn = tuple[Any, dict[str, Array]]
+Drawn = tuple[Any, dict[str, Array] | str]
+"""A picture, and its data as columns or as the text of a table."""
 
 
 def run(folder: Path, *, cases: int = 100, seed: int = 0, force: bool = False) -> None:
@@ -51,7 +52,7 @@ def _made(plt: Any, names: dict[str, list[Path]], folder: Path, work: Work) -> d
         figure, columns = draw(plt, work)
         figure.suptitle(TITLES[name], fontsize=10)
         csv, *pictures = names[name]
-        contents |= {csv: csv_text(columns), **dict.fromkeys(pictures, figure)}
+        contents |= {csv: columns if isinstance(columns, str) else csv_text(columns), **dict.fromkeys(pictures, figure)}
         plt.close(figure)
     return contents
 
@@ -71,20 +72,10 @@ def printed(work: Work) -> list[Held]:
     ]
 
 
-def _delta_e_csv(work: Work) -> str:
-    rows = [f"{name},{size:.6g}" for name, size in {**work.delta_e_terms_deg, "Delta E": work.delta_e_deg}.items()]
-    return "\n".join(["term,deg", *rows]) + "\n"
-
-
-def _delta_e_words(work: Work) -> list[str]:
-    terms = " + ".join(f"{name} {size:.4f}" for name, size in work.delta_e_terms_deg.items() if size)
-    return [f"Eq. 7      Delta E of the drawn cases: {terms} = {work.delta_e_deg:.4f} deg; the paper prints no figure"]
-
-
 Maker = tuple[Callable[[Work], str], Callable[[Work], list[str]]]
 TABLES: dict[str, Maker] = {
     "table1": (lambda work: table_1.table_csv(table_1.table()), lambda work: []),
-    "delta_e": (_delta_e_csv, _delta_e_words),
+    "table2": (lambda work: held_csv(devices.table_2(work.devices)), lambda work: [delta_e.line()]),
     "printed": (lambda work: held_csv(printed(work)), lambda work: lines(printed(work), width=terminal_width())),
     "search": (
         lambda work: search_figures.methods_csv(work.searched, work.methods, work.coarse_grid_rad),
@@ -113,6 +104,7 @@ FIGURES: dict[str, Callable[[Any, Work], Drawn]] = {
     "fig8": _alone(channels.fluctuation),
     "fig9": _alone(channels.calculation),
     "fig13": lambda plt, work: search_figures.figure_13(plt, work.searched["modified"]),
+    "delta_e": _alone(delta_e.figure),
     "search_methods": lambda plt, work: search_figures.figure_of_methods(plt, _compared(work)),
     "fig14": lambda plt, work: devices.figure_14(plt, work.devices),
     "fig16": lambda plt, work: devices.figure_16(plt, work.devices),
@@ -126,6 +118,7 @@ TITLES = {
     "fig8": "Fig. 8: sampling error by a change of the converter's reference",
     "fig9": "Fig. 9: angle error by the iterations of the CORDIC",
     "fig13": "Fig. 13: convergence of the swarm, 100 particles",
+    "delta_e": "Eq. 7: Delta E, half a step of each grid and four standard deviations of each noise",
     "search_methods": "Section 4.1: the swarm's modifications, and the discard rule of Eq. 11",
     "fig14": "Fig. 14: the four devices of Table 2, simulated and diagnosed",
     "fig16": "Fig. 16: the four devices of Table 2 before and after compensation",

@@ -7,16 +7,13 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.error_model.error_band import band_terms_rad
 from diagnosis.progress import Count
+from scenarios.commands.paper.delta_e import drawn_chain, terms_deg
 from scenarios.commands.paper.devices import Device, devices
 from scenarios.commands.paper.search import Method, Searched, coarse_grid_rad, methods, search
 from scenarios.commands.paper.search_figures import BANDS
-from scenarios.commands.paper.table_2 import NOISE_DEG, Cases, draw
-from twin.adc.adc_quantisation import ADC_QUANTISATION
+from scenarios.commands.paper.table_2 import Cases, draw
 from twin.angles import Array
-from twin.chain import Chain
-from twin.hall.noise import NOISE
 
 CASES = 100
 """As many as the paper's."""
@@ -35,16 +32,10 @@ class Work:
         """How many searches there are in all."""
         return cases * (len(methods(0.0)) + len(BANDS) - 1)
 
-    @cached_property
-    def delta_e_terms_deg(self) -> dict[str, float]:
-        """Eq. 7 term by term for what a drawn case holds: a converter of 14 bits and the noise."""
-        chain = Chain().with_effect(ADC_QUANTISATION.name, bits=14).with_effect(NOISE.name, rms_deg=NOISE_DEG)
-        return {name: float(np.degrees(size)) for name, size in band_terms_rad(chain).items()}
-
     @property
     def delta_e_deg(self) -> float:
         """Delta E of the drawn cases."""
-        return sum(self.delta_e_terms_deg.values())
+        return sum(terms_deg(drawn_chain()).values())
 
     @cached_property
     def drawn(self) -> Cases:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from diagnosis import diagnose
+from diagnosis import diagnose, diagnose_many
 from diagnosis.error_model.error_band import band_terms_rad, delta_e_rad
 from tests.command_line import halltwin
 from tests.diagnosis.cases import turn
@@ -44,6 +45,16 @@ def test_what_the_model_lacks_leaves_the_band_and_is_counted() -> None:
     assert found.readings_outside == pytest.approx(360 * 2 / 3, rel=0.1)
     assert f"all readings but {found.readings_outside} within it" in " ".join(asked.summary().split())
     assert "Eq. 7 rejects these factors" in " ".join(asked.summary().split())
+
+
+def test_of_many_sweeps_those_that_leave_the_band_are_told() -> None:
+    lacking = CHAIN.with_effect("magnet_harmonic", order=5, amplitude_deg=2.0 * DELTA_E_DEG, phase_deg=0.0)
+    sweeps = [replace(chain.simulate(MOTION, seed=1), name=name) for name, chain in (("a", CHAIN), ("b", lacking))]
+    said = " ".join(diagnose_many(sweeps, band_deg=DELTA_E_DEG).summary().split())
+    assert "(Eq. 7): 1 of 2 sweeps stay within it of their fitted curve; not b" in said
+    many = diagnose_many([sweeps[1]] * 7, band_deg=DELTA_E_DEG).summary()
+    assert "0 of 7 sweeps stay within it of their fitted curve; not b, b, b, b, b and 2 more" in " ".join(many.split())
+    assert "Delta E" not in diagnose_many(sweeps).summary()
 
 
 def test_without_a_band_nothing_is_said_of_one() -> None:

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 MOST_LISTED = 100
 """Rows that the JSON lists by their number; how many more there are is said beside the list."""
-_MOST_ROWS = 5
+MOST_TOLD = 5
+"""Rows that a sentence lists by their number."""
 _MOST_SWEEPS = 5
 
 
@@ -81,7 +82,7 @@ def rejected_words(sweep: Mapping[str, Any]) -> str:
     return f"{sweep['rejected']} rejected ({'; '.join(listed)})"
 
 
-def rows_listed(rows: Sequence[object], count: int, most: int = _MOST_ROWS) -> str:
+def rows_listed(rows: Sequence[object], count: int, most: int = MOST_TOLD) -> str:
     """The first few of so many rows, and how many more there are."""
     more = count - min(len(rows), most)
     told = ", ".join(str(row) for row in rows[:most])

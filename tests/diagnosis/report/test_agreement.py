@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from diagnosis import Explanation, Progress, explain
-from diagnosis.report import statements
+from diagnosis.report import row_counts, statements
 from diagnosis.report.factor_names import LABELS, SCALES
 from diagnosis.report.page import page
 from diagnosis.report.row_counts import explained_rows
@@ -120,6 +120,8 @@ def known_figures(answer: dict[str, Any]) -> Iterator[float]:
     for value in (*numbers_of(answer), *half_widths(answer), *lengths(answer), *ALWAYS):
         yield from (value, 100.0 * value)
     yield 360.0 / answer["sweep"]["points_per_turn"]
+    # Of longer lists than the JSON holds: how many rows there are behind those that are told.
+    yield from (answer["sweep"][key] - row_counts.MOST_TOLD for key in ("wild", "rejected"))
 
 
 def half_widths(value: Any) -> Iterator[float]:

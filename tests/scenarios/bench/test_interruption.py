@@ -255,6 +255,11 @@ def test_only_what_the_run_itself_wrote_is_replaced_unasked(broken_off: tuple[st
     written = sweep.read_bytes()
     assert halltwin(*broken_off).code == 0
     assert sweep.read_bytes() == written
+    # What the journal says of a sweep does not give another one away that lies in its place.
+    log.rename("m.csv.journal.jsonl")
+    sweep.write_text("somebody's own")
+    assert "m.csv: is there already" in halltwin(*broken_off).err
+    assert sweep.read_text() == "somebody's own"
 
 
 @pytest.mark.parametrize("planted", [b"", sealed(HEAD, "")[0]], ids=["empty", "begun"])

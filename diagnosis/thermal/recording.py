@@ -58,8 +58,8 @@ class Recording:
 
     @property
     def slope(self) -> int:
-        """+1 where the readings count as the reference does, else -1."""
-        return _slope(self.reference_rad, self.measured_rad)
+        """+1 where the readings count as the reference does, else -1; whatever the zero of each unit."""
+        return _slope(self.reference_rad, self.measured_rad, self.unit)
 
     def unit_means(self, values: Array) -> Array:
         """Mean of values (n,) over each unit (units,); 0 where a unit has no reading."""
@@ -98,7 +98,7 @@ def joined(sweeps: Sequence[Sweep]) -> Recording:
 
 def counts_as(sweep: Sweep) -> int:
     """+1 where the sensor counts as the reference does, else -1."""
-    return _slope(radians(sweep.reference_deg), radians(sweep.measured_deg))
+    return _slope(radians(sweep.reference_deg), radians(sweep.measured_deg), sweep.motion().turn)
 
 
 def over_temperature(sweeps: Sequence[Sweep]) -> bool:
@@ -109,6 +109,9 @@ def over_temperature(sweeps: Sequence[Sweep]) -> bool:
     return bool(found) and float(np.ptp(np.concatenate(found))) > SMALLEST_SPAN_K
 
 
-def _slope(reference: Array, measured: Array) -> int:
-    follows = [np.abs(np.mean(np.exp(1j * wrap(measured - sense * reference)))) for sense in (1, -1)]
+def _slope(reference: Array, measured: Array, unit: IntArray) -> int:
+    follows = []
+    for sense in (1, -1):
+        offset = measured - sense * reference
+        follows.append(np.sum(np.hypot(np.bincount(unit, np.cos(offset)), np.bincount(unit, np.sin(offset)))))
     return 1 if follows[0] >= follows[1] else -1

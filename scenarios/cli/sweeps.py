@@ -147,8 +147,11 @@ def compensate(
         ),
     ] = None,
     temperature: Annotated[
-        float, typer.Option(metavar="C", help="Temperature in C that a twin is corrected for.")
-    ] = 25.0,
+        str,
+        typer.Option(
+            metavar="C|C:C", help="Temperature in C that a twin is corrected for, or low:high of a span of them."
+        ),
+    ] = "25",
     tolerance: Annotated[float, typer.Option(metavar="deg", help="Largest error in deg from orders left out.")] = 1e-3,
     prefix: Annotated[str, written("Prefix of the C names.", metavar="NAME")] = "halltwin",
     force: Force = False,
@@ -172,7 +175,7 @@ def compensate(
         sources,
         outputs=outputs,
         check=SweepFiles(check or (), bytes_of(max_size)),
-        temperature_c=temperature,
+        temperature=temperature,
         tolerance_deg=tolerance,
         effect_files=effects or (),
         seed=seed,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from diagnosis.correction.compensation import Correction, correction_of
+from diagnosis.correction.compensation import Correction, correction_of, correction_over
 from diagnosis.correction.compensation_c import check_prefix, header
 from diagnosis.correction.correction_file import to_dict
 from diagnosis.report.row_counts import counts_of, rejected_words
@@ -18,8 +18,10 @@ from scenarios.commands.compensate_table import table, temperatures_c
 from scenarios.commands.compensate_text import made_of, show
 from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
 from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels, sweep_paths
+from scenarios.commands.intervals import interval
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
+from twin.catalogue import find
 from twin.chain import Chain
 from twin.errors import UserError
 from twin.extensions import effects_with
@@ -55,7 +57,7 @@ def run(
     *,
     outputs: Outputs,
     check: SweepFiles = _NONE,
-    temperature_c: float = 25.0,
+    temperature: str = "25",
     tolerance_deg: float = 1e-3,
     effect_files: Sequence[Path] = (),
     seed: int = 0,
@@ -68,7 +70,8 @@ def run(
     words = asked(fail_on, COMPENSATE)
     if not _FEWEST_POINTS <= outputs.points <= _MOST_POINTS:
         raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
-    require_within("temperature", temperature_c, COLDEST_C, HOTTEST_C, "C")
+    low_c, high_c = interval("temperature", temperature, example="-40:125")
+    require_within("temperature", [low_c, high_c], COLDEST_C, HOTTEST_C, "C")
     require_within("tolerance", tolerance_deg, 0.0, _COARSEST_DEG, "deg")
     check_prefix(outputs.prefix)
     effects = effects_with(effect_files)
@@ -80,10 +83,7 @@ def run(
     given = SweepsRead(()) if of_twin else _read(paths, check.max_bytes)
     check_panels(outputs.plot, len(others.sweeps) if checked_on or of_twin else 1)
     readings = None if of_twin else readings_of(given.sweeps, tolerance_deg=tolerance_deg, seed=seed)
-    if readings is None:
-        correction = correction_of(twin, temperature_c=temperature_c, tolerance_deg=tolerance_deg)
-    else:
-        correction = readings.correction
+    correction = _of_twin(twin, low_c, high_c, tolerance_deg) if readings is None else readings.correction
     judged = _judge(correction, readings, others)
     source = shown_name(paths[0]) if len(paths) == 1 else f"{len(given.sweeps)} sweeps"
     rows = _rows(judged, other=bool(checked_on))
@@ -94,6 +94,16 @@ def run(
     _write(files, outputs, correction, source=source, judged=shown, readings=readings, tolerance_deg=tolerance_deg)
     _say_where_worse(judged, fails=bool(checked_on or words))
     SweepsRead((*given.sweeps, *others.sweeps), (*given.unusable, *others.unusable)).raise_unusable()
+
+
+def _of_twin(twin: Chain, low_c: float, high_c: float, tolerance_deg: float) -> Correction:
+    """The correction of a twin at one temperature, or over a span; which effects follow it is said where it is one."""
+    if high_c > low_c:
+        return correction_over(lambda _: twin, low_c, high_c, tolerance_deg=tolerance_deg)
+    following = [key for key in twin.values if "temperature_c" in find(key, twin.effects).needs]
+    if following:
+        print(f"{', '.join(following)}: corrected as at {low_c:g} C; --temperature low:high makes one that follows")
+    return correction_of(twin, temperature_c=low_c, tolerance_deg=tolerance_deg)
 
 
 def _is_one_twin(sources: Sequence[str | Path]) -> bool:

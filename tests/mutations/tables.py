@@ -14,8 +14,22 @@ from tests.mutations.settings import settings
 from tests.mutations.signs import signs
 from tests.mutations.stages import STAGES
 from tests.mutations.studies import STUDIES
+from tests.mutations.thermal import THERMAL
 
 
 def mutations() -> tuple[Mutation, ...]:
     """Every mutation, those by hand first."""
-    return (*BY_HAND, *NOISE, *DISCOVERY, *STAGES, *PAPER, *PARTS, *FILES, *STUDIES, *SCRIPTS, *settings(), *signs())
+    return (
+        *BY_HAND,
+        *NOISE,
+        *DISCOVERY,
+        *STAGES,
+        *PAPER,
+        *PARTS,
+        *FILES,
+        *STUDIES,
+        *SCRIPTS,
+        *THERMAL,
+        *settings(),
+        *signs(),
+    )

@@ -85,6 +85,20 @@ def test_a_correction_that_is_worse_at_one_temperature_is_not_hidden_in_the_mean
     assert "at 25.0 C" not in ended.err
 
 
+def test_a_twin_is_corrected_over_a_span(folder: Path, tmp_path: Path) -> None:
+    write_twin(tmp_path / "warm.toml", warm().without("noise"))
+    at_one = halltwin("compensate", tmp_path / "warm.toml", "--check", folder / "steps.csv")
+    assert "offset_drift, gain_drift: corrected as at 25 C" in at_one.out
+    over_all = halltwin("compensate", tmp_path / "warm.toml", "--temperature=-40:85", "--check", folder / "steps.csv")
+    assert "corrected as at" not in over_all.out
+    # Without the drifts 0.1 deg are left at the ends; with them the noise alone.
+    assert errors(at_one.out)["at 85.0 C"][1] > 0.08
+    assert errors(over_all.out)["at 85.0 C"][1] < 0.021
+    assert errors(over_all.out)["at -40.0 C"][1] < 0.021
+    refused = halltwin("compensate", tmp_path / "warm.toml", "--temperature", "85:-40")
+    assert refused.code == 2
+
+
 def test_one_temperature_is_said(folder: Path) -> None:
     assert "temperature 0.0 C, taken as one" in halltwin("compensate", folder / "between.csv").out
 

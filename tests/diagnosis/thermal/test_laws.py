@@ -156,11 +156,11 @@ def test_two_close_levels_of_three_support_no_second_power() -> None:
         assert found.power(Span(20.0, 60.0)) == power
 
 
-@pytest.mark.parametrize("by_deg", [0.05, 40.0])
+@pytest.mark.parametrize("by_deg", [0.05, 180.0])
 def test_a_reference_set_anew_at_each_turn_leaves_the_zero_untold(by_deg: float) -> None:
     sweep = warm().simulate(over(COLD_ROOM_HOT, turns=4), seed=1)
     assert sweep.turn is not None
-    anew = np.random.default_rng(2).uniform(-by_deg, by_deg, 12)[sweep.turn.astype(int)]
+    anew = np.random.default_rng(1).uniform(-by_deg, by_deg, 12)[sweep.turn.astype(int)]
     found = laws([replace(sweep, reference_deg=sweep.reference_deg + anew)])
     assert found.own_zeros
     assert verdicts(found)[:3] == [SENSITIVE, IMMUNE, SENSITIVE]

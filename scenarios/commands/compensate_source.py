@@ -82,7 +82,7 @@ class Readings:
             return None
         low, high = self.recording.temperature_c.min(), self.recording.temperature_c.max()
         at = f"{low:.1f}" if high - low < 0.05 else f"{low:.1f} .. {high:.1f}"
-        return f"temperature {at} C, taken as one: at others the correction is as good as the sensor is immune"
+        return f"temperature {at} C alone: what others do to the error is not in the correction"
 
 
 def readings_of(sweeps: Sequence[Sweep], *, tolerance_deg: float, seed: int) -> Readings:

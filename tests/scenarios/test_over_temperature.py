@@ -100,7 +100,7 @@ def test_a_twin_is_corrected_over_a_span(folder: Path, tmp_path: Path) -> None:
 
 
 def test_one_temperature_is_said(folder: Path) -> None:
-    assert "temperature 0.0 C, taken as one" in halltwin("compensate", folder / "between.csv").out
+    assert "temperature 0.0 C alone" in halltwin("compensate", folder / "between.csv").out
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,8 @@
 """The law of each factor over temperature, and the word for it: sensitive, immune, or not told.
 
-*Sensitive*: without a term in the temperature the readings would be less likely than noise allows. Terms are added
-one factor at a time, the most significant first, as long as one is significant at the level of the whole family of
-tests (Bonferroni). *Immune*: an equivalence test says so. Between any two temperatures of the span the factor moves
+*Sensitive*: without a term in the temperature the readings would be less likely than noise allows, at the level of the
+whole family of tests (Bonferroni); all other factors have every power meanwhile, so that none stands in for another.
+*Immune*: an equivalence test says so. Between any two temperatures of the span the factor moves
 the angle by less than the noise floor, in RMS over the turn: two one-sided tests for each pair (Schuirmann 1987),
 all of which must reject (Berger 1982), at the level of the family (Holm 1979). *Not told*: neither.
 """
@@ -71,23 +71,25 @@ class FactorLaw:
 def select(found: Evidence, power: int, asked: Mask) -> tuple[Mask, Array]:
     """The terms (6, powers) that the readings support, and for each factor (6,) the p-value of having none but 1.
 
-    Factors that are not ``asked`` (6,) keep every power.
+    Each factor is asked while all others have every power, so that none stands in for another; those that are not
+    ``asked`` (6,) keep them.
     """
-    mask = found.terms.copy()
+    mask, chance = found.terms.copy(), np.ones(6)
     mask[asked, 1:] = False
     free = [int(k) for k in np.flatnonzero(asked)]
     family = max(len(free) * power, 1)
-    while True:
-        raised = [(found.rise(mask, k, j), k, j) for k in free for j in range(1, power + 1) if not mask[k, j]]
-        least, factor, highest = min(raised, default=(1.0, 0, 0))
-        if family * least >= FAMILY_LEVEL:
-            break
-        mask[factor, : highest + 1] = True
-    chance = np.ones(6)
     for k in free:
-        without = mask.copy()
-        without[k, 1:] = False
-        chance[k] = min([1.0, *(family * found.rise(without, k, j) for j in range(1, power + 1))])
+        law = found.terms.copy()
+        law[k, 1:] = False
+        chance[k] = min([1.0, *(family * found.rise(law, k, j) for j in range(1, power + 1))])
+        if chance[k] >= FAMILY_LEVEL:
+            continue
+        highest = 1
+        law[k, 1] = True
+        while highest < power and family * found.rise(law, k, power) < FAMILY_LEVEL:
+            highest += 1
+            law[k, highest] = True
+        mask[k] = law[k]
     return mask, chance
 
 

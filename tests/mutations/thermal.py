@@ -19,8 +19,8 @@ THERMAL: tuple[Mutation, ...] = (
         ),
         (
             "thermal.each_test_has_the_level_to_itself",
-            "if family * least >= FAMILY_LEVEL:",
-            "if least >= 10.0 * FAMILY_LEVEL:",
+            "if chance[k] >= FAMILY_LEVEL:",
+            "if chance[k] >= 100.0 * FAMILY_LEVEL:",
             "::test_a_steady_sensor_is_not_called_sensitive",
         ),
         (

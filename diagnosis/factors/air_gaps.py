@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from diagnosis.error_model.model import QUAD
-from diagnosis.factors.displacement import magnet_displacement
+from diagnosis.factors.displacement import MEASURED, Displacement, hull, magnet_displacement
 from diagnosis.factors.gap_fit import GapFit, Problem
 from diagnosis.factors.gap_model import CAUSES, GapSweep, causes_of, expected
 from diagnosis.factors.mounting import Mounting
@@ -33,8 +34,10 @@ _GAPS_TRIED = 60
 _PARTED_SIGMA = 6.0
 """By how many standard errors two causes are to differ at a further gap: four are asked for, and either may be off."""
 BOTH = ("electronics", "sensor")
+TILTED = ("electronics", "sensor", "tilt")
 ORDER_1: tuple[tuple[str, ...], ...] = ((), ("voltage",), ("reference",), ("voltage", "reference"))
-ORDER_2: tuple[tuple[str, ...], ...] = ((), ("electronics",), ("sensor",), BOTH)
+ORDER_2: tuple[tuple[str, ...], ...] = ((), ("electronics",), ("sensor",), BOTH, ("sensor", "tilt"), TILTED)
+OF_ORDER_2 = frozenset(TILTED)
 WITH_MAGNET = ("voltage", "magnet")
 
 
@@ -63,6 +66,8 @@ class AirGaps:
     """The same for gain ratio and phase."""
     fullest: GapFit
     """With every cause that could be told from the others."""
+    full_2: tuple[str, ...]
+    """The causes of order 2 that could be told from one another."""
     fits: Mapping[tuple[str, ...], GapFit] = field(repr=False)
     quadratic: Law
     parting_mm: float | None
@@ -70,26 +75,54 @@ class AirGaps:
 
     @property
     def misfit(self) -> bool:
-        """Whether no set of causes holds the readings."""
-        return self.fullest.p < MISFIT
+        """Whether no set of causes holds the readings, or only one that no reading is left to check."""
+        return self.fullest.p < MISFIT or self.unchecked
+
+    @property
+    def unchecked(self) -> bool:
+        """Whether the simplest sets have as many numbers as there are readings of their order."""
+        return max(map(len, (*self.order_1, *self.order_2))) >= len(self.names)
 
     @property
     def best(self) -> GapFit:
         """The fit of the simplest sets; of several equally good ones, that with the smallest chi2."""
         return min((self.fit_of(one, two) for one in self.order_1 for two in self.order_2), key=lambda fit: fit.chi2)
 
+    @property
+    def simpler(self) -> GapFit:
+        """The best fit whose causes some reading is left to check."""
+        few = (fit for fit in self.fits.values() if _most_of_an_order(fit.causes) < len(self.names))
+        return min(few, key=lambda fit: fit.chi2)
+
+    @property
+    def told(self) -> GapFit:
+        """The fit whose figures are told: the best one, or where none holds that which says by how much."""
+        if not self.misfit:
+            return self.best
+        return self.fullest if self.fullest.p < MISFIT else self.simpler
+
     def fit_of(self, order_1: tuple[str, ...], order_2: tuple[str, ...]) -> GapFit:
         """The fit of a set of causes."""
         return self.fits[joined(order_1, order_2)]
 
+    def displaced(self, cause: str) -> Displacement | None:
+        """The displacement [mm] of ``sensor`` or ``magnet``, or the ``tilt`` [deg]; None where it is not named.
+
+        Of several equally good sets the interval holds what each of them says.
+        """
+        if cause not in self.named:
+            return None
+        fits = sorted((self.fit_of(one, two) for one in self.order_1 for two in self.order_2), key=lambda fit: fit.chi2)
+        return hull([found for fit in fits if (found := MEASURED[cause](fit)) is not None])
+
     @property
     def magnet_bound_mm(self) -> float | None:
         """Upper end of the magnet's displacement [mm] where none is named; None where none can be told."""
-        fullest = self.fits.get(joined(WITH_MAGNET, BOTH))
+        fullest = self.fits.get(joined(WITH_MAGNET, self.full_2))
         if fullest is None or "sensor" not in self.named or "magnet" in self.named:
             return None
         found = magnet_displacement(fullest)
-        return None if found is None else found.high_mm
+        return None if found is None else found.high
 
     @property
     def named(self) -> tuple[str, ...]:
@@ -106,23 +139,27 @@ def air_gaps(sweeps: Sequence[GapSweep], names: Sequence[str], mounting: Mountin
     if start is None:
         return None
     fits = _Fits(Problem(tuple(sweeps), mounting, start), freedom)
-    order_1 = _simplest(fits, [(one, BOTH) for one in fits.order_1()])
+    full_2, sets_1 = fits.full_2(), fits.order_1()
+    order_1 = _simplest(fits, [(one, full_2) for one in sets_1])
     first = order_1[0]
-    order_2 = _simplest(fits, [(first, two) for two in ORDER_2 if "magnet" not in first or "sensor" in two])
+    sets_2 = [two for two in ORDER_2 if set(two) <= set(full_2) and ("magnet" not in first or "sensor" in two)]
+    order_2 = _simplest(fits, [(first, two) for two in sets_2])
     for one in order_1:
         for two in order_2:
             fits[joined(one, two)]
-    full = [fits[joined(one, BOTH)] for one in fits.order_1()]
+    full = [fits[joined(one, full_2)] for one in sets_1]
     most = max(len(fit.causes) for fit in full)
+    either = {("electronics",), ("sensor",)} <= set(order_2)
     return AirGaps(
         mounting=mounting,
         names=tuple(names),
         order_1=order_1,
         order_2=order_2,
+        full_2=full_2,
         fullest=min((fit for fit in full if len(fit.causes) == most), key=lambda fit: fit.chi2),
         fits=fits,
         quadratic=quadratic_law([sweep.point[QUAD] for sweep in sweeps], _errors(sweeps), mounting.field_mT(start)),
-        parting_mm=_parting_mm(sweeps[0], fits, first) if len(order_2) > 1 else None,
+        parting_mm=_parting_mm(sweeps[0], fits, first) if either else None,
     )
 
 
@@ -139,10 +176,19 @@ class _Fits(dict[tuple[str, ...], GapFit]):
         self[causes] = found = self.problem.fitted(causes, self.freedom, start=start)
         return found
 
+    @cached_property
+    def sees_sensor(self) -> bool:
+        """Whether a sensor off the axis stands out: what shows in a product with it can then be looked for."""
+        value, error = self[joined(("voltage",), BOTH)].pair("sensor")
+        return abs(value) > SEEN_SIGMA * error
+
+    def full_2(self) -> tuple[str, ...]:
+        """The causes of order 2 that can be looked for together: each takes a gap."""
+        return TILTED if self.sees_sensor and len(self.problem.sweeps) >= len(TILTED) else BOTH
+
     def order_1(self) -> tuple[tuple[str, ...], ...]:
         """The sets of causes of order 1 that can be looked for."""
-        value, error = self[joined(("voltage",), BOTH)].pair("sensor")
-        return (*ORDER_1, WITH_MAGNET) if abs(value) > SEEN_SIGMA * error else ORDER_1
+        return (*ORDER_1, WITH_MAGNET) if self.sees_sensor else ORDER_1
 
 
 def start_gaps(sweeps: Sequence[GapSweep], mounting: Mounting) -> Array | None:
@@ -185,13 +231,12 @@ def laws(found: AirGaps) -> tuple[Law, ...]:
         words = " or ".join(" and ".join(_LAWS[name] for name in one) or "none" for one in sets)
         worse = found.fits.get(stays)
         change = 0.0 if worse is None else float(np.sqrt(max(worse.chi2 - best.chi2, 0.0)))
-        told = "none fits" if found.misfit else words
-        fit = found.fullest if found.misfit else best
+        told, fit = "none fits" if found.misfit else words, found.told
         return Law(part, told, change, fit.chi2, fit.degrees_of_freedom, fit.p)
 
-    rest_1 = tuple(name for name in best.causes if name not in BOTH)
+    rest_1 = tuple(name for name in best.causes if name not in OF_ORDER_2)
     return (
-        law("offset", found.order_1, joined(("reference",), BOTH)),
+        law("offset", found.order_1, joined(("reference",), found.full_2)),
         law("gain mismatch and phase", found.order_2, joined(rest_1, ("electronics",))),
         found.quadratic,
     )
@@ -203,6 +248,7 @@ _LAWS = {
     "electronics": "stays",
     "sensor": "follows the field off the axis",
     "magnet": "follows the field off the axis",
+    "tilt": "follows the tilted field off the axis",
 }
 
 
@@ -210,6 +256,11 @@ def joined(one: Iterable[str], two: Iterable[str]) -> tuple[str, ...]:
     """The causes of both sets, in the order of CAUSES."""
     held = {*one, *two}
     return tuple(name for name in CAUSES if name in held)
+
+
+def _most_of_an_order(causes: Sequence[str]) -> int:
+    second = sum(name in OF_ORDER_2 for name in causes)
+    return max(second, len(causes) - second)
 
 
 def _simplest(

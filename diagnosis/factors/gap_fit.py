@@ -12,7 +12,7 @@ from diagnosis.factors.gap_model import CAUSES, ROWS, GapSweep, causes_of, expec
 from diagnosis.factors.mounting import Mounting
 from twin.angles import Array
 
-_SIZE = {"voltage": 0.1, "reference": 1e-3, "electronics": 1e-3, "sensor": 0.1, "magnet": 0.1}
+_SIZE = {"voltage": 0.1, "reference": 1e-3, "electronics": 1e-3, "sensor": 0.1, "magnet": 0.1, "tilt": 0.01}
 """Steps in which the causes are counted, in their own unit; differences are taken over a hundredth."""
 _STEP = 0.01
 LOG_AMPLITUDE_ERROR = 2e-3
@@ -88,6 +88,8 @@ class Problem:
         for k, name in enumerate(names):
             if name in ("sensor", "magnet"):
                 wide[2 * k : 2 * k + 2] = reach / size[2 * k]
+            if name == "tilt":
+                wide[2 * k : 2 * k + 2] = float(self.mounting.magnet.reach_mm) / size[2 * k]
         low, high = -wide, wide.copy()
         gaps = slice(2 * len(names), 2 * len(names) + len(self.sweeps))
         low[gaps] = 0.2 * self.start_mm / size[gaps]

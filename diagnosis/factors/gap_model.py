@@ -12,7 +12,10 @@ over the gap of its own:
 - ``magnet``: the magnet off the shaft's axis too, by m at a = 0, makes an order 1 of -2 s m S'/S. Alone it makes no
   error of the angle at any gap: the field turns as a whole.
 
-So s^2 and s m are the coordinates of a displacement, in mm^2: of s and m both signs, or none, are known.
+- ``tilt``: a sensor off the axis and tilted by t senses a share of the upright field too, which makes an order 2 of
+  s t a'/(2 a), with a the field on the axis over the height; and t^2/4 at every gap, which a tilt alone makes.
+
+So s^2, s m and s t are the coordinates of displacements and tilt: of s, m and t all signs, or none, are known.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.error_model.model import BETA, GAIN, QUAD, VX, VY, Readings
 from diagnosis.error_model.result import BaselineFit
@@ -32,9 +36,11 @@ from twin.magnet.placement import LARGEST_GAP_MM, SMALLEST_GAP_MM
 
 ROWS = (VX, VY, GAIN, BETA)
 """The factors that are held against the field; zero and quadratic term are left free at each gap."""
-CAUSES = ("voltage", "reference", "electronics", "sensor", "magnet")
-"""Two numbers each: mT; rad; share and rad; mm^2; mm^2."""
+CAUSES = ("voltage", "reference", "electronics", "sensor", "magnet", "tilt")
+"""Two numbers each: mT; rad; share and rad; mm^2; mm^2; mm rad."""
 _MOST_ANGLES = 240
+_LARGEST_TILT_RAD = 0.175
+"""Ten degrees: no sensor is mounted more askew, and a larger tilt would make up for a magnet that is another one."""
 _ROUNDING = 1e-8
 """Standard error that a factor has at least: a simulated sweep without noise leaves none."""
 _LARGEST_ERROR = 0.3
@@ -97,6 +103,7 @@ class Causes:
     electronics: Array
     sensor: Array
     magnet: Array
+    tilt: Array
 
 
 def causes_of(names: Sequence[str], numbers: Array) -> Causes:
@@ -113,15 +120,18 @@ def expected(sweeps: Sequence[GapSweep], magnet: Magnet, causes: Causes, gap_mm:
     """
     batch, count = gap_mm.shape
     gap_mm = np.clip(gap_mm, SMALLEST_GAP_MM, LARGEST_GAP_MM)
-    sensor, centre = displacements(causes)
+    sensor = np.sqrt(causes.sensor[:, 0] + 1j * causes.sensor[:, 1])
     # A trial step of the fit may ask for a magnet far off the shaft; none is off by more than its radius.
-    reach = float(magnet.reach_mm)
-    centre = centre * np.minimum(1.0, reach / np.maximum(np.abs(centre), 1e-300))
+    centre = _beside(causes.magnet, sensor, most=float(magnet.reach_mm))
+    tilt = _beside(causes.tilt, sensor, most=_LARGEST_TILT_RAD) * np.degrees(1.0)
     placed = {
         "sensor_x_mm": sensor.real,
         "sensor_y_mm": sensor.imag,
         "magnet_x_mm": centre.real,
         "magnet_y_mm": centre.imag,
+        # Leaning towards x is a turn about y, leaning towards y one backwards about x.
+        "sensor_tilt_x_deg": -tilt.imag,
+        "sensor_tilt_y_deg": tilt.real,
     }
     flat = {name: np.repeat(value, count) for name, value in placed.items()}
     field = coefficients(magnet, gap_mm.ravel(), **flat).reshape(batch, count, 3, -1)
@@ -131,13 +141,11 @@ def expected(sweeps: Sequence[GapSweep], magnet: Magnet, causes: Causes, gap_mm:
     return factors, np.log(forwards)
 
 
-def displacements(causes: Causes) -> tuple[Array, Array]:
-    """Displacements x + iy [mm] (batch,) of sensor and magnet; of the two pairs of signs that with s to the right."""
-    squared = causes.sensor[:, 0] + 1j * causes.sensor[:, 1]
-    product = causes.magnet[:, 0] + 1j * causes.magnet[:, 1]
-    sensor = np.sqrt(squared)
-    centre = np.divide(product, sensor, out=np.zeros_like(product), where=(sensor != 0.0) & (product != 0.0))
-    return sensor, centre
+def _beside(pair: Array, sensor: NDArray[np.complex128], *, most: float) -> NDArray[np.complex128]:
+    """What stands in a product (batch, 2) beside the sensor's displacement (batch,), no longer than ``most``."""
+    product = pair[:, 0] + 1j * pair[:, 1]
+    found = np.divide(product, sensor, out=np.zeros_like(product), where=(sensor != 0.0) & (product != 0.0))
+    return np.asarray(found * np.minimum(1.0, most / np.maximum(np.abs(found), 1e-300)))
 
 
 def _factors(sweep: GapSweep, field_mT: Array, nominal_mT: Array, causes: Causes) -> Array:

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from diagnosis.factors.air_gaps import AirGaps
-from diagnosis.factors.displacement import Displacement, magnet_displacement, sensor_displacement
+from diagnosis.factors.air_gaps import MISFIT, AirGaps
+from diagnosis.factors.displacement import Displacement, sensor_displacement, sensor_tilt
 from diagnosis.factors.gap_fit import GapFit
 from diagnosis.factors.gap_model import ROWS
 from diagnosis.factors.mounting import Mounting
@@ -29,35 +29,46 @@ def magnet_words(mounting: Mounting) -> str:
 
 def sentences(found: AirGaps) -> tuple[str, ...]:
     """The answer of several air gaps."""
-    fit = found.fullest if found.misfit else found.best
-    gaps = ", ".join(f"{gap:.2f}" for gap in fit.gap_mm)
+    gaps = ", ".join(f"{gap:.2f}" for gap in found.told.gap_mm)
     said = [f"air gaps: {gaps} mm before {magnet_words(found.mounting)}"]
     if found.misfit:
-        return (*said, *_misfit(fit, found.names, found.mounting))
-    if found.best.degrees_of_freedom < 1:
-        said.append(f"air gaps: {len(found.names)} of them leave nothing to check the causes by; one more would")
+        return (*said, *_misfit(found))
     return (*said, *_order_2(found), *_order_1(found), *_magnet(found), _quadratic(found))
 
 
-def _misfit(fit: GapFit, names: tuple[str, ...], mounting: Mounting) -> Iterator[str]:
-    """By how much nothing fits, and where."""
-    yield (
-        "air gaps: neither the electronics nor a displacement of sensor and magnet explains how offset, gain ratio and "
-        f"phase go over the gaps: chi^2 = {fit.chi2:.0f} at {fit.degrees_of_freedom} degrees of freedom "
-        f"(p = {fit.p:.1g}); no cause is named"
-    )
+def _misfit(found: AirGaps) -> Iterator[str]:
+    """By how much nothing fits, and where; or that what fits has a number for each reading and would fit anything."""
+    if found.fullest.p < MISFIT:
+        fit = found.fullest
+        yield (
+            "air gaps: neither the electronics nor a displacement of sensor and magnet explains how offset, gain ratio "
+            f"and phase go over the gaps: {_goodness(fit)}; no cause is named"
+        )
+    else:
+        fit = found.simpler
+        yield (
+            "air gaps: simpler causes do not explain how offset, gain ratio and phase go over "
+            f"{len(found.names)} gaps ({_goodness(fit)}), and for more causes no gap is left to check them by; no "
+            "cause is named: one more gap would tell"
+        )
+    yield _where(fit, found.names, found.mounting)
+
+
+def _goodness(fit: GapFit) -> str:
+    return f"chi^2 = {fit.chi2:.0f} at {fit.degrees_of_freedom} degrees of freedom (p = {fit.p:.1g})"
+
+
+def _where(fit: GapFit, names: tuple[str, ...], mounting: Mounting) -> str:
+    """Which factors lie farthest off, and which gaps had to give way."""
     places = [_place(fit, names, *place) for place in farthest(fit)]
     moved = [
         f"{name}, at {gap:.2f} mm instead of {stated:.2f} mm"
         for name, gap, stated in zip(names, fit.gap_mm, mounting.air_gap_mm, strict=False)
         if abs(gap - stated) > _CLEAR_SIGMA * mounting.gap_error_mm
     ]
-    if places:
-        yield f"air gaps: farthest off are {'; '.join(places)}"
-    if moved:
-        yield f"air gaps: the causes would rather have {'; '.join(moved)}"
-    if not (places or moved):
-        yield "air gaps: what does not fit are the amplitudes of the channels to the field at these gaps"
+    said = [f"farthest off are {'; '.join(places)}"] if places else []
+    said += [f"the causes would rather have {'; '.join(moved)}"] if moved else []
+    return f"air gaps: {'; '.join(said) or 'what does not fit are amplitudes and gaps'}"
 
 
 def farthest(fit: GapFit) -> list[tuple[int, int]]:
@@ -77,7 +88,7 @@ def _place(fit: GapFit, names: tuple[str, ...], sweep: int, row: int) -> str:
 def _order_2(found: AirGaps) -> Iterator[str]:
     """Gain ratio and phase."""
     if len(found.order_2) > 1:
-        yield _either(found)
+        yield _tilted_or_not(found) if "sensor" in found.named else _either(found)
         return
     (causes,) = found.order_2
     if not causes:
@@ -96,6 +107,25 @@ def _order_2(found: AirGaps) -> Iterator[str]:
             "air gaps: gain ratio and phase follow this magnet's field off its axis: the sensor is "
             f"{_length(off)} off the shaft's axis, towards {_direction(off)} or opposite"
         )
+    tilt = sensor_tilt(found.best)
+    if tilt is not None:
+        yield (
+            f"air gaps: the sensor is tilted by {tilt.value:.2f} deg ({tilt.low:.2f} .. {tilt.high:.2f}) too, its "
+            f"normal leaning towards {_direction(tilt)}, or opposite where the sensor is"
+        )
+
+
+def _tilted_or_not(found: AirGaps) -> str:
+    """A sensor off the axis, and beside it the electronics or a tilt."""
+    ways = []
+    for two in found.order_2:
+        off = sensor_displacement(found.fit_of(found.order_1[0], two))
+        assert off is not None
+        ways.append(f"{_length(off)} with {'a tilt of the sensor' if 'tilt' in two else 'the electronics'}")
+    return (
+        "air gaps: the sensor is off the shaft's axis, and not that alone: "
+        f"{', or '.join(ways)}; these gaps cannot tell, one more would"
+    )
 
 
 def _either(found: AirGaps) -> str:
@@ -133,8 +163,8 @@ def _order_1(found: AirGaps) -> Iterator[str]:
 def _magnet(found: AirGaps) -> Iterator[str]:
     """The magnet, which shows in the offsets beside the sensor's displacement alone."""
     bound = found.magnet_bound_mm
-    centre = magnet_displacement(found.best)
-    if centre is not None and "magnet" in found.named:
+    centre = found.displaced("magnet")
+    if centre is not None:
         yield (
             f"air gaps: the magnet is {_length(centre)} off the shaft too, towards {_direction(centre)} where the "
             "field points along the sensor's x axis, or opposite where the sensor is"
@@ -161,7 +191,7 @@ def _quadratic(found: AirGaps) -> str:
 
 
 def _length(found: Displacement) -> str:
-    return f"{found.mm:.3f} mm ({found.low_mm:.3f} .. {found.high_mm:.3f})"
+    return f"{found.value:.3f} mm ({found.low:.3f} .. {found.high:.3f})"
 
 
 def _direction(found: Displacement) -> str:

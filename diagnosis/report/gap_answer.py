@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from diagnosis.factors.air_gaps import AirGaps
-from diagnosis.factors.displacement import Displacement, magnet_displacement, sensor_displacement
+from diagnosis.factors.displacement import Displacement
 from diagnosis.factors.gap_fit import GapFit
 from diagnosis.factors.gap_model import ROWS
 from diagnosis.factors.gap_words import farthest, sentences
@@ -14,7 +14,7 @@ from twin.baseline import FACTORS
 
 def gap_answer(found: AirGaps) -> dict[str, Any]:
     """What the gaps tell; causes are named only where something fits."""
-    best = found.fullest if found.misfit else found.best
+    best = found.told
     return {
         "magnet": found.mounting.body,
         "assumed": found.mounting.assumed,
@@ -23,8 +23,9 @@ def gap_answer(found: AirGaps) -> dict[str, Any]:
         "named": list(found.named),
         "order_1": [list(one) for one in found.order_1],
         "order_2": [list(one) for one in found.order_2],
-        "sensor_off_axis": _displacement(None if found.misfit else sensor_displacement(best)),
-        "magnet_off_shaft": _displacement(None if found.misfit else magnet_displacement(best)),
+        "sensor_off_axis": _displacement(found.displaced("sensor")),
+        "magnet_off_shaft": _displacement(found.displaced("magnet")),
+        "sensor_tilt": _displacement(found.displaced("tilt"), "deg"),
         "magnet_bound_mm": found.magnet_bound_mm,
         "parting_mm": found.parting_mm,
         **_goodness(best),
@@ -38,12 +39,15 @@ def _goodness(fit: GapFit) -> dict[str, Any]:
     return {"chi2": fit.chi2, "degrees_of_freedom": fit.degrees_of_freedom, "p": fit.p}
 
 
-def _displacement(found: Displacement | None) -> dict[str, float] | None:
-    """Keys of the JSON say what the length is of."""
+def _displacement(found: Displacement | None, unit: str = "mm") -> dict[str, float] | None:
+    """Keys of the JSON bear the unit."""
     if found is None:
         return None
-    told = dict(vars(found))
-    return {"value_mm": told.pop("mm"), **told}
+    return {
+        **{f"{name}_{unit}": getattr(found, name) for name in ("value", "low", "high")},
+        "direction_deg": found.direction_deg,
+        "direction_half_deg": found.direction_half_deg,
+    }
 
 
 def _place(found: AirGaps, fit: GapFit, sweep: int, row: int) -> dict[str, Any]:

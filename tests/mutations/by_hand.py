@@ -100,10 +100,17 @@ FACTORS: tuple[Mutation, ...] = (
     Mutation(
         "air_gaps.misfit_passes",
         _GAPS,
-        "return self.fullest.p < MISFIT",
-        "return self.fullest.p < 0.0",
+        "return self.fullest.p < MISFIT or self.unchecked",
+        "return self.unchecked",
         (f"{_GAP_TESTS}::test_what_nothing_explains_is_said_to_fit_nothing",),
         short=True,
+    ),
+    Mutation(
+        "air_gaps.as_many_causes_as_gaps",
+        _GAPS,
+        "return self.fullest.p < MISFIT or self.unchecked",
+        "return self.fullest.p < MISFIT",
+        (f"{_GAP_TESTS}::test_a_fourth_gap_tells_a_tilt_beside_the_electronics",),
     ),
     Mutation(
         "air_gaps.first_set_that_fits",

@@ -13,7 +13,7 @@ import numpy as np
 
 from diagnosis import Mounting, diagnose_many
 from diagnosis.factors.air_gaps import AirGaps
-from diagnosis.factors.displacement import Displacement, magnet_displacement, sensor_displacement
+from diagnosis.factors.displacement import MEASURED, Displacement
 from tests.diagnosis.factors.gap_sweeps import CASES, Truth
 
 GAPS_MM = (1.0, 2.0, 3.0)
@@ -36,8 +36,8 @@ class Tally:
     wrong: int = 0
     less: int = 0
     misfits: int = 0
-    errors_mm: dict[str, list[float]] = field(default_factory=lambda: {"sensor": [], "magnet": []})
-    held: dict[str, int] = field(default_factory=lambda: {"sensor": 0, "magnet": 0})
+    errors: dict[str, list[float]] = field(default_factory=lambda: {name: [] for name in MEASURED})
+    held: dict[str, int] = field(default_factory=lambda: dict.fromkeys(MEASURED, 0))
 
     def add(self, found: AirGaps, truth: Truth, causes: frozenset[str]) -> None:
         """Count one answer."""
@@ -46,33 +46,35 @@ class Tally:
         self.right += named == causes
         self.wrong += bool(named - causes)
         self.less += named < causes
-        for name, told in (("sensor", sensor_displacement), ("magnet", magnet_displacement)):
-            self._measured(name, told(found.best) if name in named else None, abs(getattr(truth, name)))
+        for name in MEASURED:
+            self._measured(name, found.displaced(name), abs(getattr(truth, name)))
 
-    def _measured(self, name: str, found: Displacement | None, true_mm: float) -> None:
+    def _measured(self, name: str, found: Displacement | None, true: float) -> None:
         if found is not None:
-            self.errors_mm[name].append(found.mm - true_mm)
-            self.held[name] += found.low_mm <= true_mm <= found.high_mm
+            self.errors[name].append(found.value - true)
+            self.held[name] += found.low <= true <= found.high
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--gaps", default="1,2,3", help="stated air gaps in mm")
     parser.add_argument("--case", action="append", choices=list(CASES))
     options = parser.parse_args()
-    print(f"{'case':32}{'channels':>9}{'right':>7}{'wrong':>7}{'less':>6}{'misfit':>8}   displacement: bias, sd, held")
+    gaps = tuple(map(float, options.gaps.split(",")))
+    print(f"{'case':32}{'channels':>9}{'right':>7}{'wrong':>7}{'less':>6}{'misfit':>8}   bias, sd [mm, deg], held")
     for name in options.case or CASES:
         truth, causes = CASES[name]
         for channels in (True, False):
             tally = Tally()
             for seed in range(options.seeds):
-                found = asked(truth, seed, channels=channels)
+                found = asked(truth, seed, channels=channels, gaps_mm=gaps)
                 assert found is not None
                 tally.add(found, truth, causes)
             said = "; ".join(
-                f"{which} {np.mean(errors):+.4f} mm, {np.std(errors):.4f} mm, {tally.held[which]}/{len(errors)}"
-                for which, errors in tally.errors_mm.items()
+                f"{which} {np.mean(errors):+.4f}, {np.std(errors):.4f}, {tally.held[which]}/{len(errors)}"
+                for which, errors in tally.errors.items()
                 if errors
             )
             counts = f"{tally.right:7d}{tally.wrong:7d}{tally.less:6d}{tally.misfits:8d}"

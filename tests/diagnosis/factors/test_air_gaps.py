@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diagnosis import Mounting, diagnose, diagnose_many
 from diagnosis.factors.air_gaps import AirGaps, quadratic_law
-from diagnosis.factors.displacement import magnet_displacement, sensor_displacement
+from diagnosis.factors.displacement import MEASURED
 from diagnosis.factors.gap_model import CAUSES, ROWS, GapSweep, causes_of, expected
 from diagnosis.factors.gap_words import sentences
 from diagnosis.factors.modulus import modulus_interval
@@ -38,7 +40,7 @@ def test_expected_factors_are_those_of_magpylibs_field() -> None:
 
     Offsets and shares are of some per cent, and what the fit neglects is of their third order: 1e-5.
     """
-    truth = CASES["sensor, magnet and electronics"][0]
+    truth = replace(CASES["sensor, magnet and electronics"][0], tilt=1.5 - 1.0j)
     rng = np.random.default_rng(0)
     gaps = np.array([1.0, 2.0, 3.0])
     made = [truth.sweep(gap, rng, noise_deg=1e-6, channels=False) for gap in gaps]
@@ -50,6 +52,7 @@ def test_expected_factors_are_those_of_magpylibs_field() -> None:
         "electronics": complex(truth.gain - 1.0, truth.beta),
         "sensor": truth.sensor**2,
         "magnet": truth.sensor * truth.magnet,
+        "tilt": truth.sensor * truth.tilt * np.radians(1.0),
     }
     numbers = np.array([[part for name in CAUSES for part in (values[name].real, values[name].imag)]])
     factors, _ = expected(sweeps, Magnet(), causes_of(CAUSES, numbers), gaps[None])
@@ -64,11 +67,11 @@ def test_causes_are_named_and_displacements_come_back(name: str) -> None:
     assert found is not None
     assert not found.misfit
     assert set(found.named) == causes
-    for told, true in ((sensor_displacement, truth.sensor), (magnet_displacement, truth.magnet)):
-        displacement = told(found.best)
+    for name in MEASURED:
+        displacement, true = found.displaced(name), getattr(truth, name)
         if displacement is not None:
-            half = 0.5 * (displacement.high_mm - displacement.low_mm)
-            assert abs(displacement.mm - abs(true)) < 2.0 * half
+            half = 0.5 * (displacement.high - displacement.low)
+            assert abs(displacement.value - abs(true)) < 2.0 * half
     bound = found.magnet_bound_mm
     assert (bound is not None) == ("sensor" in causes and "magnet" not in causes)
     if bound is not None and abs(truth.sensor) > 0.5:
@@ -91,9 +94,9 @@ def test_stated_gaps_do_without_channels() -> None:
     ("truth", "magnet"),
     [
         (Truth(sensor=0.6 + 0.3j), Magnet(diameter_mm=10.0, height_mm=3.0)),
-        (Truth(sensor=0.6 + 0.0j, tilt_deg=8.0), Magnet()),
+        (Truth(sensor=0.6 + 0.3j, magnet=0.4 + 0.2j, tilt=3.0 + 4.0j, gain=1.01, eccentric_rad=0.005), Magnet()),
     ],
-    ids=["another magnet", "tilted and off the axis"],
+    ids=["another magnet", "everything at once"],
 )
 def test_what_nothing_explains_is_said_to_fit_nothing(truth: Truth, magnet: Magnet) -> None:
     found = joint(truth, (1.0, 2.0, 3.0, 4.0), Mounting(magnet=magnet, air_gap_mm=(1.0,)))
@@ -104,6 +107,25 @@ def test_what_nothing_explains_is_said_to_fit_nothing(truth: Truth, magnet: Magn
     assert "no cause is named" in said
     assert "farthest off" in said or "would rather have" in said
     assert "off the shaft's axis" not in said
+
+
+def test_a_fourth_gap_tells_a_tilt_beside_the_electronics() -> None:
+    """Three causes of order 2 have a number for each of three gaps: they fit anything, and nothing is named."""
+    truth = Truth(sensor=0.5 + 0.0j, tilt=4.0 + 3.0j, gain=1.01)
+    three, four = (
+        joint(truth, gaps, Mounting(air_gap_mm=gaps[:1]), noise_deg=0.01)
+        for gaps in ((1.0, 2.0, 3.0), (0.7, 1.2, 2.0, 3.5))
+    )
+    assert three.unchecked
+    assert three.named == ()
+    assert "one more gap would tell" in " ".join(sentences(three))
+    assert four.named == ("electronics", "sensor", "tilt")
+    tilt, off = four.displaced("tilt"), four.displaced("sensor")
+    assert tilt is not None
+    assert off is not None
+    assert tilt.value == pytest.approx(5.0, abs=tilt.high - tilt.low)
+    assert off.value == pytest.approx(0.5, abs=off.high - off.low)
+    assert "the sensor is tilted by" in " ".join(sentences(four))
 
 
 def test_a_stated_gap_that_the_readings_contradict_is_named() -> None:
@@ -137,7 +159,7 @@ def test_sweeps_that_decide_between_the_mirror_solutions_decide_for_the_others()
     joint_fit = found.air_gap_fit
     assert joint_fit is not None
     assert joint_fit.named == ("sensor",)
-    off = sensor_displacement(joint_fit.best)
+    off = joint_fit.displaced("sensor")
     assert off is not None
     assert off.direction_deg == pytest.approx(np.degrees(np.angle(0.6 + 0.3j)), abs=3.0 * off.direction_half_deg)
 

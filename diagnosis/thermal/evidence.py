@@ -17,6 +17,7 @@ from twin.angles import Array, wrap
 FAMILY_LEVEL = 0.01
 """Probability that of a sensor without any drift a factor is called sensitive, and of a false immune one likewise."""
 _UNSEEN = 1e-9
+_SMALLEST = 1e-20
 _MOST_CORRELATED = 0.97
 _TURNS = 20
 _SURELY = 3.0
@@ -57,8 +58,9 @@ class Evidence:
         found = np.where(mask, self.coefficients, 0.0)
         found[mask] += step
         root = np.sqrt(self.widening[np.argwhere(mask)[:, 0]])
-        noise = self.variance * curvature * root[:, None] * root
-        return found, np.asarray(inverse @ noise @ inverse)
+        values, vectors = np.linalg.eigh(curvature)
+        half = inverse @ (root[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))
+        return found, np.asarray(self.variance * half @ half.T)
 
     def rise(self, mask: Mask, factor: int, power: int) -> float:
         """p-value of the terms that raise a factor's law to a power, given the other terms of the mask; 1 for none."""
@@ -189,6 +191,7 @@ def _block_length(correlation: float, rows: int) -> int:
 
 def _inverse(matrix: Array) -> Array:
     """Inverse of a symmetric matrix; a direction that it does not see gets an enormous variance."""
-    scale = 1.0 / np.sqrt(np.maximum(np.diagonal(matrix), 1e-300))
+    size = np.diagonal(matrix)
+    scale = 1.0 / np.sqrt(np.maximum(size, _SMALLEST * max(float(size.max(initial=0.0)), _SMALLEST)))
     values, vectors = np.linalg.eigh(matrix * scale[:, None] * scale)
     return np.asarray((vectors / np.maximum(values, _UNSEEN)) @ vectors.T * scale[:, None] * scale)

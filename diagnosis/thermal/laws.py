@@ -27,6 +27,7 @@ IMMUNE: Verdict = "immune"
 NOT_TOLD: Verdict = "not told"
 FROM_C = 25.0
 """Laws count the temperature from here, as the twin's drifts do."""
+_ROUNDING = 1e-12
 _PAIRS = 9
 """Temperatures over the span between any two of which a factor is asked to stay."""
 
@@ -135,7 +136,7 @@ def _drifts(found: Evidence, span: Span, mask: Mask, weight: Array) -> tuple[Arr
     for k in range(6):
         value, covariance = _of_factor(found, mask, k)
         moved = weight[k] * np.abs(apart @ value)
-        error = weight[k] * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", apart, covariance, apart), 1e-300))
+        error = weight[k] * _errors(apart, covariance)
         largest[k] = np.max(moved)
         below[k] = np.max(moved + stdtrit(found.freedom[k], 1.0 - FAMILY_LEVEL) * error)
         chance[k] = np.max(stdtr(found.freedom[k], (moved - floor) / error))
@@ -149,7 +150,7 @@ def _figures(found: Evidence, span: Span, mask: Mask, factor: int) -> tuple[Figu
     value, covariance = _of_factor(found, mask, factor)
     count = int(np.count_nonzero(mask[factor]))
     turned = from_25(span, mask.shape[1])[:count]
-    value, error = turned @ value, np.sqrt(np.diagonal(turned @ covariance @ turned.T))
+    value, error = turned @ value, _errors(turned, covariance)
     half = float(stdtrit(found.freedom[factor], 0.975)) * error
     return tuple(Figure(float(v), float(v - h), float(v + h)) for v, h in zip(value, half, strict=True))
 
@@ -160,8 +161,16 @@ def law_at(found: Evidence, model: Model, factor: int, temperature_c: Array) -> 
 
     value, covariance = _of_factor(found, model.terms, factor)
     powers = model.span.powers(temperature_c, model.terms.shape[1] - 1)
-    error = np.sqrt(np.maximum(np.einsum("in,ij,jn->n", powers, covariance, powers), 0.0))
-    return value @ powers, float(stdtrit(found.freedom[factor], 0.975)) * error
+    return value @ powers, float(stdtrit(found.freedom[factor], 0.975)) * _errors(powers.T, covariance)
+
+
+def _errors(combined: Array, covariance: Array) -> Array:
+    """Standard errors (n,) of combinations (n, p) of coefficients; never less than rounding leaves of the terms."""
+    square, terms = (
+        np.einsum("ij,jk,ik->i", *parts)
+        for parts in ((combined, covariance, combined), (abs(combined), abs(covariance), abs(combined)))
+    )
+    return np.asarray(np.sqrt(np.maximum(square, _ROUNDING * terms + 1e-300)))
 
 
 def _of_factor(found: Evidence, mask: Mask, factor: int) -> tuple[Array, Array]:

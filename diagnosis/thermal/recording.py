@@ -15,6 +15,7 @@ from twin.sweep import Sweep
 
 SMALLEST_SPAN_K = 5.0
 """Readings whose temperatures differ by less were taken at one, as for a motion's "two temperatures"."""
+_NEIGHBOURS = 2
 _REMADE_RAD = np.radians(1.0)
 """Zeros farther apart than this were set anew: no mount of a magnet turns by so much with temperature."""
 
@@ -85,7 +86,8 @@ def joined(sweeps: Sequence[Sweep]) -> Recording:
     for sweep in sweeps:
         motion = sweep.motion()
         reference, measured = radians(sweep.reference_deg), radians(sweep.measured_deg)
-        parts.append(Recording(reference, measured, motion.temperature_c, motion.direction, units + motion.turn))
+        temperature = temperature_of(sweep)
+        parts.append(Recording(reference, measured, temperature, motion.direction, units + motion.turn))
         units += int(motion.turn.max(initial=0)) + 1
         if parts[-1].slope != parts[0].slope:
             raise UserError(
@@ -94,6 +96,16 @@ def joined(sweeps: Sequence[Sweep]) -> Recording:
             )
     columns = ("reference_rad", "measured_rad", "temperature_c", "direction", "unit")
     return Recording(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in columns})
+
+
+def temperature_of(sweep: Sweep) -> Array:
+    """Temperature (n,) [C] of each reading: a missing one, or one far off its neighbours, is taken from these."""
+    temperature = sweep.motion().temperature_c
+    around = np.lib.stride_tricks.sliding_window_view(
+        np.pad(temperature, _NEIGHBOURS, mode="reflect"), 2 * _NEIGHBOURS + 1
+    )
+    middle = np.median(around, axis=1)
+    return np.asarray(np.where(np.abs(temperature - middle) > SMALLEST_SPAN_K, middle, temperature))
 
 
 def counts_as(sweep: Sweep) -> int:
@@ -105,7 +117,7 @@ def over_temperature(sweeps: Sequence[Sweep]) -> bool:
     """Whether all sweeps hold a temperature, and their temperatures differ enough for a law."""
     if any(sweep.temperature_c is None for sweep in sweeps):
         return False
-    found = [sweep.motion().temperature_c for sweep in sweeps]
+    found = [temperature_of(sweep) for sweep in sweeps]
     return bool(found) and float(np.ptp(np.concatenate(found))) > SMALLEST_SPAN_K
 
 

@@ -11,7 +11,7 @@ import pytest
 from diagnosis.thermal.laws import IMMUNE, NOT_TOLD, SENSITIVE
 from diagnosis.thermal.levels import Levels, Span
 from diagnosis.thermal.over_temperature import OverTemperature, find_laws
-from diagnosis.thermal.recording import joined, over_temperature
+from diagnosis.thermal.recording import joined, over_temperature, temperature_of
 from tests.diagnosis.thermal.devices import (
     COLD_ROOM_HOT,
     FLOOR_DEG,
@@ -177,6 +177,17 @@ def test_gross_errors_are_left_out() -> None:
     found = laws([replace(sweep, measured_deg=measured)])
     assert np.flatnonzero(found.gross).tolist() == [5, 300]
     assert verdicts(found)[:3] == [SENSITIVE, IMMUNE, SENSITIVE]
+
+
+def test_a_single_wild_temperature_is_its_neighbours() -> None:
+    sweep = warm().simulate(over(COLD_ROOM_HOT), seed=1)
+    assert sweep.temperature_c is not None
+    wild = sweep.temperature_c.copy()
+    wild[[0, 100]] = 9000.0, -200.0
+    np.testing.assert_array_equal(temperature_of(replace(sweep, temperature_c=wild)), sweep.temperature_c)
+    at_one = np.full(len(sweep), 25.0)
+    at_one[7] = 85.0
+    assert not over_temperature([replace(sweep, temperature_c=at_one)])
 
 
 def test_a_sweep_that_counts_the_other_way_round_is_refused() -> None:

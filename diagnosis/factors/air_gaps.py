@@ -38,6 +38,7 @@ TILTED = ("electronics", "sensor", "tilt")
 ORDER_1: tuple[tuple[str, ...], ...] = ((), ("voltage",), ("reference",), ("voltage", "reference"))
 ORDER_2: tuple[tuple[str, ...], ...] = ((), ("electronics",), ("sensor",), BOTH, ("sensor", "tilt"), TILTED)
 OF_ORDER_2 = frozenset(TILTED)
+BESIDE_SENSOR = frozenset({"magnet", "tilt"})
 WITH_MAGNET = ("voltage", "magnet")
 
 
@@ -164,15 +165,18 @@ def air_gaps(sweeps: Sequence[GapSweep], names: Sequence[str], mounting: Mountin
 
 
 class _Fits(dict[tuple[str, ...], GapFit]):
-    """Fits by their causes, made when they are first asked for, from the largest simpler one that is there."""
+    """Fits by their causes, made when they are first asked for, from the best simpler one that is there."""
 
     def __init__(self, problem: Problem, freedom: int) -> None:
         super().__init__()
         self.problem, self.freedom = problem, freedom
 
     def __missing__(self, causes: tuple[str, ...]) -> GapFit:
-        simpler = [one for one in self if set(one) < set(causes)]
-        start = self[max(simpler, key=len)] if simpler else None
+        # What stands in a product beside the sensor's displacement has no slope where that is still none.
+        alone = tuple(name for name in causes if name not in BESIDE_SENSOR)
+        simpler = [self[alone]] if alone != causes else []
+        simpler += [fit for one, fit in self.items() if set(one) < set(causes)]
+        start = min(simpler, key=lambda fit: fit.chi2) if simpler else None
         self[causes] = found = self.problem.fitted(causes, self.freedom, start=start)
         return found
 

@@ -106,6 +106,13 @@ FACTORS: tuple[Mutation, ...] = (
         short=True,
     ),
     Mutation(
+        "air_gaps.tilt_before_the_sensor",
+        _GAPS,
+        "simpler = [self[alone]] if alone != causes else []",
+        "simpler = []",
+        (f"{_GAP_TESTS}::test_more_causes_never_fit_worse_than_some_of_them",),
+    ),
+    Mutation(
         "air_gaps.as_many_causes_as_gaps",
         _GAPS,
         "return self.fullest.p < MISFIT or self.unchecked",

@@ -84,9 +84,10 @@ CASES: dict[str, tuple[Truth, frozenset[str]]] = {
         Truth(sensor=0.6 + 0.3j, magnet=0.1 - 0.25j, gain=1.006, beta=0.004, voltage=0.3 - 0.2j),
         frozenset({"voltage", "electronics", "sensor", "magnet"}),
     ),
-    "sensor off and tilted": (Truth(sensor=0.4 + 0.2j, tilt=2.0 + 1.0j), frozenset({"sensor"})),
+    "sensor off and tilted": (Truth(sensor=0.4 + 0.2j, tilt=2.0 + 1.0j), frozenset({"sensor", "tilt"})),
     "magnet alone": (Truth(magnet=0.3 + 0.2j), frozenset()),
     "eccentric reference": (Truth(eccentric_rad=0.004), frozenset({"reference"})),
 }
-"""What is wrong, and the causes to be named for it at three gaps, which leave open what acts beside a misplaced sensor:
-where the electronics would do, a tilt is not named."""
+"""What is wrong, and the causes that may be named for it."""
+OPEN = frozenset({"electronics", "tilt"})
+"""Of these, beside a sensor off the axis, three gaps need not tell which it is: then neither is named."""

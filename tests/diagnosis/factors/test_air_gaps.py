@@ -14,7 +14,7 @@ from diagnosis.factors.gap_model import CAUSES, ROWS, GapSweep, causes_of, expec
 from diagnosis.factors.gap_words import sentences
 from diagnosis.factors.modulus import modulus_interval
 from tests.diagnosis.factors.gap_study import asked
-from tests.diagnosis.factors.gap_sweeps import CASES, Truth
+from tests.diagnosis.factors.gap_sweeps import CASES, OPEN, Truth
 from twin.errors import UserError
 from twin.magnet.magnet import Magnet
 
@@ -66,7 +66,9 @@ def test_causes_are_named_and_displacements_come_back(name: str) -> None:
     found = asked(truth, 3, channels=True)
     assert found is not None
     assert not found.misfit
-    assert set(found.named) == causes
+    left = causes - set(found.named)
+    assert set(found.named) <= causes
+    assert not left or (len(found.order_2) > 1 and left <= OPEN)
     for name in MEASURED:
         displacement, true = found.displaced(name), getattr(truth, name)
         if displacement is not None:
@@ -76,6 +78,15 @@ def test_causes_are_named_and_displacements_come_back(name: str) -> None:
     assert (bound is not None) == ("sensor" in causes and "magnet" not in causes)
     if bound is not None and abs(truth.sensor) > 0.5:
         assert bound < 0.05
+
+
+def test_more_causes_never_fit_worse_than_some_of_them() -> None:
+    """A fit ends at its optimum, whose chi-squared a part of its causes cannot undercut. Its own tolerance is 1e-6."""
+    found = asked(CASES["sensor, a little"][0], 7, channels=True)
+    assert found is not None
+    for causes, fit in found.fits.items():
+        assert all(fit.chi2 < part.chi2 + 1e-3 for some, part in found.fits.items() if set(some) < set(causes))
+    assert found.named == ("sensor",)
 
 
 def test_stated_gaps_do_without_channels() -> None:

@@ -12,7 +12,7 @@ from twin.effect import Effect
 from twin.known_names import nearest
 
 STAGES = ("mechanics", "magnet", "concentrator", "hall", "adc", "cordic", "empirical", "link", "reference")
-_ACTS_ON = ("shaft", "field", "channels", "angle", "reference")
+ACTS_ON = ("shaft", "field", "channels", "angle", "reference")
 
 _DECLARED: tuple[Effect, ...] = (
     *mechanics.EFFECTS,
@@ -29,7 +29,7 @@ _DECLARED: tuple[Effect, ...] = (
 
 def in_order(effects: tuple[Effect, ...]) -> tuple[Effect, ...]:
     """Effects in chain order: by the signal they act on, then by stage, then as declared."""
-    return tuple(sorted(effects, key=lambda e: (_ACTS_ON.index(e.acts_on), STAGES.index(e.stage))))
+    return tuple(sorted(effects, key=lambda e: (ACTS_ON.index(e.acts_on), STAGES.index(e.stage))))
 
 
 CATALOGUE: tuple[Effect, ...] = in_order(_DECLARED)

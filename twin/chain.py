@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from twin.angles import Array, channels_of, wrap
-from twin.catalogue import CATALOGUE, base_name, find
+from twin.catalogue import ACTS_ON, CATALOGUE, STAGES, base_name, find
 from twin.effect import ActsOn, Effect, Parameters
 from twin.known_names import nearest
 from twin.limits import OutOfRangeError
@@ -55,7 +55,8 @@ class Chain:
     encoder : Encoder or None
         Rounds the reference of a simulated record to whole counts; None: the reference reads exactly.
     parts : Parts
-        The scale of the signals in millitesla and volts; it changes no reading.
+        The described hardware, in its own units: the field's scale, the concentrator's disk and the Hall plates. A part
+        that is not described is ideal.
 
     Examples
     --------
@@ -167,6 +168,7 @@ class Chain:
             self,
             values=values,
             magnet=magnet,
+            parts=self.parts.in_mirror(),
             sensor_sense=-self.sensor_sense,
             output_sense=-self.output_sense,
         )
@@ -174,15 +176,43 @@ class Chain:
     # ---- running --------------------------------------------------------------------------------------------------
 
     def active(self, acts_on: ActsOn) -> Iterator[tuple[str, Effect, Parameters]]:
-        """The effects not at null on this signal, in order: key, effect, complete parameters."""
+        """What acts on this signal, in order: key, effect, complete parameters.
+
+        These are the described parts, each ahead of the effects of its stage, and the effects that are not at null.
+        """
         present: dict[str, list[str]] = {}
         for key in sorted(self.values):
             present.setdefault(base_name(key), []).append(key)
+        parts = [part for part in self.described if part.acts_on == acts_on]
         for effect in self.effects:
-            for key in present.get(effect.name, ()) if effect.acts_on == acts_on else ():
+            if effect.acts_on != acts_on:
+                continue
+            while parts and STAGES.index(parts[0].stage) <= STAGES.index(effect.stage):
+                part = parts.pop(0)
+                yield part.name, part, {}
+            for key in present.get(effect.name, ()):
                 values = {**effect.null(), **self.values[key]}
                 if not effect.is_null(values):
                     yield key, effect, {name: _aligned(value, effect, name) for name, value in values.items()}
+        yield from ((part.name, part, {}) for part in parts)
+
+    @property
+    def described(self) -> tuple[Effect, ...]:
+        """The described parts as operations on the chain's signals, in order."""
+        return self.parts.acting(self.nominal_mT)
+
+    def places(self) -> dict[str, float]:
+        """Where everything acts, by name: effects by their number, a part half a number ahead of its stage's effects."""
+        found = {effect.name: float(place) for place, effect in enumerate(self.effects)}
+        for part in self.described:
+            behind = (
+                place
+                for place, one in enumerate(self.effects)
+                if (ACTS_ON.index(one.acts_on), STAGES.index(one.stage))
+                >= (ACTS_ON.index(part.acts_on), STAGES.index(part.stage))
+            )
+            found[part.name] = next(behind, len(self.effects)) - 0.5
+        return found
 
     def steps(self, motion: Motion, rng: np.random.Generator | None = None) -> Iterator[Step]:
         """Run the sensor's side of the chain and yield every operation with the signals around it.
@@ -201,7 +231,7 @@ class Chain:
             elif acts_on == "field":
                 after = self.driven(signal, motion)
             elif acts_on == "channels":
-                after = np.arctan2(signal[..., 1:, :], signal[..., :1, :])
+                after = self.computed(signal, as_built=rng is not None)
             else:
                 after = self.output_sense * signal
             yield Step(f"after {acts_on}", None, sense, signal, after)
@@ -212,6 +242,13 @@ class Chain:
         if self.magnet is None:
             return channels_of(np.cos(angle[..., :1, :]), np.sin(angle[..., 1:, :]))
         return self.magnet.channels(angle, motion)
+
+    def computed(self, channels: Array, *, as_built: bool = False) -> Array:
+        """The angle [rad] (..., 1, n) of the channels: the arctangent, or as built what a stage that computes returns."""
+        for _, effect, values in self.active("angle") if as_built else ():
+            if effect.computes is not None and (angle := effect.computes(channels, values)) is not None:
+                return angle
+        return np.asarray(np.arctan2(channels[..., 1:, :], channels[..., :1, :]))
 
     def readings(self, motion: Motion, values: Values | None = None) -> Array:
         """The reading that is expected: without noise and rare events.
@@ -249,8 +286,8 @@ class Chain:
         return reading if self.encoder is None else self.encoder.read(reading)
 
     @property
-    def nominal_mT(self) -> float:
-        """The field [mT] in the plane at the nominal amplitude 1."""
+    def nominal_mT(self) -> Any:
+        """The field [mT] in the plane at the nominal amplitude 1; of many designs (designs,)."""
         return self.parts.field_mT if self.magnet is None else self.magnet.nominal_mT
 
     def shaft(self, recorded: Motion) -> Motion:

@@ -263,6 +263,10 @@ class Effect:
         Whether its attainable angles are the grid of the output's word, which the readings themselves show.
     marks : Marks, optional
         For the footprint "sequence": how the touched readings are found.
+    computes : callable, optional
+        For a stage that computes the angle: from the channels (..., 2, n) and its parameters to the angle [rad]
+        (..., 1, n) as its integers return it, or None where the parameters do not say how it is built. Where they do, a
+        run as built has this in place of the arctangent and of `forward`.
     repeatable : bool
         Whether a second instance beside the first makes sense: another source with parameters of its own.
     record_wide : bool
@@ -304,6 +308,7 @@ class Effect:
     stair: Callable[[Parameters], float] | None = None
     output_grid: bool = False
     marks: Marks | None = None
+    computes: Callable[[Array, Parameters], Array | None] | None = None
     repeatable: bool = False
     record_wide: bool = False
     handicap: float = 0.0

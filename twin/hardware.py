@@ -1,115 +1,133 @@
-"""The paper's Fig. 2 end to end, in the units of the hardware: magnet, disk, spun plates, converter, CORDIC, SPI, CAN.
+"""The chain's signals in the units of the hardware, as built: millitesla, microvolts, codes, words and frames.
 
-The chain of effects (:mod:`twin.chain`) is what fits and searches run on; this is what its parameters come from.
-Each reading is one cycle of the spinning current. Pure functions of the description, the motion and a generator.
+This is the paper's Fig. 2 as a view of :mod:`twin.chain`: the same run, with every signal between the stages. What a
+twin leaves ideal shows as such: without a word length there are no codes.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 
-from twin.adc.converter import Codes, Converter, convert, instants
+from twin.adc.adc_quantisation import ADC_QUANTISATION, codes_of
 from twin.angles import Array
-from twin.concentrator.disk import Disk
-from twin.cordic.bit_true import Cordic, vectoring, wrapped
+from twin.catalogue import STAGES, output_grid
+from twin.chain import Chain, Step
+from twin.cordic.bit_true import Codes
 from twin.effect import BoolArray
-from twin.hall.spinning_current import Plate, Spinning, spin
-from twin.limits import OutOfRangeError, require_within
-from twin.link.frames import Bits, Bytes, can_data, can_frames, spi_frames, spi_words, word_angles
-from twin.magnet.assembly import Assembly
+from twin.hall.spinning_current import spin
+from twin.link.frames import (
+    SPI_WORD_BITS,
+    Bits,
+    Bytes,
+    angle_words,
+    can_data,
+    can_frames,
+    spi_frames,
+    spi_words,
+    word_angles,
+)
 from twin.motion import Motion
 
 CAN_IDENTIFIER = 0x123
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Hardware:
-    """One part on one shaft. Plates of x and y may differ; the converter's full scale counts in nominal amplitudes."""
-
-    assembly: Assembly = field(default_factory=Assembly)
-    disk: Disk = field(default_factory=Disk)
-    plates: tuple[Plate, Plate] = field(default_factory=lambda: (Plate(), Plate()))
-    converter: Converter = field(default_factory=Converter)
-    cordic: Cordic = field(default_factory=Cordic)
-    angle_bits: int = 14
-
-    def __post_init__(self) -> None:
-        require_within("angle_bits", self.angle_bits, 1, 16, "bit", whole=True)
-        if self.cordic.word_bits < self.converter.bits:
-            raise OutOfRangeError(
-                f"word_bits of the CORDIC is {self.cordic.word_bits} bit; "
-                f"expected at least the converter's {self.converter.bits} bit"
-            )
-        if self.cordic.angle_bits < self.angle_bits:
-            raise OutOfRangeError(
-                f"angle_bits of the CORDIC is {self.cordic.angle_bits} bit; expected at least {self.angle_bits} bit"
-            )
-
-
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Every signal of one run; channels are (2, n), words and readings (n,)."""
+    """Every signal of one run; channels are (2, n), words and readings (n,).
 
-    at_s: Array
+    ``unspun_mT`` is what the plates would give with their bias left in one phase. ``codes`` is None where the twin
+    states no word length of the converter.
+    """
+
     in_plane_mT: Array
     vertical_mT: Array
-    spun: tuple[Spinning, Spinning]
+    unspun_mT: Array
+    spun_mT: Array
+    voltage_uV: Array
     amplitude: Array
-    codes: Codes
-    cordic_words: Codes
+    codes: Codes | None
+    computed_rad: Array
     words: Codes
+    bits: int
     spi: Bytes
     can: Bits
     received_rad: Array
     sound: BoolArray
 
 
-def run(hardware: Hardware, motion: Motion, rng: np.random.Generator | None = None) -> Run:
-    """Run the part over a motion; without a generator nothing random acts."""
-    converter, disk = hardware.converter, hardware.disk
-    # A reading is paired with the reference when it is ready: it was sampled a latency before.
-    at = instants(motion.time_s - converter.latency_s, converter, rng)
-    angle = motion.shaft_rad + motion.speed_rad_s * (at - motion.time_s)
-    nominal = hardware.assembly.nominal_mT
-    # The disk mixes both components, so each channel needs the whole field at its own instant.
-    both = [nominal * hardware.assembly.channels(np.stack([one, one]), motion) for one in angle]
-    in_plane = np.stack([both[0][0], both[1][1]])
-    vertical = np.stack([_flux(row @ plane, disk) for row, plane in zip(disk.conversion, both, strict=True)])
-    spun = (spin(vertical[0], hardware.plates[0], rng), spin(vertical[1], hardware.plates[1], rng))
-    amplitude = np.stack([one.output_mT for one in spun]) / (disk.gain * nominal)
-    codes = convert(amplitude, at, converter, rng)
-    turned, _ = vectoring(codes[0], codes[1], hardware.cordic)
-    words = _rounded(turned, hardware.cordic.angle_bits, hardware.angle_bits)
-    spi = spi_frames(words, hardware.angle_bits)
+def run(chain: Chain, motion: Motion, rng: np.random.Generator | None = None) -> Run:
+    """Run the chain as built over a motion.
+
+    Parameters
+    ----------
+    chain : Chain
+        One sensor.
+    motion : Motion
+        Conditions of n readings.
+    rng : numpy.random.Generator, optional
+        Of everything random; without it nothing random acts, and integers are continuous.
+
+    Returns
+    -------
+    Run
+        Readings are those of :meth:`twin.chain.Chain.simulate` with the same generator.
+    """
+    steps = list(chain.steps(motion, rng))
+    parts, in_plane = chain.parts, chain.nominal_mT
+    vertical = parts.gain * in_plane * behind(steps, "concentrator")
+    spun = parts.gain * in_plane * behind(steps, "hall")
+    channels = next(step.before for step in steps if step.key == "after channels")
+    measured = steps[-1].after[0]
+    bits = word_bits(chain)
+    words = angle_words(measured, bits)
+    spi = spi_frames(words, bits)
     can = can_frames(CAN_IDENTIFIER, spi)
     data, whole = can_data(can)
-    received, sound, _ = spi_words(data, hardware.angle_bits)
+    received, sound, _ = spi_words(data, bits)
+    plates = zip(vertical, parts.plates, strict=True)
+    sensitivity = np.array([[plate.sensitivity_uV_per_mT] for plate in parts.plates])
     return Run(
-        at_s=at,
-        in_plane_mT=in_plane,
+        in_plane_mT=in_plane * behind(steps, "magnet"),
         vertical_mT=vertical,
-        spun=spun,
-        amplitude=amplitude,
-        codes=codes,
-        cordic_words=turned,
+        unspun_mT=np.stack([spin(field, plate, temp_c=motion.temperature_c).unspun_mT for field, plate in plates]),
+        spun_mT=spun,
+        voltage_uV=sensitivity * spun,
+        amplitude=channels,
+        codes=_codes(chain, channels),
+        computed_rad=next(step.after for step in steps if step.key == "after channels")[0],
         words=words,
+        bits=bits,
         spi=spi,
         can=can,
-        received_rad=word_angles(received, hardware.angle_bits),
+        received_rad=word_angles(received, bits),
         sound=sound & whole,
     )
 
 
-def _flux(vertical_mT: Array, disk: Disk) -> Array:
-    """The vertical field [mT] under a disk that saturates along a tanh curve."""
-    level = disk.gain * disk.saturation_mT
-    return np.asarray(level * np.tanh(vertical_mT / level))
+def behind(steps: Iterable[Step], stage: str) -> Array:
+    """The channels (2, n) behind the last operation of a stage and of those ahead of it."""
+    last = STAGES.index(stage)
+    signal: Array | None = None
+    for step in steps:
+        if step.key == "after field" or (
+            signal is not None and step.effect is not None and step.effect.acts_on == "channels"
+            and STAGES.index(step.effect.stage) <= last
+        ):
+            signal = step.after
+    assert signal is not None
+    return signal
 
 
-def _rounded(words: Codes, from_bits: int, to_bits: int) -> Codes:
-    """Signed angle words rounded to fewer bits, as words in [0, 2^to_bits)."""
-    drop = from_bits - to_bits
-    nearest = (words + (1 << drop >> 1)) >> drop
-    return wrapped(nearest, to_bits) & ((1 << to_bits) - 1)
+def word_bits(chain: Chain) -> int:
+    """Length of the angle word on the link; the frame's longest where the twin states none or more."""
+    grid = output_grid(chain.effects)
+    stated = 0 if grid is None else int(chain.values.get(grid.name, grid.null()).get("bits", 0))
+    return stated if 0 < stated <= SPI_WORD_BITS else SPI_WORD_BITS
+
+
+def _codes(chain: Chain, channels: Array) -> Codes | None:
+    bits = int(chain.values.get(ADC_QUANTISATION.name, {}).get("bits", 0))
+    return codes_of(channels, bits) if bits > 0 else None

@@ -1,51 +1,113 @@
-"""The hardware behind a chain apart from its magnet: concentrator and Hall plates, with typical figures as defaults."""
+"""The hardware behind a chain apart from its magnet, as described: what is not described is an ideal part."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
+import numpy as np
+
+from twin.concentrator import disk as disk_stage
 from twin.concentrator.disk import Disk
+from twin.effect import Effect
+from twin.hall import plates as plate_stage
 from twin.hall.spinning_current import Plate
 from twin.limits import OutOfRangeError, require_within
 from twin.magnet.stray_field import FIELD_MT
+from twin.part import in_mirror
 from twin.shown import shown
 from twin.tables import from_table, to_table
 
 
 @dataclass(frozen=True, kw_only=True)
 class Parts:
-    """The nominal field at the sensor [mT] where no magnet is described, the concentrator and the Hall plates.
+    """The nominal field at the sensor where no magnet is described, the concentrator and the Hall plates.
 
-    The chain's own figures (offset, gain, saturation, ...) stay those of its effects; these set the scale.
+    Attributes
+    ----------
+    field_mT : float
+        [mT]; not asked where the chain has a magnet.
+    disk : Disk or None
+        The concentrator; None: its channels are the field's components.
+    plate, plate_y : Plate or None
+        The Hall plates of x and of y; ``plate_y`` None: like that of x.
+    mirrored : bool
+        Whether the parts are seen in a mirror along x: those of a chain that counts the other way on both sides.
     """
 
     field_mT: float = FIELD_MT
-    disk: Disk = field(default_factory=Disk)
-    plate: Plate = field(default_factory=Plate)
+    disk: Disk | None = None
+    plate: Plate | None = None
+    plate_y: Plate | None = None
+    mirrored: bool = False
 
     def __post_init__(self) -> None:
         require_within("field_mT", self.field_mT, 1e-3, 1e4, "mT")
+        if self.plate is None and self.plate_y is not None:
+            raise OutOfRangeError("plate_y is described and plate is not; describe plate, the plate of x, too")
+
+    @property
+    def gain(self) -> float:
+        """Vertical field at the plates over the field in the plane."""
+        return (self.disk or Disk()).gain
+
+    @property
+    def plates(self) -> tuple[Plate, Plate]:
+        """Of x and y; ideal where none is described."""
+        plate = self.plate or Plate()
+        return plate, self.plate_y or plate
+
+    def acting(self, nominal_mT: Any) -> tuple[Effect, ...]:
+        """The parts that are not ideal as operations on channels whose amplitude 1 stands for this field in the plane [mT].
+
+        ``nominal_mT`` may hold one number for each design (designs,).
+        """
+        if (self.disk is None or self.disk.ideal) and all(plate.ideal for plate in self.plates):
+            return ()
+        return _acting_at(self, float(nominal_mT)) if np.ndim(nominal_mT) == 0 else _acting(self, nominal_mT)
+
+    def only(self, name: str) -> Parts:
+        """The parts with all but ``disk`` or ``plates`` ideal; the scale stays."""
+        if name == "disk":
+            return replace(self, plate=None, plate_y=None)
+        return replace(self, disk=Disk(gain=self.gain))
+
+    def in_mirror(self) -> Parts:
+        """The parts of the chain that counts the other way on both sides and reads the same."""
+        return replace(self, mirrored=not self.mirrored) if self.acting(self.field_mT) else self
+
+
+def _acting(parts: Parts, nominal_mT: Any) -> tuple[Effect, ...]:
+    found = []
+    if parts.disk is not None and not parts.disk.ideal:
+        found.append(disk_stage.described(parts.disk, nominal_mT))
+    if not all(plate.ideal for plate in parts.plates):
+        found.append(plate_stage.described(parts.plates, parts.gain * np.asarray(nominal_mT)))
+    return tuple(in_mirror(one) if parts.mirrored else one for one in found)
+
+
+_acting_at = lru_cache(maxsize=64)(_acting)
 
 
 def parts_from(content: Any) -> Parts:
-    """The parts of a twin file's [hardware] table, with [hardware.disk] and [hardware.plate].
+    """The parts of a twin file's [hardware] table, with [hardware.disk], [hardware.plate] and [hardware.plate_y].
 
     Raises OutOfRangeError for an unknown name or a number out of range.
     """
     if not isinstance(content, Mapping):
         raise OutOfRangeError(f"hardware is {shown(content)}; expected a table")
-    kinds: dict[str, type[Disk] | type[Plate]] = {"disk": Disk, "plate": Plate}
-    values = {
-        key: from_table(kinds[key], value, f"hardware.{key}") if key in kinds else value
-        for key, value in content.items()
+    kinds: dict[str, type[Disk] | type[Plate]] = {"disk": Disk, "plate": Plate, "plate_y": Plate}
+    described = {
+        key: from_table(kind, content[key], f"hardware.{key}") for key, kind in kinds.items() if key in content
     }
-    return from_table(Parts, values, "hardware")
+    plain = {key: value for key, value in content.items() if key not in kinds}
+    return replace(from_table(Parts, plain, "hardware"), **described)
 
 
 def parts_table(parts: Parts) -> dict[str, Any]:
-    """The [hardware] table of a twin file: what differs from the defaults."""
-    tables = {"disk": to_table(parts.disk), "plate": to_table(parts.plate)}
-    own = {} if parts.field_mT == FIELD_MT else {"field_mT": parts.field_mT}
-    return {**own, **{key: table for key, table in tables.items() if table}}
+    """The [hardware] table of a twin file: what differs from the defaults, and every part that is described."""
+    described = {key: getattr(parts, key) for key in ("disk", "plate", "plate_y")}
+    plain = to_table(replace(parts, **dict.fromkeys(described)))
+    return {**plain, **{key: to_table(part) for key, part in described.items() if part is not None}}

@@ -12,52 +12,56 @@ from diagnosis.report.plotting import style
 from scenarios.commands.outputs import PICTURE, TABLE, OutputFiles
 from scenarios.commands.protocol import Protocol
 from twin.angles import Array, wrap_deg
-from twin.cordic.bit_true import angle_rad
+from twin.chain import Chain
 from twin.extensions import effects_with
 from twin.hall.spinning_current import residual_offset_mT
-from twin.hardware import Hardware, Run, run
-from twin.magnet.assembly import Assembly
+from twin.hardware import Run, run
 from twin.presets import read_twin_or_preset
 from twin.sweep_file import csv_text
 
 
 def run_command(twin: str, folder: Path, *, effect_files: Sequence[Path] = (), force: bool = False, seed: int) -> None:
-    """Write hardware.csv, hardware.png and .svg for a twin's magnet, disk, plates and reference; the rest typical."""
+    """Write hardware.csv, hardware.png and .svg: the signals of a twin's chain as built, on one turn."""
     csv, png, svg = (folder / f"hardware.{ending}" for ending in ("csv", "png", "svg"))
     files = OutputFiles.checked(
         [(csv, TABLE), (png, PICTURE), (svg, PICTURE)], inputs=[twin, *effect_files], force=force, folders=True
     )
     chain = read_twin_or_preset(twin, effects=effects_with(effect_files))
-    disk, plate = chain.parts.disk, chain.parts.plate
-    hardware = Hardware(assembly=chain.magnet or Assembly(), disk=disk, plates=(plate, plate))
     motion = Protocol().motion()
     rng = np.random.default_rng(seed)
-    signals = run(hardware, motion, rng)
+    signals = run(chain, motion, rng)
     shaft, reference = np.degrees(motion.shaft_rad), np.degrees(chain.recorded_reference(motion, rng))
-    columns = table(hardware, signals, shaft, reference)
+    columns = table(chain, signals, shaft, reference)
     figure = _figure(columns)
     files.write({csv: csv_text(columns), png: figure, svg: figure})
-    for axis, plate in zip("xy", hardware.plates, strict=True):
+    for axis, plate in zip("xy", chain.parts.plates, strict=True):
         before, after = residual_offset_mT(plate)
         print(f"plate {axis}: offset {before:.4g} mT before spinning, {after:.4g} mT after it")
-    print(f"field in the plane {hardware.assembly.nominal_mT:.4g} mT; {int(signals.sound.sum())} sound frames")
+    print(f"field in the plane {chain.nominal_mT:.4g} mT; {int(signals.sound.sum())} sound frames of {signals.bits} bit")
     print(f"largest error {np.max(np.abs(columns['error_deg'])):.4g} deg")
     files.tell_written()
 
 
-def table(hardware: Hardware, signals: Run, shaft_deg: Array, reference_deg: Array) -> dict[str, Array]:
-    """Every signal (n,) by name and unit, in the order of the chain; the error is against the reference's reading."""
+def table(chain: Chain, signals: Run, shaft_deg: Array, reference_deg: Array) -> dict[str, Array]:
+    """Every signal (n,) by name and unit, in the order of the chain; the error is against the reference's reading.
+
+    A converter without a word length has no codes, and they no columns.
+    """
     columns = {"shaft_deg": shaft_deg, "reference_deg": reference_deg}
     for row, axis in enumerate("xy"):
         columns[f"in_plane_{axis}_mT"] = signals.in_plane_mT[row]
         columns[f"vertical_{axis}_mT"] = signals.vertical_mT[row]
-        columns[f"unspun_{axis}_mT"] = signals.spun[row].unspun_mT
-        columns[f"spun_{axis}_mT"] = signals.spun[row].output_mT
-        columns[f"code_{axis}_lsb"] = signals.codes[row].astype(np.float64)
-    columns["cordic_deg"] = np.degrees(angle_rad(signals.cordic_words, hardware.cordic.angle_bits))
+        columns[f"unspun_{axis}_mT"] = signals.unspun_mT[row]
+        columns[f"spun_{axis}_mT"] = signals.spun_mT[row]
+        columns[f"voltage_{axis}_uV"] = signals.voltage_uV[row]
+        columns[f"amplitude_{axis}_1"] = signals.amplitude[row]
+        if signals.codes is not None:
+            columns[f"code_{axis}_lsb"] = signals.codes[row].astype(np.float64)
+    columns["cordic_deg"] = np.degrees(signals.computed_rad)
     columns["word_lsb"] = signals.words.astype(np.float64)
     columns["received_deg"] = np.asarray(np.degrees(signals.received_rad), dtype=np.float64)
-    columns["error_deg"] = wrap_deg(columns["received_deg"] - reference_deg)
+    slope = chain.sensor_sense * chain.output_sense
+    columns["error_deg"] = wrap_deg(columns["received_deg"] - slope * reference_deg)
     return columns
 
 
@@ -65,6 +69,9 @@ def _figure(columns: dict[str, Array]) -> Any:
     plt = style()
     figure, axes = plt.subplots(3, 2, figsize=(10.0, 9.0), sharex=True, layout="constrained")
     across = columns["shaft_deg"]
+    coded = "code_x_lsb" in columns
+    name, unit = ("code_{axis}_lsb", "code [LSB]") if coded else ("amplitude_{axis}_1", "nominal amplitudes")
+    arctangent = np.arctan2(columns[name.format(axis="y")], columns[name.format(axis="x")])
     panels: list[tuple[str, str, dict[str, Array]]] = [
         ("magnet", "field in the plane [mT]", {axis: columns[f"in_plane_{axis}_mT"] for axis in "xy"}),
         ("concentrator", "vertical field [mT]", {axis: columns[f"vertical_{axis}_mT"] for axis in "xy"}),
@@ -77,15 +84,11 @@ def _figure(columns: dict[str, Array]) -> Any:
                 for axis in "xy"
             },
         ),
-        ("converter", "code [LSB]", {axis: columns[f"code_{axis}_lsb"] for axis in "xy"}),
+        ("converter", unit, {axis: columns[name.format(axis=axis)] for axis in "xy"}),
         (
             "CORDIC",
-            "angle minus that of the codes [deg]",
-            {
-                "integer CORDIC": wrap_deg(
-                    columns["cordic_deg"] - np.degrees(np.arctan2(columns["code_y_lsb"], columns["code_x_lsb"]))
-                )
-            },
+            "angle minus arctangent of its input [deg]",
+            {"CORDIC": wrap_deg(columns["cordic_deg"] - np.degrees(arctangent))},
         ),
         ("link", "reading minus reference [deg]", {"received": columns["error_deg"]}),
     ]

@@ -10,7 +10,6 @@ import numpy as np
 from twin.angles import Array, wrap
 from twin.catalogue import STAGES
 from twin.chain import Chain, Step
-from twin.concentrator.disk import vertical_mT
 from twin.hall.spinning_current import residual_offset_mT
 from twin.motion import Motion
 from twin.sweep_file import csv_text
@@ -47,12 +46,11 @@ class Trace:
 def trace(chain: Chain, motion: Motion, *, seed: int) -> Trace:
     """Run the chain as :meth:`Chain.simulate` does with this seed, and keep every signal."""
     rng = np.random.default_rng(seed)
-    stages = {effect.name: effect.acts_on for effect in chain.effects}
     signals = [Signal("shaft", "deg", np.degrees(motion.shaft_rad)[None], np.zeros(len(motion)))]
     last: Array = signals[0].values
     inside = _Inside(chain)
     for step in chain.steps(motion, rng):
-        kind = stages[step.effect.name] if step.effect else step.key.removeprefix("after ")
+        kind = step.effect.acts_on if step.effect else step.key.removeprefix("after ")
         # Before a later stage acts on the channels, the earlier ones' signal is what the hardware has there.
         if kind == "channels":
             signals.extend(inside.before(step))
@@ -87,21 +85,24 @@ class _Inside:
         in_plane, still = self.nominal * channels, np.zeros(channels.shape[-1])
         if stage == "magnet":
             return Signal("field in the plane", "mT", in_plane, still)
-        vertical = vertical_mT(in_plane, self.parts.disk)
+        # Behind the disk the nominal amplitude 1 stands for the vertical field under it.
+        vertical = self.parts.gain * in_plane
         if stage == "concentrator":
             return Signal("vertical field", "mT", vertical, still)
-        return Signal("Hall voltage", "uV", self.parts.plate.sensitivity_uV_per_mT * vertical, still)
+        sensitivity = np.array([[plate.sensitivity_uV_per_mT] for plate in self.parts.plates])
+        return Signal("Hall voltage", "uV", sensitivity * vertical, still)
 
 
 def _notes(chain: Chain) -> tuple[str, ...]:
     """What the columns in mT and uV are counted with."""
-    disk, plate = chain.parts.disk, chain.parts.plate
+    parts = chain.parts
+    plate = parts.plates[0]
     before, after = residual_offset_mT(plate)
     field = "[hardware]" if chain.magnet is None else "[magnet]"
     return (
-        f"nominal field {chain.nominal_mT:.4g} mT by {field} of the twin; concentrator's gain {disk.gain:g} and "
+        f"nominal field {chain.nominal_mT:.4g} mT by {field} of the twin; concentrator's gain {parts.gain:g} and "
         f"sensitivity {plate.sensitivity_uV_per_mT:g} uV/mT by [hardware]; what is not given there is typical",
-        f"offset of such a Hall plate: {before:.4g} mT before spinning current, {after:.4g} mT after it",
+        f"offset of the Hall plate of x: {before:.4g} mT before spinning current, {after:.4g} mT after it",
     )
 
 

@@ -13,14 +13,14 @@ from collections.abc import Callable
 import numpy as np
 
 from scenarios.commands.protocol import Protocol
+from twin.adc.adc_quantisation import FULL_SCALE
 from twin.angles import Array, wrap
 from twin.chain import Chain
-from twin.cordic.bit_true import Cordic, angle_rad, codes_of, vectoring
+from twin.cordic.bit_true import Cordic
 from twin.motion import Motion
 
 UNIT = Cordic(iterations=14, word_bits=14, guard_bits=3, angle_bits=18)
 OFFSET_X, OFFSET_Y, RATIO, BETA, Q, K, NOISE, LAG = 0.001, -0.001, 1.003, 0.1, 0.0011, 0.0015, 0.02, 0.04
-FULL_SCALE = 1.25
 
 
 def twin(noise: float) -> Chain:
@@ -38,11 +38,20 @@ def twin(noise: float) -> Chain:
 
 
 def vectorised(motion: Motion, noise: float, seed: int) -> Array:
-    """Readings (n,) [rad]: the chain's channels, as codes through the integer CORDIC."""
-    channels = twin(noise).channels(motion, np.random.default_rng(seed))
-    x, y = codes_of(channels, UNIT.word_bits, full_scale=FULL_SCALE)
-    words, _ = vectoring(x, y, UNIT)
-    return angle_rad(words, UNIT.angle_bits)
+    """Readings (n,) [rad] of the chain as built: noise, the converter's codes and the integer CORDIC."""
+    chain = (
+        twin(noise)
+        .with_effect("adc_quantisation", bits=UNIT.word_bits)
+        .with_effect(
+            "cordic_truncation",
+            iterations=UNIT.iterations,
+            word_bits=UNIT.word_bits,
+            guard_bits=UNIT.guard_bits,
+            angle_bits=UNIT.angle_bits,
+        )
+    )
+    *_, last = chain.steps(motion, np.random.default_rng(seed))
+    return last.after[0]
 
 
 def loop(motion: Motion, noise: float, seed: int) -> list[float]:

@@ -8,12 +8,21 @@ paper, section 2.1, for shift and rough edge. The defaults are typical assumptio
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from twin.angles import Array
+from twin.effect import Effect, Parameters
 from twin.limits import require_within
+from twin.motion import Motion
+from twin.part import part, per_design
+
+TINY_MT = 1e-300
+"""In place of a field of zero, whose direction nothing asks for."""
 
 PLATES = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
 """Directions of the plates from the die's centre: x+, x-, y+, y-."""
@@ -26,7 +35,10 @@ class Disk:
     Beside the edge it falls off as a Gaussian of the width ``falloff_um``.
     ``shift_x_um``, ``shift_y_um``: the disk's centre off the die's. ``roughness_um``: RMS of the local edge about the
     circle; ``part`` is the seed that draws it. ``saturation_mT`` is the in-plane field at which a tanh-shaped
-    magnetisation curve levels off.
+    magnetisation curve levels off; infinite: it never does. ``per_axis`` is the share of the saturation's leading term
+    that each channel suffers from its own component, as where the disk saturates under its edges first; the rest acts
+    on the length of the field's vector, as in an even disk, and turns no angle. No source gives the share; the default
+    is what the paper's Eq. 5 takes, a curve for each axis. A gain of 1 is no disk: the plates see the field as it is.
     """
 
     gain: float = 6.0
@@ -36,7 +48,8 @@ class Disk:
     shift_y_um: float = 0.0
     roughness_um: float = 0.0
     part: int = 0
-    saturation_mT: float = 500.0
+    saturation_mT: float = math.inf
+    per_axis: float = 1.0
 
     def __post_init__(self) -> None:
         require_within("gain", self.gain, 0.1, 100.0)
@@ -46,7 +59,15 @@ class Disk:
             require_within(name, getattr(self, name), -0.5 * self.radius_um, 0.5 * self.radius_um, "um")
         require_within("roughness_um", self.roughness_um, 0.0, 0.1 * self.radius_um, "um")
         require_within("part", self.part, 0, 2**32 - 1, whole=True)
-        require_within("saturation_mT", self.saturation_mT, 1.0, 1e4, "mT")
+        if self.saturation_mT != math.inf:
+            require_within("saturation_mT", self.saturation_mT, 1.0, 1e4, "mT")
+        require_within("per_axis", self.per_axis, 0.0, 1.0)
+
+    @property
+    def ideal(self) -> bool:
+        """Whether its channels are the field's components, times the gain."""
+        centred = self.shift_x_um == self.shift_y_um == self.roughness_um == 0.0
+        return centred and (self.gain == 1.0 or self.saturation_mT == math.inf)
 
     @property
     def plate_gains(self) -> Array:
@@ -90,9 +111,38 @@ class Disk:
 
     def k_percent(self, field_mT: float) -> float:
         """``k_percent`` of the effect ``saturation`` at this amplitude [mT]: the cubic term of tanh, (B / Bs)^2 / 3."""
-        return float(100.0 / 3.0 * (field_mT / self.saturation_mT) ** 2)
+        return 0.0 if self.gain == 1.0 else float(self.per_axis * 100.0 / 3.0 * (field_mT / self.saturation_mT) ** 2)
 
 
 def vertical_mT(in_plane_mT: Array, disk: Disk) -> Array:
-    """Vertical field (..., 2, n) [mT] of the two channels under an in-plane field (..., 2, n) [mT], unsaturated."""
-    return np.asarray(disk.conversion @ in_plane_mT)
+    """Vertical field (..., 2, n) [mT] of the two channels under an in-plane field (..., 2, n) [mT].
+
+    The leading terms of the two curves, B |B|^2 (1 - per_axis) / (3 Bs^2) and B_i^3 per_axis / (3 Bs^2), add up.
+    """
+    if disk.gain == 1.0 or disk.saturation_mT == math.inf:
+        return np.asarray(disk.conversion @ in_plane_mT)
+    length = np.linalg.norm(in_plane_mT, axis=-2, keepdims=True)
+    whole, each = (_bent(disk.saturation_mT, share) for share in (1.0 - disk.per_axis, disk.per_axis))
+    along = in_plane_mT * (whole(length) / np.maximum(length, TINY_MT))
+    return np.asarray(disk.gain * each(disk.conversion @ along / disk.gain))
+
+
+def _bent(saturation_mT: float, share: float) -> Callable[[Array], Array]:
+    """A tanh whose cubic term is this share of that of the whole saturation."""
+    if share == 0.0:
+        return np.asarray
+    level = saturation_mT / math.sqrt(share)
+    return lambda field: np.asarray(level * np.tanh(field / level))
+
+
+def described(disk: Disk, nominal_mT: Any) -> Effect:
+    """The disk as an operation on channels of nominal amplitude 1, which ``nominal_mT`` (or one a design) in the plane
+
+    stand for; behind it the amplitude is again 1, now of ``gain`` times as many millitesla under the disk.
+    """
+    scale = per_design(nominal_mT)
+
+    def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+        return vertical_mT(scale * signal, disk) / (disk.gain * scale)
+
+    return part("disk", "concentrator", forward, "the concentrator's disk as described in [hardware.disk]")

@@ -134,12 +134,6 @@ def look_up(x: Codes, y: Codes, table: Table) -> Codes:
     return wrapped(np.where(y < 0, -angle, angle), table.angle_bits)
 
 
-def codes_of(channels: Array, word_bits: int, *, full_scale: float = 1.25) -> Codes:
-    """Signed codes of channels (any shape) of nominal amplitude 1, clipped to the word."""
-    half = 1 << (word_bits - 1)
-    return np.clip(np.round(channels / full_scale * half), -half, half - 1).astype(np.int64)
-
-
 def angle_rad(words: Codes, angle_bits: int) -> Array:
     """Angle words of any shape as angles [rad] in [-pi, pi)."""
     return np.asarray(words * (TAU / 2.0**angle_bits))

@@ -6,7 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from twin.adc.adc_quantisation import codes_of
 from twin.angles import Array, radians, wrap
+from twin.cordic import bit_true
+from twin.cordic.bit_true import Cordic, angle_rad
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -27,7 +30,27 @@ def vectoring(angle: Array, iterations: int) -> Array:
     return np.asarray(turned)
 
 
+def unit_of(values: Parameters) -> Cordic | None:
+    """The integer unit that the parameters describe; None where they leave its words unbounded."""
+    words = {name: int(np.ravel(values.get(name, 0))[0]) for name in ("word_bits", "guard_bits", "angle_bits")}
+    if words["word_bits"] == 0:
+        return None
+    return Cordic(iterations=int(np.ravel(values["iterations"])[0]), **words)
+
+
+def computes(channels: Array, values: Parameters) -> Array | None:
+    """The angle [rad] (..., 1, n) that the integer unit returns for the converter's codes of the channels."""
+    unit = unit_of(values)
+    if unit is None:
+        return None
+    codes = codes_of(channels, unit.word_bits)
+    words, _ = bit_true.vectoring(codes[..., :1, :], codes[..., 1:, :], unit)
+    return angle_rad(words, unit.angle_bits)
+
+
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    if rng is not None and unit_of(values) is not None:
+        return signal  # The integer unit has computed it.
     iterations = np.asarray(values["iterations"])
     if iterations.size == 1:
         count = int(iterations.ravel()[0])
@@ -39,8 +62,9 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 
 def attainable(values: Parameters) -> Array:
-    """All angles [rad], sorted in [-pi, pi), that this many iterations can return."""
-    steps = np.arctan(2.0 ** -np.arange(int(values["iterations"]), dtype=np.float64))
+    """All angles [rad], sorted in [-pi, pi), that this many iterations can return; each step a whole word where so."""
+    unit, count = unit_of(values), int(np.ravel(values["iterations"])[0])
+    steps = np.arctan(2.0 ** -np.arange(count, dtype=np.float64)) if unit is None else angle_rad(unit.steps, unit.angle_bits)
     angles = np.zeros(1)
     for step in steps:
         angles = np.concatenate([angles + step, angles - step])
@@ -61,6 +85,10 @@ def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str,
     return {"iterations": np.clip(np.round(1.0 - np.log2(np.sqrt(3.0) * radians(strength_deg))), 5, 14)}
 
 
+def _words(null: int, doc: str, *, lower: int, upper: int) -> Param:
+    return Param(unit="bit", null=null, lower=lower, upper=upper, doc=doc, role="shape", counts=True)
+
+
 CORDIC_TRUNCATION = Effect(
     name="cordic_truncation",
     stage="cordic",
@@ -74,9 +102,13 @@ CORDIC_TRUNCATION = Effect(
             doc="vectoring iterations; 0: exact",
             role="level",
             counts=True,
-        )
+        ),
+        "word_bits": _words(0, "of the codes that it takes; 0: unbounded", lower=0, upper=32),
+        "guard_bits": _words(3, "more in its data path", lower=0, upper=24),
+        "angle_bits": _words(18, "of the angle's register", lower=4, upper=48),
     },
     forward=forward,
+    computes=computes,
     footprint="values",
     attainable=attainable,
     stair=stair,

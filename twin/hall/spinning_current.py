@@ -9,18 +9,20 @@ two, and the mean over a cycle is the filter. What remains is what differs betwe
 Sources: P. J. A. Munter, Sensors and Actuators A 22 (1990) 743 (spinning current); R. S. Popovic, Hall Effect
 Devices, 2nd ed., 2004, chapter 5 (offset of 1 to 50 mT before, 1/f noise of Hall plates); A. Bilotti et al., IEEE
 J. Solid-State Circuits 32 (1997) 829 (two quadrature phases with a chopper and synchronous demodulation).
-The defaults are typical assumptions.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from twin.angles import Array
 from twin.limits import require_within
 
+NOMINAL_C = 25.0
+"""Temperature at which the sensitivity is stated [C]."""
 PHASES = 4
 SIGNAL_SIGN = np.array([1.0, -1.0, 1.0, -1.0])
 """Sign of the Hall voltage at the amplifier in each phase; the demodulator multiplies by the same."""
@@ -32,7 +34,7 @@ CURRENT_SIGN = np.array([1.0, 1.0, -1.0, -1.0])
 
 @dataclass(frozen=True, kw_only=True)
 class Plate:
-    """A Hall plate with its biasing and amplifier; voltages in uV at the amplifier's input.
+    """A Hall plate with its biasing and amplifier; voltages in uV at the amplifier's input. By default it is ideal.
 
     ``sensitivity_uV_per_mT``     at 25 C; ``percent_per_K`` is its drift
     ``offset_uV``                 of the plate (bridge asymmetry), the same in all phases
@@ -47,14 +49,14 @@ class Plate:
     """
 
     sensitivity_uV_per_mT: float = 100.0
-    percent_per_K: float = 0.05
-    offset_uV: float = 1000.0
-    asymmetry: float = 2e-3
-    thermal_uV: float = 5.0
-    amplifier_offset_uV: float = 500.0
-    white_nV: float = 20.0
+    percent_per_K: float = 0.0
+    offset_uV: float = 0.0
+    asymmetry: float = 0.0
+    thermal_uV: float = 0.0
+    amplifier_offset_uV: float = 0.0
+    white_nV: float = 0.0
     corner_Hz: float = 10e3
-    settling_s: float = 0.2e-6
+    settling_s: float = 0.0
     blanking: float = 0.5
     phase_s: float = 5e-6
     samples: int = 8
@@ -73,13 +75,31 @@ class Plate:
         require_within("samples", self.samples, 2, 1024, whole=True)
 
     @property
+    def ideal(self) -> bool:
+        """Whether its output is the field: nothing is left after spinning, and nothing follows the temperature."""
+        steady = self.asymmetry * self.offset_uV == self.percent_per_K == self.white_nV == self.settling_s == 0.0
+        return steady
+
+    @property
     def cycle_Hz(self) -> float:
         """Cycles per second: the rate of the output."""
         return 1.0 / (PHASES * self.phase_s)
 
-    def sensitivity_at(self, temperature_c: float) -> float:
-        """Sensitivity [uV/mT] at this temperature, linear about 25 C."""
-        return self.sensitivity_uV_per_mT * (1.0 + 0.01 * self.percent_per_K * (temperature_c - 25.0))
+    def sensitivity_at(self, temperature_c: Array | float) -> Any:
+        """Sensitivity [uV/mT] at this temperature (any shape), linear about 25 C."""
+        return self.sensitivity_uV_per_mT * (1.0 + 0.01 * self.percent_per_K * (temperature_c - NOMINAL_C))
+
+
+TYPICAL = Plate(
+    percent_per_K=0.05,
+    offset_uV=1000.0,
+    asymmetry=2e-3,
+    thermal_uV=5.0,
+    amplifier_offset_uV=500.0,
+    white_nV=20.0,
+    settling_s=0.2e-6,
+)
+"""Typical assumptions, of the size of the sources' figures."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,29 +114,34 @@ class Spinning:
     unspun_mT: Array
 
 
-def spin(field_mT: Array, plate: Plate, rng: np.random.Generator | None = None, *, temp_c: float = 25.0) -> Spinning:
-    """Run the plate on a vertical field (cycles,) [mT]; without a generator there is no noise.
+def spin(
+    field_mT: Array, plate: Plate, rng: np.random.Generator | None = None, *, temp_c: Array | float = NOMINAL_C
+) -> Spinning:
+    """Run the plate on a vertical field (cycles,) [mT] at a temperature (or one a cycle); without ``rng`` no noise acts.
 
+    The plate cycles all the time and the field is steady over a cycle, so each cycle begins settled from a last phase
+    like its own, however long ago the reading before was. The output is counted with the sensitivity at 25 C.
     ``unspun_mT`` is what the same plate gives with its bias left in phase 0: the offset and noise before spinning.
     """
     cycles = field_mT.size
     shape = (cycles, PHASES, plate.samples)
-    sensitivity = plate.sensitivity_at(temp_c)
-    hall = sensitivity * field_mT[:, None] * SIGNAL_SIGN
+    nominal = plate.sensitivity_at(NOMINAL_C)
+    hall = (plate.sensitivity_at(temp_c) * field_mT)[:, None] * SIGNAL_SIGN
     # The axis at 90 degrees (the second and fourth phase) sees an offset that differs a little.
     offset = plate.offset_uV * (1.0 + plate.asymmetry * np.array([0.5, -0.5, 0.5, -0.5]))
     thermal = plate.thermal_uV * SIGNAL_SIGN * CURRENT_SIGN
     steady = hall + offset + thermal
     # After each switching the voltage settles from that of the phase before.
-    before = np.roll(steady.ravel(), 1).reshape(steady.shape)
-    before[0, 0] = steady[0, 0]
+    before = np.roll(steady, 1, axis=1)
     elapsed = (np.arange(plate.samples) + 0.5) / plate.samples * plate.phase_s
     held = elapsed >= plate.blanking * plate.phase_s
     decay = np.exp(-elapsed / plate.settling_s) if plate.settling_s > 0.0 else np.zeros(plate.samples)
     at_plate = steady[..., None] + (before - steady)[..., None] * decay
     rate = plate.samples / plate.phase_s
     noise = (
-        np.zeros(shape) if rng is None else flicker(rng, cycles * PHASES * plate.samples, rate, plate).reshape(shape)
+        np.zeros(shape)
+        if rng is None or plate.white_nV == 0.0
+        else flicker(rng, cycles * PHASES * plate.samples, rate, plate).reshape(shape)
     )
     amplified = at_plate + plate.amplifier_offset_uV + noise
     demodulated = amplified * SIGNAL_SIGN[:, None]
@@ -125,17 +150,15 @@ def spin(field_mT: Array, plate: Plate, rng: np.random.Generator | None = None, 
         plate_uV=at_plate,
         amplified_uV=amplified,
         demodulated_uV=demodulated,
-        output_mT=demodulated[..., held].mean(axis=(1, 2)) / sensitivity,
-        unspun_mT=field_mT
-        + (offset[0] + thermal[0] + plate.amplifier_offset_uV + noise[..., held].mean(axis=(1, 2))) / sensitivity,
+        output_mT=demodulated[..., held].mean(axis=(1, 2)) / nominal,
+        unspun_mT=(steady[:, 0] + plate.amplifier_offset_uV + noise[..., held].mean(axis=(1, 2))) / nominal,
     )
 
 
 def residual_offset_mT(plate: Plate) -> tuple[float, float]:
-    """Offset before and after spinning [mT], from a run without field and noise."""
-    quiet = spin(np.zeros(2), plate)
-    # The first cycle starts settled; the second is like all that follow.
-    return float(quiet.unspun_mT[1]), float(quiet.output_mT[1])
+    """Offset before and after spinning [mT], from a cycle without field and noise."""
+    quiet = spin(np.zeros(1), plate)
+    return float(quiet.unspun_mT[0]), float(quiet.output_mT[0])
 
 
 def flicker(rng: np.random.Generator, count: int, rate_Hz: float, plate: Plate) -> Array:

@@ -55,7 +55,7 @@ class Linear:
         self.slopes = slopes
         self.motion = chain.shaft(recorded)
         self.observables = observables
-        self._order = {effect.name: place for place, effect in enumerate(chain.effects)}
+        self._order = chain.places()
         self._points: list[tuple[float, Insertion]] = []
         self.stair_variance: Array | None = None
         self._run(blur)

@@ -56,10 +56,10 @@ def _behind_stairs(fit: Fit, noise: Array) -> Array:
     signal = (linear.sensor_angle + noise)[:, None]
     if stepped:
         # The channels' stairs want the noise ahead of them.
-        place = [effect.name for effect in chain.effects].index(NOISE.name)
+        places = chain.places()
         signal = turned(linear.at(find(NOISE.name, chain.effects)).signal, noise)
         for _, effect, values in chain.active("channels"):
-            if chain.effects.index(effect) > place:
+            if places[effect.name] > places[NOISE.name]:
                 signal = effect.forward(signal, linear.motion, values, None)
         signal = np.arctan2(signal[:, 1:], signal[:, :1])
     for _, effect, values in chain.active("angle"):

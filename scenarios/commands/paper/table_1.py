@@ -9,7 +9,8 @@ import numpy as np
 from scenarios.commands.paper.held import Held
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain
-from twin.cordic.bit_true import Cordic, angle_rad, codes_of, vectoring
+from twin.adc.adc_quantisation import codes_of
+from twin.cordic.bit_true import Cordic, angle_rad, vectoring
 from twin.hall.gain_mismatch import GAIN_MISMATCH
 from twin.hall.offset import OFFSET
 from twin.hall.phase import PHASE

@@ -18,6 +18,7 @@ from twin.magnet.field import Series, basis, series_by_group
 from twin.magnet.placement import Placement, designs_of
 from twin.mechanics.zero import ZERO
 from twin.motion import Motion
+from twin.parts import Parts
 
 TOLERANCE = 1e-7
 """Of the field's series, relative to the smallest |B|: 6e-6 deg."""
@@ -149,14 +150,17 @@ def errors_deg(chain: Chain, designs: Designs, motion: Motion) -> Array:
 
 def cause_errors(chain: Chain, designs: Designs, motion: Motion) -> Iterator[tuple[str, Array]]:
     """Cause and its error alone (designs, n) [deg]: the magnet's field first, then each effect on an ideal field."""
-    bare = replace(chain, values={}, magnet=designs)
+    bare = replace(chain, values={}, magnet=designs, parts=Parts())
     yield "field", _zeroed(bare.error(motion), motion)
+    for name in [part.name for part in chain.described]:
+        described = replace(chain, values={}, magnet=designs, parts=chain.parts.only(name))
+        yield name, _zeroed(described.error(motion) - bare.error(motion), motion)
     for key, params in scaled_values(chain, designs).items():
         effect = find(key, chain.effects)
         # Taken off like the zero, or no part of an expected reading.
         if effect is ZERO or effect.footprint == "spread":
             continue
-        alone = replace(chain, values={key: params}, magnet=None)
+        alone = replace(chain, values={key: params}, magnet=None, parts=Parts())
         error = np.broadcast_to(alone.error(motion), (designs.count, len(motion)))
         yield key, _zeroed(error, motion)
 

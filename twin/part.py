@@ -1,0 +1,36 @@
+"""A described part as an operation on the chain's signals: it has no parameter to fit, its description is its value."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from twin.angles import Array
+from twin.effect import Effect, Forward, Parameters
+from twin.motion import Motion
+
+SEEN_IN_MIRROR = np.array([[1.0], [-1.0]])
+"""What a mirror along the x axis does to the channels."""
+
+
+def part(name: str, stage: str, forward: Forward, source: str) -> Effect:
+    """A part that acts on the channels (..., 2, n) of nominal amplitude 1, ahead of the effects of its stage."""
+    return Effect(
+        name=name, stage=stage, acts_on="channels", params={}, forward=forward, source=source, signature="as described"
+    )
+
+
+def in_mirror(given: Effect) -> Effect:
+    """The part in a chain that counts the other way on both sides and reads the same."""
+
+    def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+        return SEEN_IN_MIRROR * given.forward(SEEN_IN_MIRROR * signal, motion, values, rng)
+
+    return part(given.name, given.stage, forward, given.source)
+
+
+def per_design(value: Any) -> Array:
+    """A number, or one for each design (designs,), as it multiplies signals (..., 2, n)."""
+    array = np.asarray(value, dtype=np.float64)
+    return array[:, None, None] if array.ndim == 1 else array

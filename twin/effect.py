@@ -98,6 +98,12 @@ class Param:
     mirror : {-1, 0, 1}, optional
         What it is multiplied by in the mirrored chain (see :meth:`Effect.mirrored`); 0: no value of it reads the same
         there. Not given: what follows from its role and from the signal that the effect acts on.
+    trial : float
+        The size at which a search tries a strength whose change of the signal grows faster than itself, so that what
+        is plain in proportion may be another cause's; 0: small enough to be in proportion.
+    prior_sd : float
+        For a shape that a fit moves: standard deviation of what is known of it before any sweep; 0: anything goes. One
+        that a sweep does not show then stays where the search set out, and its interval says so.
     scatter : float
         Half width of the range over which devices of one kind differ in it.
     """
@@ -114,6 +120,8 @@ class Param:
     field_power: float = 0.0
     distance_power: Callable[[Parameters], float] | None = None
     mirror: Literal[-1, 0, 1] | None = None
+    trial: float = 0.0
+    prior_sd: float = 0.0
     scatter: float = 0.0
 
     def __post_init__(self) -> None:
@@ -267,6 +275,8 @@ class Effect:
         For a stage that computes the angle: from the channels (..., 2, n) and its parameters to the angle [rad]
         (..., 1, n) as its integers return it, or None where the parameters do not say how it is built. Where they do, a
         run as built has this in place of the arctangent and of `forward`.
+    at_magnet : callable, optional
+        From a described magnet (:class:`twin.magnet.assembly.Assembly`) to the same effect in that magnet's field.
     repeatable : bool
         Whether a second instance beside the first makes sense: another source with parameters of its own.
     record_wide : bool
@@ -309,6 +319,7 @@ class Effect:
     output_grid: bool = False
     marks: Marks | None = None
     computes: Callable[[Array, Parameters], Array | None] | None = None
+    at_magnet: Callable[[Any], Effect] | None = None
     repeatable: bool = False
     record_wide: bool = False
     handicap: float = 0.0

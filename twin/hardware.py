@@ -113,7 +113,9 @@ def behind(steps: Iterable[Step], stage: str) -> Array:
     signal: Array | None = None
     for step in steps:
         if step.key == "after field" or (
-            signal is not None and step.effect is not None and step.effect.acts_on == "channels"
+            signal is not None
+            and step.effect is not None
+            and step.effect.acts_on == "channels"
             and STAGES.index(step.effect.stage) <= last
         ):
             signal = step.after

@@ -37,7 +37,8 @@ def run_command(twin: str, folder: Path, *, effect_files: Sequence[Path] = (), f
     for axis, plate in zip("xy", chain.parts.plates, strict=True):
         before, after = residual_offset_mT(plate)
         print(f"plate {axis}: offset {before:.4g} mT before spinning, {after:.4g} mT after it")
-    print(f"field in the plane {chain.nominal_mT:.4g} mT; {int(signals.sound.sum())} sound frames of {signals.bits} bit")
+    bits = signals.bits
+    print(f"field in the plane {chain.nominal_mT:.4g} mT; {int(signals.sound.sum())} sound frames of {bits} bit")
     print(f"largest error {np.max(np.abs(columns['error_deg'])):.4g} deg")
     files.tell_written()
 

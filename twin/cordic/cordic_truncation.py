@@ -64,7 +64,11 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 def attainable(values: Parameters) -> Array:
     """All angles [rad], sorted in [-pi, pi), that this many iterations can return; each step a whole word where so."""
     unit, count = unit_of(values), int(np.ravel(values["iterations"])[0])
-    steps = np.arctan(2.0 ** -np.arange(count, dtype=np.float64)) if unit is None else angle_rad(unit.steps, unit.angle_bits)
+    steps = (
+        np.arctan(2.0 ** -np.arange(count, dtype=np.float64))
+        if unit is None
+        else angle_rad(unit.steps, unit.angle_bits)
+    )
     angles = np.zeros(1)
     for step in steps:
         angles = np.concatenate([angles + step, angles - step])

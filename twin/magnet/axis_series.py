@@ -144,8 +144,7 @@ def turn(path: Path, *, terms: int, orders: int) -> tuple[Array, Array]:
     """
     along = path.axis_taylor(2 * terms)
     k = np.arange(terms)
-    # (2k)! / (k! (k+1)! 4^k), with its sign.
-    weight = np.cumprod(np.concatenate([[1.0], -(k[1:] - 0.5) / (k[1:] + 1.0)]))[:, None]
+    weight = transverse_weights(terms)
     s, dz = along[0::2] * weight, along[1::2] * (weight * (2 * k[:, None] + 1))
     nodes = np.pi * (np.arange(orders + 1) + 0.5) / (orders + 1)
     sensor, magnet = np.abs(path.sensor), np.abs(path.magnet)
@@ -155,6 +154,12 @@ def turn(path: Path, *, terms: int, orders: int) -> tuple[Array, Array]:
     transform = np.cos(np.arange(orders + 1)[:, None] * nodes) * (2.0 / (orders + 1))
     transform[0] *= 0.5
     return _assembled(path, *(transform @ part for part in (inner, outer, vertical))), smallest
+
+
+def transverse_weights(terms: int) -> Array:
+    """(2k)! / (k! (k+1)! 4^k) with its sign (terms, 1): what the Taylor coefficients 2k on the axis are in S."""
+    k = np.arange(1, terms)
+    return np.cumprod(np.concatenate([[1.0], -(k - 0.5) / (k + 1.0)]))[:, None]
 
 
 def _horner(terms: Array, u: Array) -> Array:

@@ -183,22 +183,30 @@ def radius_nuisance(observations: Observations) -> list[Array]:
 
 
 def _priors(chain: Chain, free: tuple[Free, ...], observations: Observations, residual: Array) -> tuple[Array, Array]:
-    """Per-turn zeros scatter: each is held by the scatter of all, in units of the residual's RMS.
+    """What is known of parameters before the sweep, in units of the residual's RMS.
 
-    This makes the turns' zeros a random effect, so that an effect common to many turns (a direction) is not given
-    away to them, and it fixes their common part, which belongs to ``zero``.
+    Per-turn zeros scatter: each is held by the scatter of all. This makes them a random effect, so that an effect
+    common to many turns (a direction) is not given away to them, and it fixes their common part, which belongs to
+    ``zero``. A shape that its declaration gives a standard deviation is held by that about where it stands: it goes
+    where the readings send it, and what they do not tell has a finite interval.
     """
-    places = [k for k, f in enumerate(free) if f.turn is not None]
-    if not places:
-        return np.zeros(0), np.zeros((0 if not free else len(free), 0))
-    zeros = np.array([float(np.asarray(chain.values[free[k].key][free[k].name])[free[k].turn or 0]) for k in places])
-    spread = max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
-    unit = float(np.degrees(np.sqrt(np.mean(residual[observations.usable] ** 2))))
+    turns = [k for k, f in enumerate(free) if f.turn is not None]
+    known = [(k, find(f.key, chain.effects).params[f.name].prior_sd) for k, f in enumerate(free) if f.turn is None]
+    shapes = [(k, sd) for k, sd in known if sd > 0.0]
+    held = np.zeros(len(turns) + len(shapes))
+    jacobian = np.zeros((len(free), held.size))
+    if not held.size:
+        return held, jacobian
     # Whitened residuals are in radians: a prior of one sigma counts as one residual RMS.
-    strength = np.radians(unit) / spread
-    jacobian = np.zeros((len(free), len(places)))
-    jacobian[places, np.arange(len(places))] = strength
-    return -strength * zeros, jacobian
+    unit = float(np.sqrt(np.mean(residual[observations.usable] ** 2)))
+    if turns:
+        zeros = np.array([float(np.asarray(chain.values[free[k].key][free[k].name])[free[k].turn or 0]) for k in turns])
+        strength = unit / max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
+        held[: zeros.size] = -strength * zeros
+        jacobian[turns, np.arange(zeros.size)] = strength
+    for row, (k, sd) in enumerate(shapes, start=len(turns)):
+        jacobian[k, row] = unit / sd
+    return held, jacobian
 
 
 def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:

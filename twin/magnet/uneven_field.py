@@ -1,0 +1,120 @@
+"""A round magnet's field where it turns, reading by reading: cheap enough for a fit to move magnet and sensor.
+
+With z' along the magnet's axis, p' = x' + iy' off it and u = |p'|^2 the field is the gradient of x' S(u, z')
+(:mod:`twin.magnet.axis_series`). S is a polynomial in u and in the change of height that a tilt brings, so a
+displacement costs no field of a new design.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from twin.angles import Array
+from twin.magnet.assembly import Assembly
+from twin.magnet.axis_series import axis_taylor, transverse_weights
+
+TERMS = 8
+"""In the squared distance from the axis, in radii: at half a radius the last adds less than 1e-5 of the field."""
+HEIGHTS = 4
+"""In the change of height: of 0.1 radii, which 5 deg bring at most half a radius off the axis, the last adds 1e-4."""
+
+Vector = tuple[Any, Any, Any]
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where sensor and magnet sit: displacements [mm] as complex numbers, tilts [rad] about x, then y.
+
+    The sensor's count in the stator, the magnet's in the shaft; see :mod:`twin.magnet.placement`. Numbers, or arrays
+    that broadcast against signals.
+    """
+
+    sensor: Any = 0.0
+    magnet: Any = 0.0
+    sensor_tilt: tuple[Any, Any] = (0.0, 0.0)
+    magnet_tilt: tuple[Any, Any] = (0.0, 0.0)
+
+    def __add__(self, other: Pose) -> Pose:
+        """Both displacements and tilts together; tilts are small, so their order does not count."""
+        return Pose(
+            self.sensor + other.sensor,
+            self.magnet + other.magnet,
+            (self.sensor_tilt[0] + other.sensor_tilt[0], self.sensor_tilt[1] + other.sensor_tilt[1]),
+            (self.magnet_tilt[0] + other.magnet_tilt[0], self.magnet_tilt[1] + other.magnet_tilt[1]),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class UnevenField:
+    """The field of one round magnet about its place over the sensor, relative to that on the axis."""
+
+    assembly: Assembly
+
+    @property
+    def radius_mm(self) -> float:
+        """Outer radius of the magnet."""
+        return 0.5 * float(self.assembly.magnet.diameter_mm)
+
+    @cached_property
+    def height(self) -> float:
+        """Of the sensor over the magnet's centre, in radii."""
+        return float(self.assembly.distance_mm) / self.radius_mm
+
+    @cached_property
+    def terms(self) -> Array:
+        """S over its value on the axis, as coefficients (TERMS, HEIGHTS) of powers of u and of the change of height."""
+        magnet = self.assembly.magnet
+        half = 0.5 * float(magnet.height_mm) / self.radius_mm
+        bore = 0.5 * float(magnet.bore_mm) / self.radius_mm if magnet.shape == "ring" else 0.0
+        place = (np.array([value]) for value in (half, self.height, bore))
+        along = axis_taylor(*place, 2 * TERMS + HEIGHTS)[:, 0]
+        # The Taylor coefficient n of the field on the axis, some way up, is a binomial sum of those here.
+        order, up = 2 * np.arange(TERMS)[:, None], np.arange(HEIGHTS)
+        binomial = np.cumprod(np.concatenate([np.ones((TERMS, 1)), (order + up[1:]) / up[1:]], axis=1), axis=1)
+        found = transverse_weights(TERMS) * binomial * along[order + up]
+        return np.asarray(found / found[0, 0])
+
+    def of(self, turn: Any, pose: Pose) -> Array:
+        """Bx + i By in the sensor's axes at the field angles whose unit vectors are ``turn``, over B on the axis."""
+        away = (pose.sensor * np.conj(turn) - pose.magnet) / self.radius_mm
+        inside = _back((away.real, away.imag, self.height), pose.magnet_tilt)
+        x, y, z = _tilted(self._gradient(inside), pose.magnet_tilt)
+        plane = turn * (x + 1j * y)
+        x, y, _ = _back((plane.real, plane.imag, z), pose.sensor_tilt)
+        return np.asarray(x + 1j * y)
+
+    def _gradient(self, point: Vector) -> Vector:
+        """Of x S(u, z), in the magnet's frame."""
+        x, y, z = point
+        square, up = x * x + y * y, z - self.height
+        power, rise = np.arange(TERMS)[1:, None], np.arange(HEIGHTS)[1:]
+        value = _horner(self.terms, square, up)
+        slope = _horner(self.terms[1:] * power, square, up)
+        return value + 2.0 * x * x * slope, 2.0 * x * y * slope, x * _horner(self.terms[:, 1:] * rise, square, up)
+
+
+def _horner(terms: Array, square: Any, up: Any) -> Any:
+    """The polynomial with these coefficients (powers of square, powers of up)."""
+    if np.ndim(up) == 0 and up == 0.0:
+        return np.polynomial.polynomial.polyval(square, terms[:, 0])
+    return np.polynomial.polynomial.polyval2d(*np.broadcast_arrays(square, up), terms)
+
+
+def _tilted(vector: Vector, tilt: tuple[Any, Any]) -> Vector:
+    """Turned about x, then about the fixed y axis."""
+    x, y, z = vector
+    (c, s), (d, t) = ((np.cos(angle), np.sin(angle)) for angle in tilt)
+    y, z = c * y - s * z, s * y + c * z
+    return d * x + t * z, y, d * z - t * x
+
+
+def _back(vector: Vector, tilt: tuple[Any, Any]) -> Vector:
+    """The same the other way."""
+    x, y, z = vector
+    (c, s), (d, t) = ((np.cos(angle), np.sin(angle)) for angle in tilt)
+    x, z = d * x - t * z, d * z + t * x
+    return x, c * y + s * z, c * z - s * y

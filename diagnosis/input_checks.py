@@ -102,7 +102,8 @@ def as_twin(twin: TwinLike | None, *, effects: tuple[Effect, ...] | None = None)
     if twin is None:
         return None
     if isinstance(twin, Chain):
-        return twin if effects is None else replace(twin, effects=effects)
+        chain = twin if effects is None else replace(twin, effects=effects)
+        return chain if chain.magnet is None else chain.with_magnet(chain.magnet)
     if not isinstance(twin, str | os.PathLike):
         raise UserError(
             f"twin is of the type {type(twin).__name__}; expected the path of a twin file, a preset's name, or a Chain"

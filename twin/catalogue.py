@@ -35,6 +35,11 @@ def in_order(effects: tuple[Effect, ...]) -> tuple[Effect, ...]:
 CATALOGUE: tuple[Effect, ...] = in_order(_DECLARED)
 
 
+def at_magnet(effects: tuple[Effect, ...], magnet: Any) -> tuple[Effect, ...]:
+    """The effects with those that act through the magnet's field in the field of a described one (an ``Assembly``)."""
+    return tuple(effect if effect.at_magnet is None else effect.at_magnet(magnet) for effect in effects)
+
+
 def base_name(key: str) -> str:
     """The name of the effect that an instance key belongs to: ``drive_ripple#2`` is a second ``drive_ripple``."""
     return key.split("#", 1)[0]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from twin.angles import Array, channels_of, wrap
-from twin.catalogue import ACTS_ON, CATALOGUE, STAGES, base_name, find
+from twin.catalogue import ACTS_ON, CATALOGUE, STAGES, at_magnet, base_name, find
 from twin.effect import ActsOn, Effect, Parameters
 from twin.known_names import nearest
 from twin.limits import OutOfRangeError
@@ -121,6 +121,21 @@ class Chain:
         merged = {**effect.null(), **self.values.get(key, {}), **params}
         return replace(self, values={**self.values, key: merged})
 
+    def with_magnet(self, magnet: Assembly) -> Chain:
+        """The chain driven by a magnet's computed field, in which its effects then act.
+
+        Parameters
+        ----------
+        magnet : Assembly
+            One magnet in one place.
+
+        Returns
+        -------
+        Chain
+            Another chain.
+        """
+        return replace(self, magnet=magnet, effects=at_magnet(self.effects, magnet))
+
     def with_values(self, values: Values) -> Chain:
         """The chain with several effects' parameters set, unchecked (a fit's inner loop)."""
         return replace(self, values={**self.values, **values})
@@ -163,15 +178,16 @@ class Chain:
         otherwise, and that is all by which an angle tells the two chains apart.
         """
         values = {key: find(key, self.effects).mirrored(params) for key, params in self.values.items()}
-        magnet = None if self.magnet is None else replace(self.magnet, placement=self.magnet.placement.mirrored())
-        return replace(
+        turned = replace(
             self,
             values=values,
-            magnet=magnet,
             parts=self.parts.in_mirror(),
             sensor_sense=-self.sensor_sense,
             output_sense=-self.output_sense,
         )
+        if self.magnet is None:
+            return turned
+        return turned.with_magnet(replace(self.magnet, placement=self.magnet.placement.mirrored()))
 
     # ---- running --------------------------------------------------------------------------------------------------
 
@@ -202,7 +218,7 @@ class Chain:
         return self.parts.acting(self.nominal_mT)
 
     def places(self) -> dict[str, float]:
-        """Where everything acts, by name: effects by their number, a part half a number ahead of its stage's effects."""
+        """Where everything acts, by name: effects by their number, a part half a number ahead of its stage's."""
         found = {effect.name: float(place) for place, effect in enumerate(self.effects)}
         for part in self.described:
             behind = (
@@ -244,7 +260,7 @@ class Chain:
         return self.magnet.channels(angle, motion)
 
     def computed(self, channels: Array, *, as_built: bool = False) -> Array:
-        """The angle [rad] (..., 1, n) of the channels: the arctangent, or as built what a stage that computes returns."""
+        """The angle [rad] (..., 1, n) of the channels: the arctangent, or as built what a stage computes."""
         for _, effect, values in self.active("angle") if as_built else ():
             if effect.computes is not None and (angle := effect.computes(channels, values)) is not None:
                 return angle

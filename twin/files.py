@@ -68,10 +68,12 @@ def from_dict(content: Mapping[str, Any], *, name: str = "twin", effects: tuple[
         sensor_sense=_sense(content, "sensor_sense", name=name),
         output_sense=_sense(content, "output_sense", name=name),
         effects=effects,
-        magnet=_table(content, "magnet", name=name),
         parts=_table(content, "hardware", name=name) or Parts(),
         encoder=_table(content, "reference", name=name),
     )
+    magnet = _table(content, "magnet", name=name)
+    if magnet is not None:
+        chain = chain.with_magnet(magnet)
     declared = content.get("effects", {})
     if not isinstance(declared, Mapping):
         raise TwinError(f"{name}: effects is {shown(declared)}; expected tables such as [effects.offset]")

@@ -60,7 +60,7 @@ class Parts:
         return plate, self.plate_y or plate
 
     def acting(self, nominal_mT: Any) -> tuple[Effect, ...]:
-        """The parts that are not ideal as operations on channels whose amplitude 1 stands for this field in the plane [mT].
+        """The parts that are not ideal as operations on channels whose amplitude 1 stands for this in-plane field [mT].
 
         ``nominal_mT`` may hold one number for each design (designs,).
         """
@@ -99,7 +99,7 @@ def parts_from(content: Any) -> Parts:
     if not isinstance(content, Mapping):
         raise OutOfRangeError(f"hardware is {shown(content)}; expected a table")
     kinds: dict[str, type[Disk] | type[Plate]] = {"disk": Disk, "plate": Plate, "plate_y": Plate}
-    described = {
+    described: dict[str, Any] = {
         key: from_table(kind, content[key], f"hardware.{key}") for key, kind in kinds.items() if key in content
     }
     plain = {key: value for key, value in content.items() if key not in kinds}
@@ -109,5 +109,5 @@ def parts_from(content: Any) -> Parts:
 def parts_table(parts: Parts) -> dict[str, Any]:
     """The [hardware] table of a twin file: what differs from the defaults, and every part that is described."""
     described = {key: getattr(parts, key) for key in ("disk", "plate", "plate_y")}
-    plain = to_table(replace(parts, **dict.fromkeys(described)))
+    plain = to_table(replace(parts, disk=None, plate=None, plate_y=None))
     return {**plain, **{key: to_table(part) for key, part in described.items() if part is not None}}

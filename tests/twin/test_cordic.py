@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from twin.angles import TAU, wrap
 from twin.adc.adc_quantisation import codes_of
+from twin.angles import TAU, wrap
 from twin.cordic.bit_true import Cordic, Table, angle_rad, look_up, vectoring
 from twin.cordic.cordic_truncation import vectoring as unbounded
 from twin.limits import OutOfRangeError

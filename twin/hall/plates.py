@@ -32,7 +32,7 @@ def expected_mT(field_mT: Array, plate: Plate, temp_c: Array | float) -> Array:
 
 
 def described(plates: tuple[Plate, Plate], vertical_mT: Any) -> Effect:
-    """Both plates as an operation on channels whose nominal amplitude 1 stands for ``vertical_mT`` (or one a design)."""
+    """Both plates as an operation on channels whose amplitude 1 stands for ``vertical_mT`` (or one a design)."""
     scale = per_design(vertical_mT)
 
     def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:

@@ -77,8 +77,7 @@ class Plate:
     @property
     def ideal(self) -> bool:
         """Whether its output is the field: nothing is left after spinning, and nothing follows the temperature."""
-        steady = self.asymmetry * self.offset_uV == self.percent_per_K == self.white_nV == self.settling_s == 0.0
-        return steady
+        return self.asymmetry * self.offset_uV == self.percent_per_K == self.white_nV == self.settling_s == 0.0
 
     @property
     def cycle_Hz(self) -> float:
@@ -117,7 +116,7 @@ class Spinning:
 def spin(
     field_mT: Array, plate: Plate, rng: np.random.Generator | None = None, *, temp_c: Array | float = NOMINAL_C
 ) -> Spinning:
-    """Run the plate on a vertical field (cycles,) [mT] at a temperature (or one a cycle); without ``rng`` no noise acts.
+    """Run the plate on a vertical field (cycles,) [mT] at a temperature, or one a cycle; without ``rng`` no noise.
 
     The plate cycles all the time and the field is steady over a cycle, so each cycle begins settled from a last phase
     like its own, however long ago the reading before was. The output is counted with the sensitivity at 25 C.

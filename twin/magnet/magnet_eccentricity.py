@@ -149,5 +149,5 @@ MAGNET_ECCENTRICITY = Effect(
     at_magnet=at_magnet,
     source="the field of a round magnet off its axis: Jackson, Classical Electrodynamics, 3rd ed., section 3.7; "
     "counted for 6 mm x 2.5 mm at 1.5 mm where no magnet is described",
-    signature="order 1, proportional to the product of both displacements: the same as reference_eccentricity and offset",
+    signature="order 1, with the product of both displacements: the same as reference_eccentricity and offset",
 )

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 
 from twin.angles import Array
@@ -16,6 +19,13 @@ FIELD_MT = 50.0
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     scale = 1.0 / values.get("field_mT", FIELD_MT)
     return add(signal, values["bx_mT"] * scale, values["by_mT"] * scale)
+
+
+def at_magnet(assembly: Any) -> Effect:
+    """The effect beside a described magnet (an ``Assembly``): its millitesla count against that magnet's field."""
+    known = STRAY_FIELD.params["field_mT"]
+    own = replace(known, null=float(np.clip(assembly.nominal_mT, known.lower, known.upper)))
+    return replace(STRAY_FIELD, params={**STRAY_FIELD.params, "field_mT": own})
 
 
 STRAY_FIELD = Effect(
@@ -37,6 +47,7 @@ STRAY_FIELD = Effect(
         ),
     },
     forward=forward,
+    at_magnet=at_magnet,
     needs=frozenset({"two air gaps"}),
     source="superposition of fields; a constant added to both channels ahead of the gains",
     signature="order 1: the same as offset",

@@ -70,8 +70,7 @@ class UnevenField:
         magnet = self.assembly.magnet
         half = 0.5 * float(magnet.height_mm) / self.radius_mm
         bore = 0.5 * float(magnet.bore_mm) / self.radius_mm if magnet.shape == "ring" else 0.0
-        place = (np.array([value]) for value in (half, self.height, bore))
-        along = axis_taylor(*place, 2 * TERMS + HEIGHTS)[:, 0]
+        along = axis_taylor(np.array([half]), np.array([self.height]), np.array([bore]), 2 * TERMS + HEIGHTS)[:, 0]
         # The Taylor coefficient n of the field on the axis, some way up, is a binomial sum of those here.
         order, up = 2 * np.arange(TERMS)[:, None], np.arange(HEIGHTS)
         binomial = np.cumprod(np.concatenate([np.ones((TERMS, 1)), (order + up[1:]) / up[1:]], axis=1), axis=1)
@@ -101,7 +100,8 @@ def _horner(terms: Array, square: Any, up: Any) -> Any:
     """The polynomial with these coefficients (powers of square, powers of up)."""
     if np.ndim(up) == 0 and up == 0.0:
         return np.polynomial.polynomial.polyval(square, terms[:, 0])
-    return np.polynomial.polynomial.polyval2d(*np.broadcast_arrays(square, up), terms)
+    square, up = np.broadcast_arrays(square, up)
+    return np.polynomial.polynomial.polyval2d(square, up, terms)
 
 
 def _tilted(vector: Vector, tilt: tuple[Any, Any]) -> Vector:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from scenarios.commands.paper.held import Held
+from twin.adc.adc_quantisation import codes_of
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain
-from twin.adc.adc_quantisation import codes_of
 from twin.cordic.bit_true import Cordic, angle_rad, vectoring
 from twin.hall.gain_mismatch import GAIN_MISMATCH
 from twin.hall.offset import OFFSET

@@ -359,6 +359,11 @@ class Effect:
         return TAU / self.attainable(values).size if self.stair is None else self.stair(values)
 
     @property
+    def whole(self) -> bool:
+        """Whether a search takes its change as it is at each level of its grid: it has no strength in proportion."""
+        return bool(self.roles("level")) and not self.roles("strength")
+
+    @property
     def zeroes_turns(self) -> bool:
         """Whether it gives the reference a zero of its own in each turn."""
         return self.acts_on == "reference" and bool(self.roles("per turn"))

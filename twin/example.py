@@ -74,7 +74,7 @@ def permuted(motion: Motion, order: np.ndarray[Any, Any]) -> Motion:
 def example_of(effect: Effect, motion: Motion) -> Example:
     """An example from the declaration alone: each strength at its typical size, shapes from the middle of their grid.
 
-    A level is taken where its grid is farthest from null: nearer it may do nothing yet.
+    A level is taken where its grid is farthest from null, as nearer it may do nothing yet; beside a strength it is null.
 
     Whether the effect has a memory is not declared, so that it is taken to have one.
     """
@@ -98,7 +98,7 @@ def example_of(effect: Effect, motion: Motion) -> Example:
             if not effect.roles("random"):
                 turns = int(motion.turn.max(initial=0)) + 1
                 strengths[name] = param.null + param.typical * np.where(np.arange(turns) % 3, 1.0, -0.5)
-        else:
+        elif param.role != "level" or effect.whole:
             strengths[name] = middle.get(name, _typical(param))
     return Example(strengths=strengths, shapes=shapes, memory=True)
 

@@ -109,12 +109,13 @@ def _notes(chain: Chain) -> tuple[str, ...]:
 def _moved_deg(step: Step, kind: str) -> Array:
     """What the operation did to the angle that the signal stands for [deg] (n,).
 
-    The conversion to channels moves it where a magnet's field is not the ideal one; the other conversions do not.
+    The conversion to channels moves it where a magnet's field is not the ideal one, that to an angle where a CORDIC on
+    integers makes it; the other conversions do not.
     """
-    if step.effect is None and kind != "field":
+    if step.effect is None and kind not in ("field", "channels"):
         return np.zeros(step.after.shape[-1])
     before = _angle(step.before, kind)
-    after = _angle(step.after, kind if step.effect else "channels")
+    after = _angle(step.after, kind if step.effect else {"field": "channels", "channels": "angle"}[kind])
     return np.asarray(np.degrees(wrap(after - before)))
 
 

@@ -118,22 +118,6 @@ def _play(motion: Motion, p: Params) -> Array:
     return out
 
 
-def _eccentric(motion: Motion, params: Mapping[str, float]) -> Array:
-    """To the second order in the displacements: the field is 1 + 2 c |p|^2 + c p^2, c = -a'' / (8 a) on the axis."""
-
-    def on_axis(gap_mm: float) -> float:
-        heights = np.array([gap_mm, gap_mm + 2.5]) / 3.0
-        return float(np.diff(heights / np.sqrt(1.0 + heights**2))[0])
-
-    near, here, far = (on_axis(1.5 + step) for step in (-0.01, 0.0, 0.01))
-    curvature = -(near - 2.0 * here + far) / 0.01**2 / (8.0 * here)
-    half, azimuth, phase = 0.5 * params["log_ratio"], _rad(params["azimuth_deg"]), _rad(params["phase_deg"])
-    size = np.sqrt(params["product_mm2"])
-    sensor, magnet = size * np.exp(half + 1j * azimuth), size * np.exp(-half + 1j * (phase - azimuth))
-    away = sensor * np.exp(-1j * motion.shaft_rad) - magnet
-    return np.asarray(curvature * np.imag(away**2))
-
-
 def _misaligned(motion: Motion, p: Params) -> Array:
     """Second order of the cylinder's field about its axis, with r = d / R and S(u) = u / sqrt(1 + u^2):
 
@@ -194,11 +178,6 @@ EXAMPLES: dict[str, Example] = {
     ),
     "zero_drift": Example(strengths={"amplitude_deg": 0.5}, shapes={"time_constant_s": 5.0}, signature=_drift),
     # magnet
-    "magnet_eccentricity": Example(
-        strengths={"product_mm2": 0.05},
-        shapes={"phase_deg": 70.0, "azimuth_deg": 40.0, "log_ratio": 0.3},
-        signature=_eccentric,
-    ),
     "magnet_harmonic": Example(
         strengths=_LINE, shapes={**_PHASE, "order": 5.0}, signature=lambda m, p: line(m, p, p["order"])
     ),

@@ -18,6 +18,7 @@ from twin.magnet.field import field_mT, series_by_group
 from twin.magnet.magnet import Magnet
 from twin.magnet.materials import GRADES
 from twin.magnet.placement import Placement
+from twin.magnet.uneven_field import UnevenField
 from twin.motion import Motion
 
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 7)[:-1] + 0.1234
@@ -169,6 +170,61 @@ def test_the_effect_is_the_field_of_the_default_magnet() -> None:
     np.testing.assert_allclose(
         effect.error(TURN), placed(sensor_x_mm=0.5, sensor_tilt_y_deg=4.0).error(TURN), atol=1e-12
     )
+
+
+@pytest.mark.parametrize(
+    "tilts",
+    [{}, {"sensor_tilt_x_deg": -2.0, "sensor_tilt_y_deg": 3.0, "magnet_tilt_x_deg": 2.0, "magnet_tilt_y_deg": -3.0}],
+)
+def test_with_the_magnet_off_the_axis_too_the_effect_is_its_field(tilts: dict[str, float]) -> None:
+    sensor, magnet = 0.4 * np.exp(0.5j), 0.2 * np.exp(1.2j)
+    seen = placed(
+        sensor_x_mm=sensor.real, sensor_y_mm=sensor.imag, magnet_x_mm=magnet.real, magnet_y_mm=magnet.imag, **tilts
+    )
+    # The effect counts the displacement of the magnet's field, which its tilts displace too.
+    shifts = UnevenField(Assembly()).shift_of_tilt_mm
+    tilt_deg = [tilts.get(f"magnet_tilt_{axis}_deg", 0.0) for axis in "xy"]
+    shown = magnet + np.dot(shifts, np.radians(tilt_deg))
+    effect = Chain(magnet=Assembly()).with_effect(
+        "magnet_misalignment",
+        product_mm2=abs(sensor * shown),
+        log_ratio=np.log(abs(sensor / shown)),
+        direction_deg=np.degrees(0.5),
+        phase_deg=np.degrees(0.5 - np.angle(shown)),
+        **tilts,
+    )
+    added = effect.channels(TURN) - Chain(magnet=Assembly()).channels(TURN)
+    assert np.max(np.abs(added)) > 0.005
+    # Tilts alone act through the chain's magnet; the effect adds what they do with the displacements. The magnet's own
+    # place is then that of a centred sensor, tilted, whose field is even: it turns rigidly.
+    still = placed(magnet_x_mm=(magnet - shown).real, magnet_y_mm=(magnet - shown).imag, **tilts)
+    # Of 0.1 radii of height, which the tilts bring, four terms leave out 1e-6 of the field.
+    np.testing.assert_allclose(added, seen.channels(TURN) - still.channels(TURN), atol=1e-6)
+
+
+def test_a_tilt_of_the_magnet_shows_as_a_displacement() -> None:
+    """What an offset cannot do, order 1 of the size of the field less that of its angle, is the same from both."""
+
+    def beside_an_offset(**place: float) -> complex:
+        x, y = placed(sensor_x_mm=0.01, **place).channels(TURN)
+        field = np.log((x + 1j * y) * np.exp(-1j * TURN.shaft_rad))
+        return complex(2.0 * np.mean((field.real - 1j * field.imag) * np.exp(1j * TURN.shaft_rad)))
+
+    tilt_deg = 0.1
+    for axis, shift in zip("xy", UnevenField(Assembly()).shift_of_tilt_mm, strict=True):
+        moved = shift * np.radians(tilt_deg)
+        tilted = beside_an_offset(**{f"magnet_tilt_{axis}_deg": tilt_deg})
+        shifted = beside_an_offset(magnet_x_mm=moved.real, magnet_y_mm=moved.imag)
+        # The next order is a tilt's 2e-3 of it, and the displacement's share of the radius, 5e-3.
+        assert abs(tilted - shifted) < 0.01 * abs(shifted)
+
+
+def test_half_a_turn_of_both_displacements_changes_nothing() -> None:
+    one, other = (
+        Chain().with_effect("magnet_misalignment", product_mm2=0.1, direction_deg=direction, phase_deg=70.0)
+        for direction in (25.0, -155.0)
+    )
+    np.testing.assert_allclose(one.channels(TURN), other.channels(TURN), atol=1e-12)
 
 
 def test_a_weaker_hot_magnet_meets_the_same_offset() -> None:

@@ -7,12 +7,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from twin.hall.spinning_current import Plate, corner_and_error, corner_of, density, flicker, residual_offset_mT, spin
+from twin.hall.spinning_current import (
+    TYPICAL,
+    corner_and_error,
+    corner_of,
+    density,
+    flicker,
+    residual_offset_mT,
+    spin,
+)
 from twin.limits import OutOfRangeError
 
 
 def test_a_symmetric_plate_has_no_offset_left() -> None:
-    plate = Plate(asymmetry=0.0, settling_s=0.0)
+    plate = replace(TYPICAL, asymmetry=0.0, settling_s=0.0)
     before, after = residual_offset_mT(plate)
     # Plate, thermoelectric and amplifier: (1000 + 5 + 500) uV over 100 uV/mT.
     assert before == pytest.approx(15.05, rel=1e-9)
@@ -20,15 +28,15 @@ def test_a_symmetric_plate_has_no_offset_left() -> None:
 
 
 def test_what_is_left_is_the_difference_between_the_phases() -> None:
-    plate = Plate(settling_s=0.0)
+    plate = replace(TYPICAL, settling_s=0.0)
     _, after = residual_offset_mT(plate)
     assert after == pytest.approx(0.5 * plate.asymmetry * plate.offset_uV / plate.sensitivity_uV_per_mT, rel=1e-9)
-    before, after = residual_offset_mT(Plate())
+    before, after = residual_offset_mT(TYPICAL)
     assert abs(after) < 0.001 * abs(before)
 
 
 def test_one_current_sense_alone_keeps_the_thermoelectric_voltage() -> None:
-    traced = spin(np.zeros(2), Plate(asymmetry=0.0, settling_s=0.0))
+    traced = spin(np.zeros(2), replace(TYPICAL, asymmetry=0.0, settling_s=0.0))
     forth = traced.demodulated_uV[1, :2].mean()
     back = traced.demodulated_uV[1, 2:].mean()
     assert forth == pytest.approx(5.0)
@@ -36,7 +44,7 @@ def test_one_current_sense_alone_keeps_the_thermoelectric_voltage() -> None:
 
 
 def test_the_field_passes_and_the_sensitivity_drifts() -> None:
-    plate = Plate(asymmetry=0.0, settling_s=0.0)
+    plate = replace(TYPICAL, asymmetry=0.0, settling_s=0.0)
     field = np.array([0.0, 10.0, -20.0])
     np.testing.assert_allclose(spin(field, plate).output_mT, field, atol=1e-9)
     hot = spin(field, plate, temp_c=125.0)
@@ -45,7 +53,7 @@ def test_the_field_passes_and_the_sensitivity_drifts() -> None:
 
 def test_slow_settling_costs_gain() -> None:
     # The phases change the Hall voltage's sign: what settles from the phase before comes off twice.
-    plate = Plate(asymmetry=0.0, thermal_uV=0.0, settling_s=1e-6, blanking=0.0, samples=256)
+    plate = replace(TYPICAL, asymmetry=0.0, thermal_uV=0.0, settling_s=1e-6, blanking=0.0, samples=256)
     gain = spin(np.full(4, 1.0), plate).output_mT[-1]
     lost = 2.0 * plate.settling_s / plate.phase_s * (1.0 - np.exp(-plate.phase_s / plate.settling_s))
     assert gain == pytest.approx(1.0 - lost, rel=1e-3)
@@ -54,7 +62,7 @@ def test_slow_settling_costs_gain() -> None:
 
 
 def test_noise_has_the_stated_density() -> None:
-    plate = Plate()
+    plate = TYPICAL
     rate = 1e6
     frequency, power = density(flicker(np.random.default_rng(2), 1 << 18, rate, plate), rate, segments=255)
     stated = (1e-3 * plate.white_nV) ** 2 * (1.0 + plate.corner_Hz / frequency)
@@ -64,7 +72,7 @@ def test_noise_has_the_stated_density() -> None:
 
 
 def test_a_corner_scatters_as_its_error_says() -> None:
-    plate, rate = Plate(), 2e5
+    plate, rate = TYPICAL, 2e5
     drawn = [
         corner_and_error(*density(flicker(np.random.default_rng(seed), 1 << 15, rate, plate), rate))
         for seed in range(40)
@@ -76,7 +84,7 @@ def test_a_corner_scatters_as_its_error_says() -> None:
 
 
 def test_spinning_moves_the_corner_and_leaves_the_white_noise() -> None:
-    plate = Plate()
+    plate = TYPICAL
     noisy = spin(np.zeros(1 << 14), plate, np.random.default_rng(1))
     before, after = (density(values, plate.cycle_Hz) for values in (noisy.unspun_mT, noisy.output_mT))
     # Leaving out half of the samples doubles the white noise of the output, not the slow 1/f noise; the mean over a
@@ -91,10 +99,10 @@ def test_spinning_moves_the_corner_and_leaves_the_white_noise() -> None:
 
 
 def test_same_seed_same_bytes() -> None:
-    one, two = (spin(np.zeros(8), Plate(), np.random.default_rng(3)).output_mT for _ in range(2))
+    one, two = (spin(np.zeros(8), TYPICAL, np.random.default_rng(3)).output_mT for _ in range(2))
     assert one.tobytes() == two.tobytes()
 
 
 def test_refuses_by_name_value_and_range() -> None:
     with pytest.raises(OutOfRangeError, match=r"phase_s is -1 s; expected from 1e-09 to 1 s"):
-        replace(Plate(), phase_s=-1.0)
+        replace(TYPICAL, phase_s=-1.0)

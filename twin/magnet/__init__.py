@@ -1,8 +1,7 @@
 """The magnet: its field at the sensor and the orders its magnetisation adds."""
 
-from twin.magnet.magnet_eccentricity import MAGNET_ECCENTRICITY
 from twin.magnet.magnet_harmonic import MAGNET_HARMONIC
 from twin.magnet.magnet_misalignment import MAGNET_MISALIGNMENT
 from twin.magnet.stray_field import STRAY_FIELD
 
-EFFECTS = (MAGNET_ECCENTRICITY, MAGNET_HARMONIC, MAGNET_MISALIGNMENT, STRAY_FIELD)
+EFFECTS = (MAGNET_HARMONIC, MAGNET_MISALIGNMENT, STRAY_FIELD)

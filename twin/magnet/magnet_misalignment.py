@@ -1,21 +1,31 @@
-"""magnet_misalignment: a sensor off the shaft's axis or a tilted shaft senses a counter-rotating field component."""
+"""magnet_misalignment: sensor and magnet off the shaft's axis, or tilted, so that the sensor sees an uneven field."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from twin.angles import Array, channels_of, radians
 from twin.effect import Effect, Param, Parameters
+from twin.magnet.assembly import Assembly
 from twin.magnet.body_field import cylinder_components
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement
+from twin.magnet.uneven_field import Pose, UnevenField
 from twin.motion import Motion
 
 MAGNET = Magnet()
 AIR_GAP_MM = float(Placement().air_gap_mm)
 """The cylinder that millimetres and degrees are counted against where no magnet is described."""
+TOLERANCE_DEG = 2.0
+"""Standard deviation of a tilt before anything is known of it: a mounting that is off by more is seen."""
+WITHIN = 3.0
+"""Sensor and magnet are placed alike: neither is further off than the other by more than this, two times of three."""
+TURN_PER_MM2 = 0.07
+"""What a product of displacements turns the usual magnet's field by [rad/mm2]: twice its curvature S'(0) / S(0)."""
 
 
 def tensor(off_axis_mm: Array, tilt_deg: Array) -> tuple[Array, Array]:
@@ -33,8 +43,31 @@ def tensor(off_axis_mm: Array, tilt_deg: Array) -> tuple[Array, Array]:
     return np.asarray(along), g[:-1].reshape(tilt.shape)
 
 
-def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    along, across = tensor(np.asarray(values["off_axis_mm"]), np.asarray(values["tilt_deg"]))
+@dataclass(frozen=True, eq=False)
+class Misplaced:
+    """What the channels see of one magnet's field where sensor and magnet are off the axis."""
+
+    field: UnevenField
+
+    def __call__(self, signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+        sensed = _sensed(signal, values)
+        if not np.any(values["product_mm2"]):
+            return sensed
+        x, y = signal[..., :1, :], signal[..., 1:, :]
+        turn = (x + 1j * y) / np.maximum(np.hypot(x, y), 1e-300)
+        # Tilts alone turn no angle that offset, gain and phase do not: only what they do with a displacement counts.
+        still, moved = _poses(values, self.field.shift_of_tilt_mm)
+        still = pose_of(self.field.assembly.placement) + still
+        added = self.field.of(turn, still + moved) - self.field.of(turn, still)
+        return sensed + channels_of(added.real, added.imag)
+
+
+def _sensed(signal: Array, values: Parameters) -> Array:
+    """The channels of a sensor off the axis, or tilted, over a magnet on it."""
+    off_axis, tilt = np.asarray(values["off_axis_mm"]), np.asarray(values["tilt_deg"])
+    if not (np.any(off_axis) or np.any(tilt)):
+        return signal
+    along, across = tensor(off_axis, tilt)
     mean, half = 0.5 * (along + across), 0.5 * (along - across)
     twice = 2.0 * radians(values["direction_deg"])
     x, y = signal[..., :1, :], signal[..., 1:, :]
@@ -42,8 +75,68 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return channels_of((mean + c) * x + s * y, s * x + (mean - c) * y)
 
 
+def pose_of(placement: Placement) -> Pose:
+    """Where a placement has sensor and magnet."""
+    tilts = {
+        name: (np.radians(getattr(placement, f"{name}_x_deg")), np.radians(getattr(placement, f"{name}_y_deg")))
+        for name in ("sensor_tilt", "magnet_tilt")
+    }
+    sensor = complex(placement.sensor_x_mm, placement.sensor_y_mm)
+    return Pose(sensor, complex(placement.magnet_x_mm, placement.magnet_y_mm), **tilts)
+
+
+def _poses(values: Parameters, shift_of_tilt_mm: tuple[complex, complex]) -> tuple[Pose, Pose]:
+    """Where the sensor alone is off, with the tilts; and what is added where the magnet is off as well.
+
+    The magnet's displacement is that of its field at the sensor, which a tilt displaces too: so a tilt leaves the
+    product of the displacements alone, which is what a sweep shows.
+    """
+    tilts = {
+        name: (radians(values.get(f"{name}_x_deg", 0.0)), radians(values.get(f"{name}_y_deg", 0.0)))
+        for name in ("sensor_tilt", "magnet_tilt")
+    }
+    product, ratio = np.asarray(values["product_mm2"]), np.exp(np.asarray(values["log_ratio"]))
+    direction = radians(values["direction_deg"])
+    towards = np.exp(1j * direction)
+    # A product below zero is one above it half a turn on.
+    away = np.exp(1j * (direction - radians(values["phase_deg"]))) * np.sign(product)
+    size = np.sqrt(np.abs(product))
+    tilted = sum(shift * tilt for shift, tilt in zip(shift_of_tilt_mm, tilts["magnet_tilt"], strict=True))
+    alone = Pose(sensor=np.asarray(values["off_axis_mm"]) * towards, magnet=-tilted, **tilts)
+    return alone, Pose(sensor=size * np.sqrt(ratio) * towards, magnet=size / np.sqrt(ratio) * away)
+
+
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
-    return [{"off_axis_mm": float(shift)} for shift in np.linspace(0.1, 1.5, 15)]
+    # Half a turn of both displacements changes nothing.
+    return [
+        {"direction_deg": float(direction), "log_ratio": float(np.log(ratio))}
+        for ratio in (0.5, 1.0, 2.0)
+        for direction in np.arange(-90.0, 90.0, 30.0)
+    ]
+
+
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """Both displaced, alike, by what turns the field by the strength."""
+    return {
+        "off_axis_mm": np.zeros(strength_deg.size),
+        "tilt_deg": np.zeros(strength_deg.size),
+        "product_mm2": np.minimum(radians(strength_deg) / TURN_PER_MM2, 2.0),
+    }
+
+
+def at_magnet(assembly: Assembly) -> Effect:
+    """The effect in the field of a described magnet; a block's field has no such series, and the usual one is kept."""
+    if assembly.magnet.shape == "block":
+        return MAGNET_MISALIGNMENT
+    return replace(MAGNET_MISALIGNMENT, forward=Misplaced(UnevenField(assembly)))
+
+
+def _shape(unit: str, bound: float, doc: str, **about: Any) -> Param:
+    return Param(unit=unit, null=0.0, lower=-bound, upper=bound, doc=doc, role="shape", **about)
+
+
+def _tilt(doc: str, *, mirror: Any) -> Param:
+    return _shape("deg", 30.0, doc, typical=2.0, prior_sd=TOLERANCE_DEG, mirror=mirror)
 
 
 MAGNET_MISALIGNMENT = Effect(
@@ -63,20 +156,51 @@ MAGNET_MISALIGNMENT = Effect(
             role="level",
             typical=5.0,
         ),
-        "direction_deg": Param(
+        "direction_deg": _shape(
+            "deg",
+            360.0,
+            "displacement's, from the sensor's x",
+            typical=30.0,
+            prior_sd=180.0 / float(np.sqrt(12.0)),
+            mirror=-1,
+        ),
+        "product_mm2": Param(
+            unit="mm2",
+            null=0.0,
+            lower=0.0,
+            upper=2.0,
+            doc="sensor's displacement times that of the magnet's field, where both are off the axis",
+            typical=0.05,
+            # In an angle the plain part is an offset's: what is left is of higher order in the displacements.
+            trial=0.25,
+        ),
+        "phase_deg": Param(
             unit="deg",
             null=0.0,
             lower=-360.0,
             upper=360.0,
-            doc="displacement's, from the sensor's x",
+            doc="from the direction of the magnet's displacement to that of the sensor's",
             role="phase",
             mirror=-1,
         ),
+        "log_ratio": _shape("1", 4.0, "log of the sensor's over the magnet's displacement", prior_sd=np.log(WITHIN)),
+        "sensor_tilt_x_deg": _tilt("sensor's tilt about x, beside it", mirror=-1),
+        "sensor_tilt_y_deg": _tilt("sensor's tilt about y, beside it", mirror=1),
+        "magnet_tilt_x_deg": _tilt("magnet's tilt about x of the shaft", mirror=-1),
+        "magnet_tilt_y_deg": _tilt("magnet's tilt about y of the shaft", mirror=1),
     },
-    forward=forward,
+    forward=Misplaced(UnevenField(Assembly(MAGNET, Placement(air_gap_mm=AIR_GAP_MM)))),
+    needs=frozenset({"one turn"}),
     shapes=shapes,
-    needs=frozenset({"two air gaps"}),
-    source="field of a diametral cylinder off its axis: Caciagli et al., J. Magn. Magn. Mater. 456 (2018) 423; "
-    "counted for 6 mm x 2.5 mm at 1.5 mm, typical assumptions",
-    signature="order 2, quadratic in the displacement: the same as gain_mismatch + phase",
+    fitted_shapes=(
+        *("direction_deg", "log_ratio"),
+        *("sensor_tilt_x_deg", "sensor_tilt_y_deg", "magnet_tilt_x_deg", "magnet_tilt_y_deg"),
+    ),
+    drawing=drawing,
+    at_magnet=at_magnet,
+    source="field of a diametral cylinder off its axis: Caciagli et al., J. Magn. Magn. Mater. 456 (2018) 423; its "
+    "series: Jackson, Classical Electrodynamics, 3rd ed., section 3.7; counted for 6 mm x 2.5 mm at 1.5 mm where no "
+    "magnet is described, typical assumptions",
+    signature="sensor alone: order 2, quadratic in the displacement, the same as gain_mismatch + phase; with the "
+    "magnet: order 1, with the product of both, the same as offset + reference_eccentricity",
 )

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import TAU, Array
 from twin.magnet.assembly import Assembly
 from twin.magnet.axis_series import axis_taylor, transverse_weights
 
@@ -21,6 +21,9 @@ TERMS = 8
 """In the squared distance from the axis, in radii: at half a radius the last adds less than 1e-5 of the field."""
 HEIGHTS = 4
 """In the change of height: of 0.1 radii, which 5 deg bring at most half a radius off the axis, the last adds 1e-4."""
+
+_SMALL = 1e-3
+"""Displacement in radii, tilt in radians, for a derivative: the next order is that much smaller."""
 
 Vector = tuple[Any, Any, Any]
 
@@ -76,6 +79,28 @@ class UnevenField:
         binomial = np.cumprod(np.concatenate([np.ones((TERMS, 1)), (order + up[1:]) / up[1:]], axis=1), axis=1)
         found = transverse_weights(TERMS) * binomial * along[order + up]
         return np.asarray(found / found[0, 0])
+
+    @cached_property
+    def shift_of_tilt_mm(self) -> tuple[complex, complex]:
+        """Which displacements of the magnet [mm] show as its tilts about x and y [1/rad] do, to first order.
+
+        Off the axis by s, a displacement m of the magnet adds to the field what a constant would, and beside it
+        something to its size alone, with s times the conjugate of m: that is what an offset cannot do. A tilt adds the
+        like.
+        """
+        turn = np.exp(1j * TAU * np.arange(8) / 8.0)
+        away, small = _SMALL * self.radius_mm, _SMALL
+
+        def beside_an_offset(**magnet: Any) -> complex:
+            """Order 1 of the size less that of the angle; in a constant's field they are the same."""
+            fields = (np.log(self.of(turn, Pose(sign * away, **magnet)) / turn) for sign in (1.0, -1.0))
+            odd = 0.5 * np.subtract(*fields)
+            return complex(2.0 * np.mean((odd.real - 1j * odd.imag) * turn))
+
+        still, moved = beside_an_offset(), beside_an_offset(magnet=away)
+        tilted = (beside_an_offset(magnet_tilt=tilt) for tilt in ((small, 0.0), (0.0, small)))
+        x, y = (np.conj(away / small * (one - still) / (moved - still)) for one in tilted)
+        return complex(x), complex(y)
 
     def of(self, turn: Any, pose: Pose) -> Array:
         """Bx + i By in the sensor's axes at the field angles whose unit vectors are ``turn``, over B on the axis."""

@@ -168,7 +168,7 @@ class Linear:
         if effect.roles("per turn"):
             name = effect.roles("per turn")[0]
             return tuple(Term(name, turn=k) for k in range(1, int(self.motion.turn.max(initial=0)) + 1))
-        if effect.roles("level"):
+        if effect.whole:
             return (Term(effect.roles("level")[0]),)
         phases: tuple[float | None, ...] = (0.0, 90.0) if effect.roles("phase") else (None,)
         return tuple(Term(name, phase_deg=phase) for name in effect.roles("strength") for phase in phases)

@@ -335,7 +335,7 @@ def _parameters(effect: Effect, terms: tuple[Term, ...], coefficient: Array, mot
         zeros = np.zeros(len(terms) + 1)
         zeros[1:] = coefficient
         return {terms[0].param: zeros - zeros.mean()}
-    if effect.roles("level"):
+    if effect.whole:
         return {}
     names = effect.roles("strength")
     if not effect.roles("phase"):

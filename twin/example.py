@@ -74,7 +74,7 @@ def permuted(motion: Motion, order: np.ndarray[Any, Any]) -> Motion:
 def example_of(effect: Effect, motion: Motion) -> Example:
     """An example from the declaration alone: each strength at its typical size, shapes from the middle of their grid.
 
-    A level is taken where its grid is farthest from null, as nearer it may do nothing yet; beside a strength it is null.
+    A level is taken where its grid is farthest from null, as nearer it may do nothing; beside a strength it is null.
 
     Whether the effect has a memory is not declared, so that it is taken to have one.
     """

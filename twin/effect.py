@@ -104,6 +104,8 @@ class Param:
     prior_sd : float
         For a shape that a fit moves: standard deviation of what is known of it before any sweep; 0: anything goes. One
         that a sweep does not show then stays where the search set out, and its interval says so.
+    aside : bool
+        Whether an answer gives it only where it is not at null: a detail that no search sets.
     scatter : float
         Half width of the range over which devices of one kind differ in it.
     """
@@ -122,6 +124,7 @@ class Param:
     mirror: Literal[-1, 0, 1] | None = None
     trial: float = 0.0
     prior_sd: float = 0.0
+    aside: bool = False
     scatter: float = 0.0
 
     def __post_init__(self) -> None:

@@ -208,6 +208,8 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
             continue
         if param.role == "random" and name in derived:
             continue
+        if param.aside and values[name] == param.null:
+            continue
         value = float(values[name])
         half = _T95 * deviation.get((key, name), 0.0)
         if param.role == "phase":

@@ -13,29 +13,43 @@ from twin.cordic.bit_true import Cordic, angle_rad
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
+EXACT_BITS = 40
+"""Angle register where none is stated: longer than any that shows."""
+REGISTERS = (14, 16, 18, 20)
+"""Angle registers [bit] that a search tries beside an exact one."""
 
-def vectoring(angle: Array, iterations: int) -> Array:
-    """The angle [rad], any shape, as ``iterations`` vectoring steps return it (unbounded word length).
 
-    Shifts 2^0 to 2^-(iterations-1); the half-plane x < 0 is folded by 180 deg first.
+def rotations(values: Parameters) -> Array:
+    """The angles [rad] of the micro-rotations, atan(2^-k); whole words where the angle's register is stated."""
+    count, bits = (int(np.ravel(values.get(name, 0))[0]) for name in ("iterations", "angle_bits"))
+    if bits == 0:
+        return np.arctan(2.0 ** -np.arange(count, dtype=np.float64))
+    return angle_rad(Cordic(iterations=count, angle_bits=bits).steps, bits)
+
+
+def vectoring(angle: Array, steps: Array) -> Array:
+    """The angle [rad], any shape, as vectoring by these rotations [rad] returns it (codes of unbounded length).
+
+    Shifts 2^0, 2^-1 and so on; the half-plane x < 0 is folded by 180 deg first.
     """
     x, y = np.cos(angle), np.sin(angle)
     folded = x < 0.0
     turned = np.where(folded, np.where(y >= 0.0, np.pi, -np.pi), 0.0)
     x, y = np.where(folded, -x, x), np.where(folded, -y, y)
-    for k in range(iterations):
+    for k, step in enumerate(steps):
         way = np.where(y >= 0.0, 1.0, -1.0)
         x, y = x + way * y * 2.0**-k, y - way * x * 2.0**-k
-        turned = turned + way * np.arctan(2.0**-k)
+        turned = turned + way * step
     return np.asarray(turned)
 
 
 def unit_of(values: Parameters) -> Cordic | None:
-    """The integer unit that the parameters describe; None where they leave its words unbounded."""
-    words = {name: int(np.ravel(values.get(name, 0))[0]) for name in ("word_bits", "guard_bits", "angle_bits")}
-    if words["word_bits"] == 0:
+    """The integer unit that the parameters describe; None where they leave its codes unbounded."""
+    numbers = {name: int(np.ravel(values.get(name, 0))[0]) for name in ("iterations", "word_bits", "guard_bits")}
+    if numbers["word_bits"] == 0:
         return None
-    return Cordic(iterations=int(np.ravel(values["iterations"])[0]), **words)
+    angle_bits = int(np.ravel(values.get("angle_bits", 0))[0]) or EXACT_BITS
+    return Cordic(**numbers, angle_bits=angle_bits)
 
 
 def computes(channels: Array, values: Parameters) -> Array | None:
@@ -54,29 +68,24 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     iterations = np.asarray(values["iterations"])
     if iterations.size == 1:
         count = int(iterations.ravel()[0])
-        return signal if count == 0 else signal + wrap(vectoring(signal, count) - signal)
+        return signal if count == 0 else signal + wrap(vectoring(signal, rotations(values)) - signal)
     counts = np.ravel(iterations)
     parts = np.broadcast_to(signal, (counts.size, *signal.shape[-2:]))
-    single = ({"iterations": float(count)} for count in counts)
+    single = ({**values, "iterations": float(count)} for count in counts)
     return np.stack([forward(part, motion, one, rng) for part, one in zip(parts, single, strict=True)])
 
 
 def attainable(values: Parameters) -> Array:
     """All angles [rad], sorted in [-pi, pi), that this many iterations can return; each step a whole word where so."""
-    unit, count = unit_of(values), int(np.ravel(values["iterations"])[0])
-    steps = (
-        np.arctan(2.0 ** -np.arange(count, dtype=np.float64))
-        if unit is None
-        else angle_rad(unit.steps, unit.angle_bits)
-    )
     angles = np.zeros(1)
-    for step in steps:
+    for step in rotations(values):
         angles = np.concatenate([angles + step, angles - step])
     return np.sort(np.unique(wrap(np.concatenate([angles, angles + np.pi]))))
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
-    return [{"iterations": float(count)} for count in range(5, 15)]
+    exact = [{"iterations": float(count)} for count in range(5, 15)]
+    return exact + [{**one, "angle_bits": float(bits)} for bits in REGISTERS for one in exact]
 
 
 def stair(values: Parameters) -> float:
@@ -90,7 +99,7 @@ def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str,
 
 
 def _words(null: int, doc: str, *, lower: int, upper: int) -> Param:
-    return Param(unit="bit", null=null, lower=lower, upper=upper, doc=doc, role="shape", counts=True)
+    return Param(unit="bit", null=null, lower=lower, upper=upper, doc=doc, role="shape", counts=True, aside=True)
 
 
 CORDIC_TRUNCATION = Effect(
@@ -109,7 +118,7 @@ CORDIC_TRUNCATION = Effect(
         ),
         "word_bits": _words(0, "of the codes that it takes; 0: unbounded", lower=0, upper=32),
         "guard_bits": _words(3, "more in its data path", lower=0, upper=24),
-        "angle_bits": _words(18, "of the angle's register", lower=4, upper=48),
+        "angle_bits": _words(0, "of the angle's register; 0: exact", lower=0, upper=48),
     },
     forward=forward,
     computes=computes,

@@ -145,7 +145,14 @@ MAGNET_MISALIGNMENT = Effect(
     acts_on="channels",
     params={
         "off_axis_mm": Param(
-            unit="mm", null=0.0, lower=0.0, upper=2.0, doc="sensor off the shaft's axis", role="level", typical=0.3
+            unit="mm",
+            null=0.0,
+            lower=0.0,
+            upper=2.0,
+            doc="sensor off the shaft's axis",
+            role="level",
+            typical=0.3,
+            aside=True,
         ),
         "tilt_deg": Param(
             unit="deg",
@@ -155,6 +162,7 @@ MAGNET_MISALIGNMENT = Effect(
             doc="sensor's normal against the shaft's axis, towards the displacement",
             role="level",
             typical=5.0,
+            aside=True,
         ),
         "direction_deg": _shape(
             "deg",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +20,9 @@ from twin.catalogue import output_grid
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.sweep import Sweep
+
+CELLS_OFF = (np.array([0]), np.array([-1, 0, 1]))
+"""Cells of the output's grid that a word may be off its angle: none, or one where it was cut off or rounded twice."""
 
 
 def grid_bits(measured: Array, settings: DiscoverySettings) -> int | None:
@@ -37,30 +41,31 @@ def grid_bits(measured: Array, settings: DiscoverySettings) -> int | None:
 
 
 def finite_set(
-    measured: Array, effect: Effect, tried: Sequence[float], *, step: float, settings: DiscoverySettings
-) -> tuple[float, float]:
-    """Which level's set of attainable angles holds the readings (n,) [rad].
+    measured: Array, effect: Effect, tried: Sequence[Mapping[str, float]], *, step: float, settings: DiscoverySettings
+) -> tuple[Mapping[str, float], float]:
+    """At which of the parameters tried the effect's set of attainable angles holds the readings (n,) [rad].
 
     ``step`` is the output grid [rad] that the set is rounded to. Chance is the share of the grid's cells that are in
     the set, to the power of the different words; a reading outside it is an error of the link, as rare as these are.
-    Returns the level and the log of the chance at any of the levels; (0, 0): none.
+    Returns the parameters and the log of the chance at any of those tried; none and 0: no such set.
     """
     assert effect.attainable is not None
-    name = effect.roles("level")[0]
     resolution = step if step > 0.0 else np.radians(2e-4)
     cells = round(TAU / resolution)
     words = np.round(measured / resolution).astype(np.int64) % cells
     distinct = np.unique(words).size
-    best = (0.0, 0.0)
-    for level in tried:
-        allowed = np.unique(np.round(effect.attainable({name: level}) / resolution).astype(np.int64) % cells)
+    best: tuple[Mapping[str, float], float] = ({}, 0.0)
+    for values, off in itertools.product(tried, CELLS_OFF):
+        cell = np.round(effect.attainable(values) / resolution).astype(np.int64)
+        allowed = np.unique((cell[:, None] + off) % cells)
         share = allowed.size / cells
         missed = int(np.count_nonzero(~np.isin(words, allowed)))
         if share > settings.set_share or missed > settings.set_missed * words.size:
             continue
-        log_p = (distinct - missed) * np.log(share) + missed * -np.log(settings.set_missed) + np.log(len(tried))
+        chance = (distinct - missed) * np.log(share) + missed * -np.log(settings.set_missed)
+        log_p = chance + np.log(len(tried) * len(CELLS_OFF))
         if log_p < best[1]:
-            best = (float(level), float(log_p))
+            best = (values, float(log_p))
     return best
 
 
@@ -80,11 +85,10 @@ def with_stairs(
     for effect in effects:
         if effect.footprint != "values" or effect is grid or effect.name in chain.values:
             continue
-        name = effect.roles("level")[0]
-        tried = [shape[name] for shape in effect.shapes(fit.observations.motion)]
-        level, log_p = finite_set(measured, effect, tried, step=step, settings=settings)
-        if level and log_p < settings.effect_log_p(family):
-            chain = chain.with_values({effect.name: {name: level}})
+        tried = effect.shapes(fit.observations.motion)
+        values, log_p = finite_set(measured, effect, tried, step=step, settings=settings)
+        if values and log_p < settings.effect_log_p(family):
+            chain = chain.with_values({effect.name: dict(values)})
             found.append(Finding.among(family, effect.name, log_p, gain=-2.0 * log_p))
     if grid is not None and bits is not None and grid.name not in chain.values:
         sigma = robust_rms(local_residual(fit.residual[0]))

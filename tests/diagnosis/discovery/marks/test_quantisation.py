@@ -12,6 +12,7 @@ from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import TAU, Array
 from twin.cordic.cordic_truncation import CORDIC_TRUNCATION, attainable
 from twin.effect import Effect
+from twin.motion import Motion
 
 LIMITS = DiscoverySettings()
 CELLS = 1024
@@ -60,8 +61,8 @@ def holding(share: float) -> Effect:
 
 
 def readings(inside: int, outside: int, share: float) -> Array:
-    """Different words [rad], so many in the first cells and so many behind them."""
-    first = round(share * CELLS)
+    """Different words [rad], so many in the first cells and so many a cell or more behind them."""
+    first = round(share * CELLS) + 1
     return np.concatenate([np.arange(inside), first + np.arange(outside)]) * STEP
 
 
@@ -90,16 +91,18 @@ SETS = {
 def test_chance_is_the_share_of_the_words_to_the_power_of_the_readings(case: Set) -> None:
     """Four of a hundred may lie outside; each of these speaks against the set as an error of one in 25."""
     measured = readings(case.inside, case.outside, case.share)
-    level, log_p = finite_set(measured, holding(case.share), [7.0], step=STEP, settings=LIMITS)
+    values, log_p = finite_set(measured, holding(case.share), [{"iterations": 7.0}], step=STEP, settings=LIMITS)
     share = round(case.share * CELLS) / CELLS
-    expected = case.inside * np.log(share) - np.log(0.04) * case.outside
-    assert (level, log_p) == (pytest.approx((7.0, expected)) if case.found else (0.0, 0.0))
+    # The set is tried as it is, and with a cell to either side.
+    expected = case.inside * np.log(share) - np.log(0.04) * case.outside + np.log(2.0)
+    assert values == ({"iterations": 7.0} if case.found else {})
+    assert log_p == (pytest.approx(expected) if case.found else 0.0)
 
 
 def test_readings_of_one_word_count_once() -> None:
     measured = np.repeat(readings(30, 0, 0.5), 10)
-    _, log_p = finite_set(measured, holding(0.5), [7.0], step=STEP, settings=LIMITS)
-    assert log_p == pytest.approx(30 * np.log(0.5))
+    _, log_p = finite_set(measured, holding(0.5), [{"iterations": 7.0}], step=STEP, settings=LIMITS)
+    assert log_p == pytest.approx(30 * np.log(0.5) + np.log(2.0))
 
 
 @pytest.mark.parametrize("iterations", [6, 9, 12])
@@ -107,6 +110,27 @@ def test_the_fewest_iterations_that_hold_all_readings_are_told(iterations: int) 
     """Sets of more iterations leave out fewer words, those of fewer iterations readings."""
     rng = np.random.default_rng(iterations)
     measured = rng.choice(attainable({"iterations": iterations}), size=100)
-    tried = [float(count) for count in range(5, 15)]
-    level, _ = finite_set(measured, CORDIC_TRUNCATION, tried, step=0.0, settings=LIMITS)
-    assert level == iterations
+    tried = CORDIC_TRUNCATION.shapes(Motion.from_angle(np.zeros(2)))
+    values, _ = finite_set(measured, CORDIC_TRUNCATION, tried, step=0.0, settings=LIMITS)
+    assert values == {"iterations": iterations}
+
+
+@pytest.mark.parametrize("angle_bits", [14, 18])
+def test_a_register_of_whole_words_makes_a_set_of_its_own(angle_bits: int) -> None:
+    """Each rotation is off by up to half a word, so that a sum of seven is off by words."""
+    rng = np.random.default_rng(angle_bits)
+    made = {"iterations": 7.0, "angle_bits": float(angle_bits)}
+    measured = rng.choice(attainable(made), size=100)
+    tried = CORDIC_TRUNCATION.shapes(Motion.from_angle(np.zeros(2)))
+    values, _ = finite_set(measured, CORDIC_TRUNCATION, tried, step=TAU / 2**18, settings=LIMITS)
+    assert values == made
+
+
+def test_words_cut_off_to_the_grid_lie_a_cell_beside_the_set() -> None:
+    rng = np.random.default_rng(5)
+    step = TAU / 2**16
+    measured = np.floor(rng.choice(attainable({"iterations": 7.0}), size=100) / step) * step
+    tried = [{"iterations": float(count)} for count in range(5, 10)]
+    values, log_p = finite_set(measured, CORDIC_TRUNCATION, tried, step=step, settings=LIMITS)
+    assert values == {"iterations": 7.0}
+    assert log_p < -300.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.angles import Array
 from twin.effect import Effect, Parameters
-from twin.hall.spinning_current import NOMINAL_C, Plate, spin
+from twin.hall.spinning_current import NOMINAL_C, Plate, Spinning, spin
 from twin.motion import Motion
 from twin.part import part, per_design
 
@@ -20,7 +20,7 @@ def spun_line(plate: Plate) -> tuple[float, float]:
 
     The output is a straight line of the field: settling takes its share of the field's voltage as of the offset's.
     """
-    none, unit = spin(np.array([0.0, 1.0]), plate).output_mT
+    none, unit = plate_output_mT(spin(np.array([0.0, 1.0]), plate), plate)
     return float(none), float(unit - none)
 
 
@@ -49,4 +49,10 @@ def _seen_mT(field_mT: Array, plate: Plate, temp_c: Array, rng: np.random.Genera
     if rng is None or plate.white_nV == 0.0:
         return expected_mT(field_mT, plate, temp_c)
     temps = np.broadcast_to(temp_c, field_mT.shape)
-    return spin(field_mT.ravel(), plate, rng, temp_c=temps.ravel()).output_mT.reshape(field_mT.shape)
+    cycle = spin(field_mT.ravel(), plate, rng, temp_c=temps.ravel())
+    return plate_output_mT(cycle, plate).reshape(field_mT.shape)
+
+
+def plate_output_mT(cycle: Spinning, plate: Plate) -> Array:
+    """What leaves the plate: the spun output, or that of the first phase where the bias stays there."""
+    return cycle.output_mT if plate.spun else cycle.unspun_mT

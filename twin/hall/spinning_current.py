@@ -46,6 +46,7 @@ class Plate:
     ``corner_Hz``                 where the 1/f noise equals the white noise
     ``settling_s``                time constant after each switching
     ``blanking``                  share of each phase, from its start, that sample and hold leave out
+    ``spun``                      whether the bias spins; else it stays in the first phase, and all offsets with it
     """
 
     sensitivity_uV_per_mT: float = 100.0
@@ -58,6 +59,7 @@ class Plate:
     corner_Hz: float = 10e3
     settling_s: float = 0.0
     blanking: float = 0.5
+    spun: bool = True
     phase_s: float = 5e-6
     samples: int = 8
 
@@ -77,7 +79,10 @@ class Plate:
     @property
     def ideal(self) -> bool:
         """Whether its output is the field: nothing is left after spinning, and nothing follows the temperature."""
-        return self.asymmetry * self.offset_uV == self.percent_per_K == self.white_nV == self.settling_s == 0.0
+        left = self.asymmetry * self.offset_uV
+        if not self.spun:
+            left = self.offset_uV + self.thermal_uV + self.amplifier_offset_uV
+        return left == self.percent_per_K == self.white_nV == self.settling_s == 0.0
 
     @property
     def cycle_Hz(self) -> float:

@@ -1,0 +1,79 @@
+"""adc_inl: the converter's transfer curve is not straight: a bow, an S, and bits whose weights are off."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+
+from twin.angles import Array
+from twin.effect import Effect, Param, Parameters
+from twin.motion import Motion
+
+STEP_PERCENT = 100.0 / 2**13
+"""One step of a 14-bit converter, in percent of its full scale (the paper's converter)."""
+BITS = 6
+"""Bits whose weights may be off: the next one's steps, of 1/64 of the range, are as narrow as strong noise."""
+BLUR = 1e-3
+"""Width over which noise rounds an edge off in expectation, in full scales: 0.05 deg of noise."""
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    full_scale = 0.01 * np.asarray(values["full_scale_percent"], dtype=np.float64)
+    u = signal / full_scale
+    # Straight through both ends.
+    curve = np.asarray(values["bow_lsb"]) * (1.0 - u * u)
+    curve = curve + np.asarray(values["s_lsb"]) * (u - u**3) * (np.sqrt(27.0) / 2.0)
+    for bit in range(1, BITS + 1):
+        error = np.asarray(values[f"bit{bit}_lsb"])
+        if np.any(error):
+            curve = curve + 0.5 * error * (_level(u, bit, blurred=rng is None) - u)
+    return np.asarray(signal + 0.01 * STEP_PERCENT * full_scale * curve)
+
+
+def _level(u: Array, bit: int, *, blurred: bool) -> Array:
+    """A bit of the offset binary code of u in [-1, 1), the first the most significant, as -1 and 1."""
+    half_period = np.pi * 2.0 ** (bit - 1)
+    wave = -np.sin(half_period * (u + 1.0))
+    return np.asarray(np.tanh(wave / (half_period * BLUR)) if blurred else np.sign(wave))
+
+
+def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    return [{"full_scale_percent": float(level)} for level in np.arange(102.0, 200.0, 2.0)]
+
+
+def _lsb(doc: str, *, mirror: Literal[0] | None = None) -> Param:
+    return Param(
+        unit="LSB", null=0.0, lower=-200.0, upper=200.0, doc=doc, typical=15.0, field_power=-1.0, mirror=mirror
+    )
+
+
+ADC_INL = Effect(
+    name="adc_inl",
+    stage="adc",
+    acts_on="channels",
+    params={
+        # With y turned over a bow is one of the other sign in y alone: no value does that.
+        "bow_lsb": _lsb("largest deviation of a bow, in steps of 14 bit", mirror=0),
+        "s_lsb": _lsb("largest deviation of an S"),
+        **{f"bit{bit}_lsb": _lsb(f"error of the weight of bit {bit}; 1: the largest") for bit in range(1, BITS + 1)},
+        "full_scale_percent": Param(
+            unit="%",
+            null=125.0,
+            lower=100.0,
+            upper=400.0,
+            doc="the converter's range, in amplitudes",
+            role="shape",
+            typical=5.0,
+            field_power=-1.0,
+        ),
+    },
+    forward=forward,
+    needs=frozenset({"one turn"}),
+    shapes=shapes,
+    zoomed=("full_scale_percent",),
+    source="integral non-linearity, IEEE Std 1241; binary-weighted capacitors: J. L. McCreary and P. R. Gray, IEEE J. "
+    "Solid-State Circuits 10 (1975) 371",
+    signature="bow: orders 1 and 3; S: order 4, the same as saturation; weights: steps at the major codes, many orders",
+)

@@ -8,6 +8,7 @@ import pytest
 from twin.adc.adc_quantisation import codes_of
 from twin.angles import TAU, wrap
 from twin.cordic.bit_true import Cordic, Table, angle_rad, look_up, vectoring
+from twin.cordic.cordic_truncation import rotations
 from twin.cordic.cordic_truncation import vectoring as unbounded
 from twin.limits import OutOfRangeError
 
@@ -51,7 +52,7 @@ def test_long_words_return_what_unbounded_ones_do(iterations: int) -> None:
     angle = np.random.default_rng(1).uniform(-np.pi, np.pi, 20_000)
     x, y = codes_of(np.stack([np.cos(angle), np.sin(angle)]), 30)
     words, _ = vectoring(x, y, unit)
-    difference = np.abs(wrap(angle_rad(words, 40) - unbounded(np.arctan2(y, x), iterations)))
+    difference = np.abs(wrap(angle_rad(words, 40) - unbounded(np.arctan2(y, x), rotations({"iterations": iterations}))))
     # A vector that lands on the axis within the rounding may turn either way: hardly ever among random ones.
     assert np.quantile(difference, 0.999) < 1e-9
 

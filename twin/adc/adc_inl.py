@@ -40,7 +40,7 @@ def _level(u: Array, bit: int, *, blurred: bool) -> Array:
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
-    return [{"full_scale_percent": float(level)} for level in np.arange(102.0, 200.0, 2.0)]
+    return [{"full_scale_percent": float(level)} for level in np.arange(102.0, 200.0, 4.0)]
 
 
 def _lsb(doc: str, *, mirror: Literal[0] | None = None) -> Param:

@@ -11,7 +11,16 @@ import numpy as np
 from diagnosis.report.plotting import style
 from diagnosis.report.wording import plain
 from scenarios.commands.outputs import PICTURE, TABLE, OutputFiles
-from twin.hall.spinning_current import PHASES, Plate, Spinning, corner_and_error, density, residual_offset_mT, spin
+from twin.hall.spinning_current import (
+    PHASES,
+    TYPICAL,
+    Plate,
+    Spinning,
+    corner_and_error,
+    density,
+    residual_offset_mT,
+    spin,
+)
 from twin.sweep_file import csv_text
 
 SHOWN = 5
@@ -22,7 +31,7 @@ def run(folder: Path, *, seed: int, force: bool = False, field_mT: float = 5.0) 
     """Write spinning.csv, the trace of a few cycles, spinning.png and .svg, and print the figures."""
     csv, png, svg = (folder / f"spinning.{ending}" for ending in ("csv", "png", "svg"))
     files = OutputFiles.checked([(csv, TABLE), (png, PICTURE), (svg, PICTURE)], force=force, folders=True)
-    plate = Plate()
+    plate = TYPICAL
     rng = np.random.default_rng(seed)
     # Field off, on, off: what the output must follow.
     steps = np.repeat([0.0, field_mT, 0.0], SHOWN)

@@ -189,6 +189,6 @@ CASES: dict[str, Case] = {
         channels_only=True,
     ),
     "mains pickup": Case(
-        changes=_effect("mains_pickup", amplitude_percent=0.3, frequency_Hz=50.0), names=frozenset({"mains_pickup"})
+        changes=_effect("mains_pickup", x_percent=0.3, frequency_Hz=50.0), names=frozenset({"mains_pickup"})
     ),
 }

@@ -11,7 +11,7 @@ from tests.twin import published as told
 from tests.twin.published_table import table
 from twin.angles import Array
 from twin.chain import Chain
-from twin.hall.spinning_current import Plate, spin
+from twin.hall.spinning_current import TYPICAL, Plate, spin
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement
 from twin.magnet.ring_sensor import RingSensor, ring_channels_mT
@@ -140,7 +140,7 @@ def _white_of(sigma_mT: float) -> float:
 
     Of the samples held in each phase the mean is taken: a bandwidth of half the cycles a second over the held share.
     """
-    plate = Plate()
+    plate = TYPICAL
     bandwidth = 0.5 * plate.cycle_Hz / (1.0 - plate.blanking)
     return float(1e3 * sigma_mT * plate.sensitivity_uV_per_mT / np.sqrt(bandwidth))
 

@@ -59,7 +59,9 @@ def example(effect: Effect) -> dict[str, Any]:
         return {effect.roles("per turn")[0]: np.linspace(-0.2, 0.3, TURNS)}
     # Edges have slopes where noise blurs them.
     blur = {"blur_percent": 0.1} if "blur_percent" in effect.params else {}
-    return {**EXAMPLES[effect.name].params, **blur}
+    # What no plain example sets: both displaced, and tilted.
+    held = {name: 0.4 * param.typical for name, param in effect.params.items() if param.prior_sd or param.trial}
+    return {**EXAMPLES[effect.name].params, **held, **blur}
 
 
 def parameters(effect: Effect) -> list[Free]:
@@ -140,10 +142,12 @@ def test_columns_of_a_candidate_at_null(chain: str, effect: Effect) -> None:
     for column, term in zip(columns, point.terms(effect), strict=True):
         param = effect.params[term.param]
         if param.role == "strength":
-            step = 1e-3 * param.typical
+            # What is not in proportion is tried at its size, once; else the derivative is of either side.
+            step = param.trial or 1e-3 * param.typical
+            below = 0.0 if param.trial else -step
             at = {name: values[name] for name in names} | dict.fromkeys(effect.roles("phase"), term.phase_deg)
-            up, down = (observed(present(base, effect, {**at, term.param: way * step})) for way in (1.0, -1.0))
-            change, size = wrap(up - down) / (2.0 * step), 1.0 / step
+            up, down = (observed(present(base, effect, {**at, term.param: to})) for to in (step, below))
+            change, size = wrap(up - down) / (step - below), 1.0 / step
         else:
             whole = {name: values[name] for name in names}
             if term.turn is not None:

@@ -8,8 +8,8 @@ likelihood).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
@@ -39,13 +39,15 @@ _family = lru_cache(maxsize=2)(noise_family)
 class Option:
     """A further measurement: its name and plain words, its rank by cost, and by how many sigma it parts the rivals.
 
-    ``sigma`` is that of the rival which is parted least; below three, it is no more than this.
+    ``sigma`` is that of the rival which is parted least, ``parted`` that of each by name; below three, it is no more
+    than this.
     """
 
     name: str
     measurement: str
     sigma: float
     cost: int
+    parted: Mapping[str, float] = field(default_factory=dict)
 
 
 def options(fit: Fit, rivals: Mapping[str, Fit], menu: Sequence[Measurement] = MENU) -> tuple[Option, ...]:
@@ -58,32 +60,28 @@ def options(fit: Fit, rivals: Mapping[str, Fit], menu: Sequence[Measurement] = M
     longer = float(np.sqrt(len(motion) / len(part)))
     for entry in sorted(menu, key=lambda entry: entry.cost):
         planned = entry.plan(part)
-        if planned is not None and _worth_it(fit, rivals, planned):
-            sigma = longer * _least_sigma(fit, rivals, planned)
-            found.append(Option(entry.name, entry.words, sigma, entry.cost))
+        if planned is not None and any(_worth_it(fit, rival, planned) for rival in rivals.values()):
+            parted = {name: longer * _least_sigma(fit, rival, planned) for name, rival in rivals.items()}
+            found.append(Option(entry.name, entry.words, min(parted.values()), entry.cost, parted))
     return tuple(found)
 
 
-def _worth_it(fit: Fit, rivals: Mapping[str, Fit], planned: tuple[Recording, ...]) -> bool:
+def _worth_it(fit: Fit, rival: Fit, planned: tuple[Recording, ...]) -> bool:
     """A further air gap tells something only of what changes with the field; else it is just a second sweep."""
     if len(planned) == 1:
         return True
-    changing = [
-        {free.key for free in one.free if find(free.key, one.chain.effects).follow_field}
-        for one in (fit, *rivals.values())
-    ]
-    return all(own != changing[0] for own in changing[1:])
+    own, others = (
+        {free.key for free in one.free if find(free.key, one.chain.effects).follow_field} for one in (fit, rival)
+    )
+    return own != others
 
 
-def _least_sigma(fit: Fit, rivals: Mapping[str, Fit], planned: tuple[Recording, ...]) -> float:
-    """The separation from the nearest rival, whichever of the two is true; what parts no one is not asked on."""
-    least = np.inf
-    for rival in rivals.values():
-        for true, wrong in ((fit, rival), (rival, fit)):
-            least = min(least, separation_sigma(true, wrong, planned))
-            if least < fit.settings.sigma_apart:
-                return least
-    return least
+def _least_sigma(fit: Fit, rival: Fit, planned: tuple[Recording, ...]) -> float:
+    """The separation from a rival, whichever of the two is true; what does not part them is not asked the other way."""
+    if not _worth_it(fit, rival, planned):
+        return 0.0
+    sigma = separation_sigma(fit, rival, planned)
+    return sigma if sigma < fit.settings.sigma_apart else min(sigma, separation_sigma(rival, fit, planned))
 
 
 def best(offered: Sequence[Option], settings: DiscoverySettings = _DEFAULTS) -> Option | None:
@@ -95,8 +93,24 @@ def best(offered: Sequence[Option], settings: DiscoverySettings = _DEFAULTS) -> 
 
 
 def advice(offered: Sequence[Option], settings: DiscoverySettings = _DEFAULTS) -> str:
-    """The best measurement in words, with the separation expected of it."""
+    """The best measurement in words, with the separation expected of it; several where no one parts all rivals."""
     option = best(offered, settings)
+    if option is not None and option.sigma < settings.sigma_apart and len(option.parted) > 1:
+        return "; ".join(_for_each(offered, settings))
+    return _words(option, settings)
+
+
+def _for_each(offered: Sequence[Option], settings: DiscoverySettings) -> Iterator[str]:
+    """For each rival the measurement that parts it, rivals that the same one parts together."""
+    rivals: dict[str, list[str]] = {}
+    for name in offered[0].parted:
+        own = [replace(option, sigma=option.parted[name], parted={}) for option in offered]
+        rivals.setdefault(_words(best(own, settings), settings), []).append(name)
+    for words, names in rivals.items():
+        yield f"from {' and '.join(names)}: {words}"
+
+
+def _words(option: Option | None, settings: DiscoverySettings) -> str:
     if option is None or option.sigma < settings.sigma_apart:
         reached = f" ({option.sigma:.1f} sigma at most)" if option is not None else ""
         return f"no further measurement of the menu parts them{reached}"

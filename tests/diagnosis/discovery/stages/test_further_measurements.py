@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 from diagnosis.discovery.further.measurements import MENU
+from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.stages.further_measurements import further_measurements
 from tests.diagnosis.discovery.sweeps import Made, before
 
@@ -46,7 +48,14 @@ CASES = {
         parts="more turns",
         parts_not="raw channels",
     ),
-    "saturation with channels": Case(made=Made(causes=(("saturation", 0.05),), points=120, channels=True)),
+    # Saturation grows with the square of the field, what a converter does counts less in a larger one.
+    "saturation with channels": Case(
+        made=Made(causes=(("saturation", 0.05),), points=120, channels=True),
+        rival="adc_inl",
+        parts="second air gap",
+        parts_not="other direction",
+    ),
+    "harmonic of order 5": Case(made=Made(causes=(("magnet_harmonic", 0.05),), points=120, seed=2)),
 }
 
 
@@ -59,7 +68,8 @@ def test_what_would_part_a_cause_from_its_rivals(case: Case) -> None:
     if not case.rival:
         assert cause.options == ()
         return
-    sigma = {option.name: option.sigma for option in cause.options}
+    sigma = {option.name: option.parted[case.rival] for option in cause.options}
+    assert all(option.sigma == min(option.parted.values()) for option in cause.options)
     assert sigma[case.parts] > 5.0
     assert sigma[case.parts_not] < 3.0
     costs = [option.cost for option in cause.options]
@@ -68,6 +78,15 @@ def test_what_would_part_a_cause_from_its_rivals(case: Case) -> None:
     # All else of the entry stands.
     assert (cause.keys, cause.log_p, cause.before_deg) == (plain.keys, plain.log_p, plain.before_deg)
     assert after.fit is state.fit
+
+
+def test_where_no_measurement_parts_all_rivals_each_has_its_own() -> None:
+    """Channels part a magnet's harmonic from saturation, and not what a converter does to them."""
+    (cause,) = further_measurements(before(further_measurements, CASES["saturation in a turn"].made)).causes
+    assert set(cause.rivals) == {"magnet_harmonic", "adc_inl"}
+    said = advice(cause.options)
+    assert re.search(r"from magnet_harmonic: record vx and vy \(\d+ sigma\)", said)
+    assert re.search(r"from adc_inl: (?!record vx)", said)
 
 
 def test_what_the_sweep_has_already_is_not_offered() -> None:

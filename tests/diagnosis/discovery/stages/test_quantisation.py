@@ -97,15 +97,16 @@ class Half:
 
 
 HALVES = {
-    # log(0.01 / 4) - log(10) = -8.29 for one effect: twelve halves are -8.32, eleven -7.62.
-    "ten levels, just enough": Half(words=12, tried=10, enough=True),
-    "ten levels, one too few": Half(words=11, tried=10, enough=False),
-    # log(0.01 / 4) = -5.99: nine halves are -6.24, eight -5.55.
-    "one level, just enough": Half(words=9, tried=1, enough=True),
-    "one level, one too few": Half(words=8, tried=1, enough=False),
-    # log(0.01 / 4 / 3) = -7.09: eleven halves are -7.62, ten -6.93.
-    "one of three effects, just enough": Half(words=11, tried=1, effects=3, enough=True),
-    "one of three effects, one too few": Half(words=10, tried=1, effects=3, enough=False),
+    # Each set is tried as it is and a cell wider. log(0.01 / 4) - log(20) = -8.99 for one effect: thirteen halves are
+    # -9.01, twelve -8.32.
+    "ten levels, just enough": Half(words=13, tried=10, enough=True),
+    "ten levels, one too few": Half(words=12, tried=10, enough=False),
+    # log(0.01 / 4) - log(2) = -6.68: ten halves are -6.93, nine -6.24.
+    "one level, just enough": Half(words=10, tried=1, enough=True),
+    "one level, one too few": Half(words=9, tried=1, enough=False),
+    # log(0.01 / 4 / 3) - log(2) = -7.78: twelve halves are -8.32, eleven -7.62.
+    "one of three effects, just enough": Half(words=12, tried=1, effects=3, enough=True),
+    "one of three effects, one too few": Half(words=11, tried=1, effects=3, enough=False),
 }
 
 

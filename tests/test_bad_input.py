@@ -122,10 +122,10 @@ UNUSABLE: dict[str, tuple[bytes, tuple[str, ...]]] = {
     "workbook": (b"PK\x03\x04" + bytes(300), ("no text file", "CSV")),
     "a million columns": (text(",".join(["x"] * 1_000_000), *ROWS), ("line 1 is longer than 1,000,000 bytes",)),
     "a line without end": (text(HEADER, *ROWS[:10], "1" * 1_500_000, *ROWS[10:]), ("line 12 is longer",)),
-    "eight readings": (text(HEADER, *ROWS[::23]), ("8 readings", "at least 15", "halltwin diagnose")),
+    "eight readings": (text(HEADER, *ROWS[::23]), ("8 readings", "at least 16", "halltwin diagnose")),
     "65 readings at thirteen angles": (
         only(reference_deg=np.repeat(TURN[::14], 5), measured_deg=np.repeat(READ[::14], 5)),
-        ("65 readings at 13 angles", "at least 15", "counts once"),
+        ("65 readings at 13 angles", "at least 16", "counts once"),
     ),
     "channels without size": (columns(vx=1e-13 * CIRCLE_X, vy=1e-13 * CIRCLE_Y), ("vx", "expected a signal")),
     "cut gzip": (gzip.compress(text(*LINES))[:500], ("cannot be read", "gzip")),

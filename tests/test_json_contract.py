@@ -271,7 +271,7 @@ def test_where_nothing_can_be_known_there_is_no_answer(tmp_path: Path) -> None:
         path.write_text(csv_text({"reference_deg": angles, "measured_deg": angles + 3.0 + error}))
     refused = halltwin("explain", tmp_path / "8.csv", "--json", tmp_path / "8.json")
     assert refused.code == 2
-    assert "8 readings; expected at least 15" in refused.err
+    assert "8 readings; expected at least 16" in refused.err
     assert not (tmp_path / "8.json").exists()
     assert is_figure(explained(tmp_path / "16.csv")["baseline"]["heldout_rms_deg"], low=0.0)
 

@@ -15,6 +15,7 @@ from twin.known_names import nearest
 from twin.limits import OutOfRangeError
 from twin.magnet.assembly import Assembly
 from twin.motion import Motion
+from twin.parameter_values import aligned, numbers
 from twin.parts import Parts
 from twin.reference.encoder import Encoder
 from twin.shown import shown
@@ -112,7 +113,7 @@ class Chain:
                 meant = nearest(name, effect.params)
                 raise KeyError(f"{key} has no parameter '{name}'{meant}; it has {', '.join(effect.params)}")
             param = effect.params[name]
-            array = _numbers(value)
+            array = numbers(value)
             if not np.all((array >= param.lower) & (array <= param.upper)):
                 raise OutOfRangeError(
                     f"{key}.{name} must lie between {param.lower:g} and {param.upper:g} {param.unit}; "
@@ -209,7 +210,7 @@ class Chain:
             for key in present.get(effect.name, ()):
                 values = {**effect.null(), **self.values[key]}
                 if not effect.is_null(values):
-                    yield key, effect, {name: _aligned(value, effect, name) for name, value in values.items()}
+                    yield key, effect, {name: aligned(value, effect, name) for name, value in values.items()}
         yield from ((part.name, part, {}) for part in parts)
 
     @property
@@ -388,21 +389,3 @@ class Chain:
         """
         slope = self.sensor_sense * self.output_sense
         return wrap(self.readings(motion) - slope * self.reference(motion))
-
-
-def _numbers(value: Any) -> Array:
-    """A parameter as an array; a whole number beyond all floating-point numbers is as good as infinite."""
-    try:
-        return np.asarray(value, dtype=np.float64)
-    except OverflowError:
-        return np.asarray(np.inf)
-
-
-def _aligned(value: Any, effect: Effect, name: str) -> Any:
-    """A parameter as effects take it: a scalar, or an array (batch, 1, 1); per turn (turns,) or (batch, 1, turns)."""
-    array = np.asarray(value, dtype=np.float64)
-    if array.ndim == 0:
-        return float(array)
-    if effect.params[name].role == "per turn":
-        return array if array.ndim == 1 else array[:, None, :]
-    return array[:, None, None] if array.ndim == 1 else array

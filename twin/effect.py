@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from twin.angles import TAU, Array
 from twin.motion import Motion
+from twin.param import Param as Param
+from twin.param import Parameters as Parameters
+from twin.param import Role as Role
 
 ActsOn = Literal["shaft", "field", "channels", "angle", "reference"]
 """The signal an effect changes, in the order of the chain.
@@ -26,18 +29,6 @@ Footprint = Literal["mean", "spread", "values", "sequence"]
 """Where an effect leaves its mark: on the expected reading, on its spread, on the set of values that readings can
 take, or on single readings and their sequence."""
 
-Role = Literal["strength", "level", "phase", "shape", "per turn", "random"]
-"""What a parameter is to a fit.
-
-``strength``  null where the effect vanishes, and the change of the signal is nearly proportional to it
-``level``     null where the effect vanishes, but its change is not proportional: searched on the grid ``shapes``
-``phase``     turns a strength's shape by quadrature
-``shape``     order, memory, frequency: means nothing at zero strength, searched on the grid ``shapes``
-``per turn``  a strength of its own for each turn of the sweep
-``random``    acts only where a generator is given: the size of a spread, the number of rare events
-"""
-
-Parameters = Mapping[str, Any]
 BoolArray = NDArray[np.bool_]
 Drawing = Callable[[Array, Array, Motion], Mapping[str, Array]]
 """Draws an effect's parameters for training sweeps.
@@ -68,68 +59,6 @@ class Forward(Protocol):
     """
 
     def __call__(self, signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array: ...
-
-
-@dataclass(frozen=True, kw_only=True)
-class Param:
-    """One parameter of an effect.
-
-    Attributes
-    ----------
-    unit : str
-        Its unit, in which its name ends; ``"1"`` for a pure number.
-    null, lower, upper : float
-        ``lower <= null <= upper``: at null a strength does nothing; the others bound what a fit may try.
-    doc : str
-        What it is, in a few words.
-    role : str
-        What it is to a fit: see :data:`Role`.
-    typical : float
-        The size at which the effect is about 0.1 deg: the yardstick for numerical derivatives.
-    counts : bool
-        Whether it is a whole number (bits, orders, iterations).
-    allowed : tuple of float, optional
-        Lowest and highest value that physics allows, where a fit is given more room; training sweeps keep to it.
-    field_power : float
-        Power of the magnet's field at the sensor with which it changes, device and gain kept: 0 for angles, -1 for what
-        is constant in volts or millitesla but counted in amplitudes of the channels.
-    distance_power : callable, optional
-        From the effect's parameters to the power of the distance from the magnet's centre with which it also changes.
-    mirror : {-1, 0, 1}, optional
-        What it is multiplied by in the mirrored chain (see :meth:`Effect.mirrored`); 0: no value of it reads the same
-        there. Not given: what follows from its role and from the signal that the effect acts on.
-    trial : float
-        The size at which a search tries a strength whose change of the signal grows faster than itself, so that what
-        is plain in proportion may be another cause's; 0: small enough to be in proportion.
-    prior_sd : float
-        For a shape that a fit moves: standard deviation of what is known of it before any sweep; 0: anything goes. One
-        that a sweep does not show then stays where the search set out, and its interval says so.
-    aside : bool
-        Whether an answer gives it only where it is not at null: a detail that no search sets.
-    scatter : float
-        Half width of the range over which devices of one kind differ in it.
-    """
-
-    unit: str
-    null: float
-    lower: float
-    upper: float
-    doc: str
-    role: Role = "strength"
-    typical: float = 0.1
-    counts: bool = False
-    allowed: tuple[float, float] | None = None
-    field_power: float = 0.0
-    distance_power: Callable[[Parameters], float] | None = None
-    mirror: Literal[-1, 0, 1] | None = None
-    trial: float = 0.0
-    prior_sd: float = 0.0
-    aside: bool = False
-    scatter: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not self.lower <= self.null <= self.upper:
-            raise ValueError(f"null {self.null} outside [{self.lower}, {self.upper}]")
 
 
 @dataclass(frozen=True, kw_only=True)

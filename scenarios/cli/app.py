@@ -15,6 +15,10 @@ from scenarios.cli.sweeps import compensate, diagnose, explain, monitor
 from scenarios.cli.verbosity import with_verbosity
 
 
+NONE_BY_EMPTY = "tolerance"
+"""The option whose empty value means none: a design without tolerances of its mounting."""
+
+
 class Command(TyperCommand):
     """A command that refuses an empty value: as the name of a file it would mean the working folder."""
 
@@ -25,7 +29,7 @@ class Command(TyperCommand):
             asked: Any = param
             values = given.get(str(param.name))
             empty = "" in (values if isinstance(values, list | tuple) else [values])
-            if empty and param.default != "":
+            if empty and param.default != "" and param.name != NONE_BY_EMPTY:
                 raise typer.BadParameter("is empty; give a value", ctx=ctx, param=asked)
         return super().parse_args(ctx, args)
 

@@ -126,7 +126,7 @@ def _inl(motion: Motion, p: Params) -> Array:
         u = channel / full_scale
         # The largest of u - u^3 is 2 / sqrt 27; a bit steps by the error of its weight, the ends stay.
         curve = p["bow_lsb"] * (1.0 - u**2) + p["s_lsb"] * (u - u**3) / (2.0 / np.sqrt(27.0))
-        for bit in (1, 2, 4):
+        for bit in range(1, 7):
             held = np.floor((u + 1.0) / 2.0 * 2.0**bit) % 2.0
             curve = curve + p[f"bit{bit}_lsb"] * (held - 0.5 - 0.5 * u)
         return np.asarray(full_scale / 2**13 * curve)
@@ -285,10 +285,13 @@ EXAMPLES: dict[str, Example] = {
     "reference_jitter": Example(strengths={"percent_rms": 0.3}, shapes={}, signature=None),
     "adc_stuck_bit": Example(strengths={"step_percent": 0.4}, shapes={"level": 1.0}, signature=_stuck, kinks=0.02),
     "adc_inl": Example(
-        strengths={"bow_lsb": 10.0, "s_lsb": -8.0, "bit1_lsb": 6.0, "bit2_lsb": 5.0, "bit4_lsb": -4.0},
+        strengths={
+            **{"bow_lsb": 10.0, "s_lsb": -8.0, "bit1_lsb": 6.0, "bit2_lsb": 5.0},
+            **{"bit3_lsb": 7.0, "bit4_lsb": -4.0, "bit5_lsb": 6.0, "bit6_lsb": -5.0},
+        },
         shapes={"full_scale_percent": 140.0},
         signature=_inl,
-        kinks=0.1,
+        kinks=0.3,
     ),
     "adc_quantisation": Example(strengths={"bits": 10.0}, shapes={}, signature=None),
     # cordic

@@ -66,14 +66,14 @@ PARTS: tuple[Mutation, ...] = (
         ),
         (
             "quantisation.levels_cost_nothing",
-            " + np.log(len(tried))",
+            " + np.log(len(tried) * len(CELLS_OFF))",
             "",
             "stages/test_quantisation.py::test_chance_is_shared_by_the_levels_that_are_tried",
         ),
         (
             "quantisation.no_family_to_pay_for",
-            "if level and log_p < settings.effect_log_p(family)",
-            "if level and log_p < settings.footprint_log_p",
+            "if values and log_p < settings.effect_log_p(family)",
+            "if values and log_p < settings.footprint_log_p",
             "stages/test_quantisation.py::test_chance_is_shared_by_the_levels_that_are_tried",
         ),
         (

@@ -84,7 +84,7 @@ def test_the_option_replaces_the_lines_of_the_file(tmp_path: Path) -> None:
         ({"reference": {"lines": 0}}, "[reference]: lines is 0; expected a whole number from 1 to 1e+06"),
         ({"reference": {"lines": True}}, "[reference]: lines is True; expected a number or a word"),
         ({"reference": {"has_index": "yes"}}, "[reference]: has_index is 'yes'; expected true or false"),
-        ({"reference": {"rulings": 3}}, "[reference]: reference has no 'rulings'; it has lines"),
+        ({"reference": {"rulings": 3}}, "[reference]: reference has no 'rulings' (did you mean lines?); it has lines"),
         ({"reference": 5000}, "[reference]: reference is 5000; expected a table"),
         ({"hardware": {"disk": {"gain": 0.0}}}, "[hardware]: gain is 0; expected from 0.1 to 100"),
         ({"hardware": {"disk": 6.0}}, "[hardware]: hardware.disk is 6.0; expected a table"),

@@ -138,7 +138,7 @@ def test_a_file_that_bears_a_presets_name_is_not_passed_over(tmp_path: Path, mon
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: read_twin_or_preset("nothing"), "nothing: is no preset (hall-12bit"),
+        (lambda: read_twin_or_preset("nothing"), "nothing: is no preset; give one of hall-12bit"),
         (
             lambda: read_twin_or_preset("imc-14bit.toml"),
             "imc-14bit.toml: no such file; the preset is named imc-14bit",

@@ -25,10 +25,17 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     # Straight through both ends.
     curve = np.asarray(values["bow_lsb"]) * (1.0 - u * u)
     curve = curve + np.asarray(values["s_lsb"]) * (u - u**3) * (np.sqrt(27.0) / 2.0)
-    for bit in range(1, BITS + 1):
-        error = np.asarray(values[f"bit{bit}_lsb"])
+    errors = (
+        values["bit1_lsb"],
+        values["bit2_lsb"],
+        values["bit3_lsb"],
+        values["bit4_lsb"],
+        values["bit5_lsb"],
+        values["bit6_lsb"],
+    )
+    for bit, error in enumerate(errors, start=1):
         if np.any(error):
-            curve = curve + 0.5 * error * (_level(u, bit, blurred=rng is None) - u)
+            curve = curve + 0.5 * np.asarray(error) * (_level(u, bit, blurred=rng is None) - u)
     return np.asarray(signal + 0.01 * STEP_PERCENT * full_scale * curve)
 
 

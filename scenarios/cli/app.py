@@ -14,7 +14,6 @@ from scenarios.cli.studies import design, generate, recover
 from scenarios.cli.sweeps import compensate, diagnose, explain, monitor
 from scenarios.cli.verbosity import with_verbosity
 
-
 NONE_BY_EMPTY = "tolerance"
 """The option whose empty value means none: a design without tolerances of its mounting."""
 

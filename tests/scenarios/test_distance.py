@@ -16,6 +16,7 @@ from scenarios.studies.design.space import AXES
 from scenarios.studies.design.study import DesignStudy
 from tests.command_line import halltwin
 from twin.chain import Chain
+from twin.concentrator.disk import Disk
 from twin.files import to_dict
 from twin.magnet.assembly import Assembly
 from twin.magnet.placement import Placement
@@ -72,6 +73,23 @@ def test_what_does_not_depend_on_the_field_counts_for_nothing() -> None:
     (plain,), (loaded,) = found(BENT), found(much)
     np.testing.assert_array_equal(plain.error_deg, loaded.error_deg)
     assert set(loaded.causes_deg) == {"saturation", "hysteresis"}
+
+
+def test_a_saturating_disk_counts_and_its_shift_does_not() -> None:
+    """A disk with the saturation that an amplitude of 60 mT loses half a percent by, beside the effect that says so.
+
+    The next term of its curve is two fifths of a percent of the first at 60 mT, and goes with the fourth power.
+    """
+    level = ASSEMBLY.nominal_mT / np.sqrt(3.0 * 0.01 * SATURATION_PERCENT)
+    bent = BARE.with_effect("hysteresis", lag_deg=LAG_DEG)
+    disk = Disk(saturation_mT=float(level))
+    (said,) = found(BENT)
+    (plain,) = found(replace(bent, parts=replace(bent.parts, disk=disk)))
+    (shifted,) = found(replace(bent, parts=replace(bent.parts, disk=replace(disk, shift_x_um=3.0, shift_y_um=2.0))))
+    assert plain.field_mT[plain.least] == pytest.approx(said.field_mT[said.least], rel=0.03)
+    assert plain.error_deg[plain.least] == pytest.approx(said.error_deg[said.least], rel=0.03)
+    np.testing.assert_allclose(shifted.error_deg, plain.error_deg, rtol=1e-9)
+    assert set(plain.causes_deg) == {"disk", "hysteresis"}
 
 
 def test_a_displaced_sensor_has_the_distance_of_a_centred_one() -> None:

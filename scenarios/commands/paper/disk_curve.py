@@ -10,7 +10,7 @@ from scenarios.commands.paper.held import Held
 from scenarios.commands.paper.table_1 import largest_deg
 from twin.angles import Array
 from twin.chain import Chain
-from twin.concentrator.disk import Disk
+from twin.concentrator.disk import Disk, vertical_mT
 from twin.hall.quadratic_nonlinearity import QUADRATIC_NONLINEARITY
 
 LARGEST_MT = 100.0
@@ -64,7 +64,7 @@ def disk_curve(disk: Disk | None = None) -> DiskCurve:
     """The curve of a disk; without one that of the assumed saturation."""
     disk = disk or Disk(saturation_mT=ASSUMED_MT)
     field: Array = np.linspace(0.0, LARGEST_MT, 201)
-    seen = disk.saturation_mT * np.tanh(field / disk.saturation_mT)
+    seen = vertical_mT(np.stack([field, np.zeros(field.size)]), disk)[0] / disk.gain
     return DiskCurve(disk, field, seen, np.polynomial.polynomial.polyfit(field, seen / seen[-1], 2))
 
 

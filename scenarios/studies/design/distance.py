@@ -103,7 +103,13 @@ def distances(study: DesignStudy, table: Array, grades: IntArray) -> tuple[Dista
 
 
 def only_with_field(chain: Chain) -> Chain:
-    """The chain with the effects alone whose parameters follow the field or the distance."""
+    """The chain with the effects alone whose parameters follow the field or the distance, and a disk in its place.
+
+    What shift and rough edge of a disk do is the same at every field; its saturation is not.
+    """
+    disk = chain.parts.disk
+    centred = None if disk is None else replace(disk, shift_x_um=0.0, shift_y_um=0.0, roughness_um=0.0)
+    chain = replace(chain, parts=replace(chain.parts, disk=centred))
     kept = {key: params for key, params in chain.values.items() if followed(find(key, chain.effects))}
     random = [key for key in kept if find(key, chain.effects).footprint == "spread"]
     return replace(chain, values=kept).without(*random)

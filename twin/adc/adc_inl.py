@@ -15,8 +15,10 @@ STEP_PERCENT = 100.0 / 2**13
 """One step of a 14-bit converter, in percent of its full scale (the paper's converter)."""
 BITS = 6
 """Bits whose weights may be off: the next one's steps, of 1/64 of the range, are as narrow as strong noise."""
-BLUR = 1e-3
-"""Width over which noise rounds an edge off in expectation, in full scales: 0.05 deg of noise."""
+HEAD_ROOM_PERCENT = 30.0
+"""Standard deviation of the range before anything is known of it: from hardly more than an amplitude to twice one."""
+BLUR = 3e-4
+"""Width over which noise rounds an edge off in expectation, in full scales: 0.02 deg of noise."""
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
@@ -74,13 +76,16 @@ ADC_INL = Effect(
             role="shape",
             typical=5.0,
             field_power=-1.0,
+            prior_sd=HEAD_ROOM_PERCENT,
         ),
     },
     forward=forward,
     needs=frozenset({"one turn"}),
     shapes=shapes,
     zoomed=("full_scale_percent",),
+    fitted_shapes=("full_scale_percent",),
     source="integral non-linearity, IEEE Std 1241; binary-weighted capacitors: J. L. McCreary and P. R. Gray, IEEE J. "
     "Solid-State Circuits 10 (1975) 371",
-    signature="bow: orders 1 and 3; S: order 4, the same as saturation; weights: steps at the major codes, many orders",
+    signature="bow: order 3, the same as quadratic_nonlinearity; S: order 4, the same as saturation; weights: steps at "
+    "the major codes, many orders",
 )

@@ -24,9 +24,14 @@ BLUR = 3e-4
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     full_scale = 0.01 * np.asarray(values["full_scale_percent"], dtype=np.float64)
     u = signal / full_scale
-    # Straight through both ends.
-    curve = np.asarray(values["bow_lsb"]) * (1.0 - u * u)
-    curve = curve + np.asarray(values["s_lsb"]) * (u - u**3) * (np.sqrt(27.0) / 2.0)
+    curve = np.zeros(1)
+    # Straight through both ends. A search asks for one of them at a time.
+    bow = values["bow_lsb"]
+    if np.any(bow):
+        curve = curve + bow * (1.0 - u * u)
+    s_shape = values["s_lsb"]
+    if np.any(s_shape):
+        curve = curve + (np.sqrt(27.0) / 2.0) * s_shape * (u - u * u * u)
     errors = (
         values["bit1_lsb"],
         values["bit2_lsb"],

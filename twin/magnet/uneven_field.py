@@ -41,6 +41,11 @@ class Pose:
     sensor_tilt: tuple[Any, Any] = (0.0, 0.0)
     magnet_tilt: tuple[Any, Any] = (0.0, 0.0)
 
+    @property
+    def centred(self) -> bool:
+        """Whether nothing is displaced or tilted."""
+        return not any(map(np.any, (self.sensor, self.magnet, *self.sensor_tilt, *self.magnet_tilt)))
+
     def __add__(self, other: Pose) -> Pose:
         """Both displacements and tilts together; tilts are small, so their order does not count."""
         return Pose(
@@ -104,6 +109,8 @@ class UnevenField:
 
     def of(self, turn: Any, pose: Pose) -> Array:
         """Bx + i By in the sensor's axes at the field angles whose unit vectors are ``turn``, over B on the axis."""
+        if pose.centred:
+            return np.asarray(turn)
         away = (pose.sensor * np.conj(turn) - pose.magnet) / self.radius_mm
         inside = _back((away.real, away.imag, self.height), pose.magnet_tilt)
         x, y, z = _tilted(self._gradient(inside), pose.magnet_tilt)

@@ -58,6 +58,7 @@ class Linear:
         self._order = chain.places()
         self._points: list[tuple[float, Insertion]] = []
         self.stair_variance: Array | None = None
+        self._made: dict[str, Array] = {}
         self._run(blur)
 
     def _run(self, blur: float) -> None:
@@ -129,22 +130,31 @@ class Linear:
         place = self._order[effect.name]
         return [point for where, point in self._points if where < place][-1]
 
-    def change(self, effect: Effect, old: Parameters, new: Parameters, *, batch: int | None = None) -> Array:
-        """Change of the observables, (O, n) or (batch, O, n), as the effect's parameters go from old to new."""
+    def change(
+        self, effect: Effect, old: Parameters, new: Parameters, *, batch: int | None = None, before: Array | None = None
+    ) -> Array:
+        """Change of the observables, (O, n) or (batch, O, n), as the effect's parameters go from old to new.
+
+        ``before`` is the signal that the effect makes with the old ones, where it is known already.
+        """
+        before = self.made(effect, old) if before is None else before
+        moved = effect.forward(self._given(effect), self.motion, new, None) - before
         if effect.acts_on == "reference":
             # The reference reads too much by this, so the shaft stands back by it.
-            shaft: Array = self.motion.shaft_rad[None, :]
-            moved = effect.forward(shaft, self.motion, new, None) - effect.forward(shaft, self.motion, old, None)
             start: Array = self._points[0][1].sensitivity.sum(axis=1)
             return -start * moved
-        point, ahead = self.at(effect), self.before(effect)
-        moved = effect.forward(ahead.signal, self.motion, new, None) - effect.forward(
-            ahead.signal, self.motion, old, None
-        )
+        point = self.at(effect)
         if batch is None:
             return np.asarray(np.einsum("okn,kn->on", point.sensitivity, moved))
         moved = np.broadcast_to(moved, (batch, *moved.shape[-2:]))
         return np.asarray(np.einsum("okn,bkn->bon", point.sensitivity, moved))
+
+    def made(self, effect: Effect, values: Parameters) -> Array:
+        """The signal that an effect makes of the one it is given here."""
+        return effect.forward(self._given(effect), self.motion, values, None)
+
+    def _given(self, effect: Effect) -> Array:
+        return self.motion.shaft_rad[None, :] if effect.acts_on == "reference" else self.before(effect).signal
 
     def derivative(self, key: str, effect: Effect, name: str, turn: int | None = None) -> Array:
         """Column (O, n) of one parameter of an effect that is present, in the parameter's own unit."""
@@ -161,7 +171,9 @@ class Linear:
                 # Over the whole clock a small change of a frequency turns the phase by much.
                 step = 1e-7 * max(abs(float(values[name])), 1.0)
             moved[name] = float(values[name]) + step
-        return self.change(effect, values, moved) / step
+        if key not in self._made:
+            self._made[key] = self.made(effect, values)
+        return self.change(effect, values, moved, before=self._made[key]) / step
 
     def terms(self, effect: Effect) -> tuple[Term, ...]:
         """The linear coefficients that a candidate has at fixed shape."""
@@ -190,6 +202,7 @@ class Linear:
         }
         out = np.empty((count, len(terms), self.observables, n))
         null = {**effect.null(), **grid}
+        before = self.made(effect, null) if effect.roles("strength") else None
         for place, term in enumerate(terms):
             if effect.params[term.param].role == "level":
                 out[:, place] = self.change(effect, effect.null(), null, batch=count)
@@ -198,7 +211,7 @@ class Linear:
             moved = {**null, term.param: effect.params[term.param].null + step}
             if term.phase_deg is not None:
                 moved[effect.roles("phase")[0]] = term.phase_deg
-            out[:, place] = self.change(effect, null, moved, batch=count) / step
+            out[:, place] = self.change(effect, null, moved, batch=count, before=before) / step
         return out
 
 

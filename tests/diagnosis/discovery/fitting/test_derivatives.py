@@ -60,7 +60,9 @@ def example(effect: Effect) -> dict[str, Any]:
     # Edges have slopes where noise blurs them.
     blur = {"blur_percent": 0.1} if "blur_percent" in effect.params else {}
     # What no plain example sets: both displaced, and tilted.
-    held = {name: 0.4 * param.typical for name, param in effect.params.items() if param.prior_sd or param.trial}
+    held = {
+        name: param.null + 0.4 * param.typical for name, param in effect.params.items() if param.prior_sd or param.trial
+    }
     return {**EXAMPLES[effect.name].params, **held, **blur}
 
 

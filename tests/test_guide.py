@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from scenarios.cli.app import app
+from scenarios.commands.protocol import Protocol
 from tests.command_line import halltwin
 from tests.pages import GUIDE, PAGES, ROOT, block, figures, lines, part, words
+from twin.angles import wrap
+from twin.files import from_dict, to_dict
+from twin.hardware import run
 
 OWN_PAGE = GUIDE / "own_effects.md"
 OWN = ROOT / "scenarios/data/gear_mesh.py"
@@ -128,3 +134,13 @@ def test_how_it_works_lists_every_stage_in_order() -> None:
     order = [name for name in re.findall(r"^\s+(\w+),", listed[0], re.M) if name in stages]
     assert set(order) == stages
     assert [name for name in re.findall(r"^\| `(\w+)` \|", page, re.M) if name in stages] == order
+
+
+def test_the_twin_of_its_page_is_read_run_and_written() -> None:
+    chain = from_dict(tomllib.loads(block(GUIDE / "twin.md", "twin", "toml")))
+    assert [part.name for part in chain.described] == ["disk", "plates"]
+    motion = Protocol().motion()
+    signals = run(chain, motion, np.random.default_rng(1))
+    recorded = np.radians(chain.simulate(motion, seed=1).measured_deg)
+    assert np.max(np.abs(wrap(signals.received_rad - recorded))) < 1e-6
+    assert to_dict(from_dict(to_dict(chain))) == to_dict(chain)

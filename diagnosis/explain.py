@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from diagnosis.discovery.result import Discovery
     from diagnosis.discovery.settings import DiscoverySettings
     from diagnosis.discovery.watch import Watch
+    from diagnosis.factors.mounting import Mounting
     from twin.chain import Chain
     from twin.effect import Effect
     from twin.sweep import Sweep
@@ -28,6 +29,7 @@ def explain(
     sweep: SweepLike,
     *,
     twin: TwinLike | None = None,
+    mounting: Mounting | None = None,
     effects: OwnEffects = (),
     settings: DiscoverySettings | None = None,
     seed: int = 0,
@@ -50,6 +52,9 @@ def explain(
         Hold the sweep against this twin as it is, instead of the paper's error model: a twin file (TOML), the name of
         a preset, or a :class:`twin.Chain` such as the ``extended`` one of another recording. Only its zeros are
         fitted.
+    mounting : Mounting, optional
+        The magnet and its air gap in whose field a misplacement and a stray field are counted. If not given, a cylinder
+        of 6 mm x 2.5 mm at 1.5 mm; a twin brings its own.
     effects : str, os.PathLike, Effect, or a sequence of these, optional
         Causes of your own, which are searched beside the catalogue and the installed ones: Python files that
         declare them, or :class:`twin.Effect` objects.
@@ -119,13 +124,14 @@ def explain(
     _check_on_interrupt(on_interrupt)
     searched = _searched(effects, twin)
     given = as_twin(twin, effects=searched)
+    start = _start(searched, mounting, given)
     read = as_sweep(sweep)
     used = vars(settings or DiscoverySettings()).items()
     LOG.info("seed %d; settings: %s", seed, ", ".join(f"{name} {value}" for name, value in used))
     watch = Watch(progress)
     listening = stopped_by_interrupt(watch) if on_interrupt == "answer" else nullcontext()
     with one_blas_thread(), listening:
-        found = _discovery(read, given=given, effects=searched, settings=settings, rng=rng, watch=watch)
+        found = _discovery(read, given=given, start=start, settings=settings, rng=rng, watch=watch)
     return Explanation(found, made)
 
 
@@ -133,7 +139,7 @@ def _discovery(
     sweep: Sweep,
     *,
     given: Chain | None,
-    effects: tuple[Effect, ...],
+    start: Chain,
     settings: DiscoverySettings | None,
     rng: np.random.Generator,
     watch: Watch,
@@ -159,8 +165,26 @@ def _discovery(
         senses=senses_of_channels(sweep),
         robust=True,
     )
-    state = State.of(sweep, replace(fit.chain(), effects=effects), settings=settings, rng=rng)
+    model = replace(fit.chain(), effects=start.effects, magnet=start.magnet)
+    state = State.of(sweep, model, settings=settings, rng=rng)
     return discover(state.with_(suspects=fit.outliers, watch=watch))
+
+
+def _start(effects: tuple[Effect, ...], mounting: Mounting | None, given: Chain | None) -> Chain:
+    """The chain without any effect, in the field of the magnet that is named. Raises UserError."""
+    from twin.chain import Chain
+    from twin.errors import UserError
+    from twin.magnet.assembly import Assembly
+    from twin.magnet.placement import Placement
+
+    start = Chain(effects=effects)
+    if mounting is None:
+        return start
+    if given is not None:
+        raise UserError("found a twin and a mounting; give one of them: a twin brings its own magnet")
+    if len(mounting.air_gap_mm) > 1:
+        raise UserError(f"found {len(mounting.air_gap_mm)} air gaps; expected one, that of the sweep")
+    return start.with_magnet(Assembly(mounting.magnet, Placement(air_gap_mm=mounting.air_gap_mm[0])))
 
 
 def _check_settings(settings: DiscoverySettings | None) -> None:

@@ -23,6 +23,7 @@ from twin.angles import wrap_deg
 from twin.baseline import FACTORS
 from twin.catalogue import find
 from twin.files import to_dict
+from twin.param import Param
 
 SCHEMA = "halltwin.explain/1"
 _T95 = 1.959964
@@ -216,6 +217,7 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
             # Of a phase no less can be known than nothing.
             half = min(half, 180.0)
         figures[name] = _figure(value, value - half, value + half, param.unit)
+        figures[name] |= _hardly_told(param, deviation.get((key, name), 0.0))
         if param.unit == "s" and name in effect.zoomed and (key, name) not in deviation:
             figures[name] |= _between_readings(fit, value)
     if effect.line is not None and effect.line.clock == "time":
@@ -232,6 +234,11 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
             told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
     figures.update({name: _figure(*figure) for name, figure in derived.items()})
     return figures
+
+
+def _hardly_told(param: Param, deviation: float) -> dict[str, Any]:
+    """The mark of a parameter that keeps more than half of the variance that was known before the sweep."""
+    return {"hardly_told": True} if 0.0 < param.prior_sd < np.sqrt(2.0) * deviation else {}
 
 
 def _row_numbers(found: Discovery, key: str) -> dict[str, dict[str, Any]]:

@@ -14,7 +14,7 @@ from twin.catalogue import CATALOGUE
 _MOST_DECIMALS = 7
 _FIFTY = 50
 """Readings of which an RMS is known to a tenth."""
-_ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT|mm|Hz|s)$")
+_ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT|mm|mm2|lsb|Hz|s)$")
 _NUMBERED = re.compile(r"^(?P<name>.*?)(?:_(?P<number>\d+))?$")
 
 
@@ -134,8 +134,11 @@ def instances(parameters: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def parameter_line(parameters: Mapping[str, Any]) -> str:
-    """One instance's parameters on one line."""
-    return ", ".join(f"{label(name)} {with_unit(parameter)}" for name, parameter in parameters.items())
+    """One instance's parameters on one line; of those that the sweep hardly narrows the names alone."""
+    told = {name: one for name, one in parameters.items() if not one.get("hardly_told")}
+    line = ", ".join(f"{label(name)} {with_unit(parameter)}" for name, parameter in told.items())
+    rest = ", ".join(label(name) for name in parameters if name not in told)
+    return f"{line}; hardly told by this sweep: {rest}" if rest else line
 
 
 # ---- findings ---------------------------------------------------------------------------------------------------

@@ -10,6 +10,16 @@ import typer
 from scenarios.cli.options import EffectFiles, ErrorPlot, Force, Json, MaxSize, Seed, fail_on_option, written
 from scenarios.cli.reproduce import command_line
 
+MagnetText = Annotated[
+    str | None,
+    typer.Option(
+        "--magnet",
+        metavar="NAME=VALUE,...",
+        help="The magnet for which mm and mT are counted, as in a twin's [magnet], e.g. "
+        "diameter_mm=6,height_mm=2.5,grade=N35H.",
+    ),
+]
+
 
 def explain(
     context: typer.Context,
@@ -18,6 +28,8 @@ def explain(
         str | None,
         typer.Option(metavar="TWIN", help="Hold the sweep against this twin as it is: a TOML file or a preset."),
     ] = None,
+    magnet: MagnetText = None,
+    air_gap: Annotated[str | None, typer.Option(metavar="mm", help="Air gap in mm.")] = None,
     json: Json = None,
     report: Annotated[
         Path | None,
@@ -35,12 +47,13 @@ def explain(
 ) -> None:
     """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""
     from scenarios.commands.explain import Outputs, run
+    from scenarios.commands.known import Known
     from twin.bounded_input import bytes_of
 
     run(
         sweep,
         max_bytes=bytes_of(max_size),
-        twin=twin,
+        known=Known(twin=twin, magnet=magnet, air_gap=air_gap),
         outputs=Outputs(json=json, report=report, extended=extended, plot=plot, force=force),
         effect_files=effects or (),
         seed=seed,
@@ -81,14 +94,7 @@ def diagnose(
             metavar="+1|-1", help="Which way the output counts: +1 where it is atan2(y, x) of the channels, -1 against."
         ),
     ] = None,
-    magnet: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME=VALUE,...",
-            help="The magnet for which mm and mT are counted, as in a twin's [magnet], e.g. "
-            "diameter_mm=6,height_mm=2.5,grade=N35H.",
-        ),
-    ] = None,
+    magnet: MagnetText = None,
     air_gap: Annotated[
         str | None,
         typer.Option(metavar="mm,mm,...", help="Air gap in mm of each sweep in order, or of the first one."),

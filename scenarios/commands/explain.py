@@ -12,6 +12,7 @@ from diagnosis.report.console import show
 from diagnosis.report.page import page
 from scenarios.commands.fail_on import EXPLAIN, asked, in_explanation, raise_found
 from scenarios.commands.interrupt import INTERRUPTED
+from scenarios.commands.known import Known
 from scenarios.commands.outputs import HTML, JSON, PICTURE, TOML, OutputFiles, json_text
 from scenarios.commands.progress import progress_line
 from twin.bounded_input import LARGEST_SWEEP_BYTES
@@ -37,7 +38,7 @@ class Outputs:
 def run(
     path: Path,
     *,
-    twin: str | None,
+    known: Known,
     outputs: Outputs,
     effect_files: Sequence[Path] = (),
     seed: int,
@@ -50,12 +51,13 @@ def run(
     words = _asked(fail_on, effects)
     files = OutputFiles.checked(
         [(outputs.json, JSON), (outputs.report, HTML), (outputs.extended, TOML), (outputs.plot, PICTURE)],
-        inputs=[path, twin, *effect_files],
+        inputs=[path, known.twin, *effect_files],
         force=outputs.force,
     )
     # Before a long recording is read: a name that is none needs no waiting for.
-    held = None if twin is None else read_twin_or_preset(twin, effects=effects)
-    found = _explained(Sweep.read(path, max_bytes=max_bytes), twin=held, effects=effect_files, seed=seed)
+    held = None if known.twin is None else read_twin_or_preset(known.twin, effects=effects)
+    given = {"twin": held, "mounting": known.mounting(), "effects": effect_files}
+    found = _explained(Sweep.read(path, max_bytes=max_bytes), **given, seed=seed)
     found = replace(found, made=replace(found.made, command=command))
     answer = found.to_dict()
     try:

@@ -30,6 +30,10 @@ class Known:
         twin = None if self.twin is None else read_twin_or_preset(self.twin)
         return {"twin": twin, "output_sense": self.output_sense, "mounting": self._mounting(twin)}
 
+    def mounting(self) -> Mounting | None:
+        """The magnet and air gap that are given; None: neither is. Raises UserError for what cannot be meant."""
+        return None if self.magnet is None and self.air_gap is None else self._mounting(None)
+
     def _mounting(self, twin: Chain | None) -> Mounting:
         """The magnet and the air gaps: those given, else the twin's, else assumed ones."""
         from diagnosis import Mounting

@@ -182,7 +182,8 @@ def stated(answer: dict[str, Any]) -> Iterator[str]:
         if cause["name"] == "unnamed":
             yield from statements.parameter_lines(answer, cause)
         else:
-            yield from (figure(parameter)[0] for parameter in cause["parameters"].values())
+            told = (one for one in cause["parameters"].values() if not one.get("hardly_told"))
+            yield from (figure(parameter)[0] for parameter in told)
 
 
 def figures_beside(text: str, answer: dict[str, Any]) -> Iterator[str]:

@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from diagnosis import explain
+from scenarios.commands.protocol import Protocol
 from twin.chain import Chain
+from twin.magnet.assembly import Assembly
+from twin.magnet.placement import Placement
 from twin.motion import Motion
 from twin.sweep import Sweep
 
@@ -56,3 +59,18 @@ def test_what_touches_single_readings_says_how_far_off_they_are() -> None:
     assert (cause["name"], cause["rows"]) == ("bus_glitch", [41, 201])
     assert cause["rows_rms_deg"] == pytest.approx(22.5, abs=0.05)
     assert cause["heldout_rms_deg_before"] == cause["heldout_rms_deg_after"] == answer["extended"]["heldout_rms_deg"]
+
+
+def test_what_the_sweep_hardly_tells_is_marked_and_named_without_a_figure() -> None:
+    """Of a magnet a little off, one sweep shows the product of the displacements, and neither tilts nor shares."""
+    place = Placement(sensor_x_mm=0.3, magnet_y_mm=0.2)
+    chain = Chain(magnet=Assembly(placement=place)).with_effect("noise", rms_deg=0.02)
+    found = explain(chain.simulate(Protocol(turns=2).motion(), seed=1))
+    (cause,) = found.to_dict()["causes"]
+    assert cause["name"] == "magnet_misalignment"
+    told = {name for name, one in cause["parameters"].items() if not one.get("hardly_told")}
+    assert {"product_mm2", "phase_deg"} <= told
+    assert "sensor_tilt_x_deg" not in told
+    product = cause["parameters"]["product_mm2"]
+    assert product["low"] < 0.06 < product["high"]
+    assert "hardly told by this sweep: " in " ".join(found.summary(width=400).split())

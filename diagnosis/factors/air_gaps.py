@@ -172,9 +172,9 @@ class _Fits(dict[tuple[str, ...], GapFit]):
         self.problem, self.freedom = problem, freedom
 
     def __missing__(self, causes: tuple[str, ...]) -> GapFit:
-        # What stands in a product beside the sensor's displacement has no slope where that is still none.
-        alone = tuple(name for name in causes if name not in BESIDE_SENSOR)
-        simpler = [self[alone]] if alone != causes else []
+        # What stands in a product beside the sensor's displacement has no slope where that is still none, and one of
+        # two such causes may lead the other astray.
+        simpler = [self[tuple(other for other in causes if other != name)] for name in causes if name in BESIDE_SENSOR]
         simpler += [fit for one, fit in self.items() if set(one) < set(causes)]
         start = min(simpler, key=lambda fit: fit.chi2) if simpler else None
         self[causes] = found = self.problem.fitted(causes, self.freedom, start=start)

@@ -50,8 +50,8 @@ class Parts:
 
     @property
     def gain(self) -> float:
-        """Vertical field at the plates over the field in the plane."""
-        return (self.disk or Disk()).gain
+        """Vertical field at the plates over the field in the plane: 1 where there is no disk."""
+        return 1.0 if self.disk is None else self.disk.gain
 
     @property
     def plates(self) -> tuple[Plate, Plate]:

@@ -110,11 +110,13 @@ def added(fit: BaselineFit, vx: Array, vy: Array) -> Added:
     ]
     if np.hypot(gap[VX] / error[VX], gap[VY] / error[VY]) > _SURE:
         said.append(
-            f"vx, vy: {order_1:.3f} deg of order 1 are not in the channels' own curve: the reference's eccentricity"
+            f"vx, vy: {order_1:.3f} deg of order 1 are not in the channels' own curve: a magnet and a sensor that are "
+            "both off the axis, or the reference's eccentricity"
         )
     if np.hypot(gap[GAIN] / error[GAIN], gap[BETA] / error[BETA]) > _SURE:
         said.append(
-            f"vx, vy: {order_2:.3f} deg of order 2 are not in the channels' own curve: an angled joint of the coupling"
+            f"vx, vy: {order_2:.3f} deg of order 2 are not in the channels' own curve: an angled joint of the "
+            "coupling, or a magnet and a sensor far off the axis"
         )
     if len(said) == 2:
         said.append("vx, vy: the channels' own curve holds all that the angle shows; the reference adds nothing")

@@ -147,7 +147,16 @@ def moved(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[str]:
         if known["low"] is not None
         and known["high"] is not None
         and not known["low"] <= after[name]["value"] <= known["high"]
+        # A factor that the causes leave hardly known has not moved.
+        and not _holds(after[name], known)
     ]
+
+
+def _holds(wide: Mapping[str, Any], known: Mapping[str, Any]) -> bool:
+    """Whether an interval holds another one whole; one without ends holds any."""
+    if wide["low"] is None or wide["high"] is None:
+        return True
+    return bool(wide["low"] <= known["low"] and known["high"] <= wide["high"])
 
 
 def standard_deviations(fit: Fit) -> Deviations:

@@ -15,7 +15,6 @@ from twin.sweep import Sweep
 
 SMALLEST_SPAN_K = 5.0
 """Readings whose temperatures differ by less were taken at one, as for a motion's "two temperatures"."""
-_NEIGHBOURS = 2
 _REMADE_RAD = np.radians(1.0)
 """Zeros farther apart than this were set anew: no mount of a magnet turns by so much with temperature."""
 
@@ -99,13 +98,23 @@ def joined(sweeps: Sequence[Sweep]) -> Recording:
 
 
 def temperature_of(sweep: Sweep) -> Array:
-    """Temperature (n,) [C] of each reading: a missing one, or one far off its neighbours, is taken from these."""
-    temperature = sweep.motion().temperature_c
-    around = np.lib.stride_tricks.sliding_window_view(
-        np.pad(temperature, _NEIGHBOURS, mode="reflect"), 2 * _NEIGHBOURS + 1
+    """Temperature (n,) [C] of each reading; a single one off both its neighbours, which agree, is taken from these.
+
+    Only an odd reading of a thermometer looks like that: a temperature that comes back is one that the record takes
+    turns with.
+    """
+    here = np.asarray(sweep.motion().temperature_c)
+    # The neighbours of the first and the last are the two beside it.
+    before, after = np.r_[here[2:3], here[:-1]], np.r_[here[1:], here[-3:-2]]
+    odd = (
+        (np.abs(after - before) < SMALLEST_SPAN_K)
+        & (np.abs(here - before) > SMALLEST_SPAN_K)
+        & (np.abs(here - after) > SMALLEST_SPAN_K)
     )
-    middle = np.median(around, axis=1)
-    return np.asarray(np.where(np.abs(temperature - middle) > SMALLEST_SPAN_K, middle, temperature))
+    level = np.round(here / SMALLEST_SPAN_K)
+    levels, count = np.unique(level[odd], return_counts=True)
+    lone = np.isin(level, levels[count == 1])
+    return np.where(odd & lone, 0.5 * (before + after), here)
 
 
 def counts_as(sweep: Sweep) -> int:

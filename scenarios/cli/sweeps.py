@@ -15,7 +15,7 @@ MagnetText = Annotated[
     typer.Option(
         "--magnet",
         metavar="NAME=VALUE,...",
-        help="The magnet for which mm and mT are counted, as in a twin's [magnet], e.g. "
+        help="The magnet for which mm and mT are counted, as in the table magnet of a twin, e.g. "
         "diameter_mm=6,height_mm=2.5,grade=N35H.",
     ),
 ]

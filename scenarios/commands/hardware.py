@@ -36,7 +36,8 @@ def run_command(twin: str, folder: Path, *, effect_files: Sequence[Path] = (), f
     files.write({csv: csv_text(columns), png: figure, svg: figure})
     for axis, plate in zip("xy", chain.parts.plates, strict=True):
         before, after = residual_offset_mT(plate)
-        print(f"plate {axis}: offset {before:.4g} mT before spinning, {after:.4g} mT after it")
+        left = f"{after:.4g} mT after it" if plate.spun else "which stay: its bias does not spin"
+        print(f"plate {axis}: offset {before:.4g} mT before spinning, {left}")
     bits = signals.bits
     print(f"field in the plane {chain.nominal_mT:.4g} mT; {int(signals.sound.sum())} sound frames of {bits} bit")
     print(f"largest error {np.max(np.abs(columns['error_deg'])):.4g} deg")
@@ -77,11 +78,11 @@ def _figure(columns: dict[str, Array]) -> Any:
         ("magnet", "field in the plane [mT]", {axis: columns[f"in_plane_{axis}_mT"] for axis in "xy"}),
         ("concentrator", "vertical field [mT]", {axis: columns[f"vertical_{axis}_mT"] for axis in "xy"}),
         (
-            "spinning current",
+            "Hall plates, with the effects of their stage",
             "output minus field [mT]",
             {
                 f"{axis}, {name}": columns[f"{kind}_{axis}_mT"] - columns[f"vertical_{axis}_mT"]
-                for kind, name in (("unspun", "before"), ("spun", "after"))
+                for kind, name in (("unspun", "without spinning"), ("spun", "as built"))
                 for axis in "xy"
             },
         ),

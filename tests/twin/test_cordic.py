@@ -84,7 +84,7 @@ def test_axes_are_near_their_angles() -> None:
     ("options", "message"),
     [
         ({"iterations": 0}, "iterations is 0; expected a whole number from 1 to 40"),
-        ({"word_bits": 0}, "word_bits is 0 bit; expected a whole number from 4 to 32 bit"),
+        ({"word_bits": 0}, "word_bits is 0 bit; expected a whole number from 1 to 32 bit"),
         ({"guard_bits": 1.5}, "guard_bits is 1.5 bit; expected a whole number from 0 to 24 bit"),
     ],
 )

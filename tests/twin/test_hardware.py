@@ -180,6 +180,17 @@ def test_described_parts_are_written_and_read() -> None:
     assert from_dict(to_dict(chain.mirrored())).parts == chain.mirrored().parts
 
 
+def test_offsets_that_cancel_are_no_ideal_plate() -> None:
+    plate = Plate(offset_uV=1000.0, amplifier_offset_uV=-1000.0, asymmetry=0.1, spun=False)
+    assert not plate.ideal
+    assert Parts(plate=plate).plates[0].spun is False
+
+
+def test_a_plate_without_a_disk_sees_the_field_as_it_is() -> None:
+    alone, beside = described(plate=TYPICAL), described(disk=Disk(gain=1.0), plate=TYPICAL)
+    np.testing.assert_array_equal(alone.channels(TURN), beside.channels(TURN))
+
+
 def test_refuses_a_plate_of_y_alone() -> None:
     with pytest.raises(OutOfRangeError, match="plate_y is described and plate is not"):
         Parts(plate_y=TYPICAL)

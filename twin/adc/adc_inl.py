@@ -49,7 +49,8 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 def _level(u: Array, bit: int, *, blurred: bool) -> Array:
     """A bit of the offset binary code of u in [-1, 1), the first the most significant, as -1 and 1."""
     half_period = np.pi * 2.0 ** (bit - 1)
-    wave = -np.sin(half_period * (u + 1.0))
+    # Beyond its range a converter stays at its last code.
+    wave = -np.sin(half_period * (np.clip(u, BLUR - 1.0, 1.0 - BLUR) + 1.0))
     return np.asarray(np.tanh(wave / (half_period * BLUR)) if blurred else np.sign(wave))
 
 
@@ -58,9 +59,7 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
 
 
 def _lsb(doc: str, *, mirror: Literal[0] | None = None) -> Param:
-    return Param(
-        unit="LSB", null=0.0, lower=-200.0, upper=200.0, doc=doc, typical=15.0, field_power=-1.0, mirror=mirror
-    )
+    return Param(unit="LSB", null=0.0, lower=-200.0, upper=200.0, doc=doc, typical=15.0, mirror=mirror)
 
 
 ADC_INL = Effect(

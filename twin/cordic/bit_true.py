@@ -32,9 +32,9 @@ class Cordic:
 
     def __post_init__(self) -> None:
         require_within("iterations", self.iterations, 1, 40, whole=True)
-        require_within("word_bits", self.word_bits, 4, 32, "bit", whole=True)
+        require_within("word_bits", self.word_bits, 1, 32, "bit", whole=True)
         require_within("guard_bits", self.guard_bits, 0, 24, "bit", whole=True)
-        require_within("angle_bits", self.angle_bits, 4, 48, "bit", whole=True)
+        require_within("angle_bits", self.angle_bits, 1, 48, "bit", whole=True)
 
     @property
     def steps(self) -> Codes:

@@ -79,10 +79,10 @@ class Plate:
     @property
     def ideal(self) -> bool:
         """Whether its output is the field: nothing is left after spinning, and nothing follows the temperature."""
-        left = self.asymmetry * self.offset_uV
+        left = [self.asymmetry * self.offset_uV]
         if not self.spun:
-            left = self.offset_uV + self.thermal_uV + self.amplifier_offset_uV
-        return left == self.percent_per_K == self.white_nV == self.settling_s == 0.0
+            left = [self.offset_uV, self.thermal_uV, self.amplifier_offset_uV]
+        return not any((*left, self.percent_per_K, self.white_nV, self.settling_s))
 
     @property
     def cycle_Hz(self) -> float:

@@ -120,7 +120,7 @@ def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str,
     return {
         "off_axis_mm": np.zeros(strength_deg.size),
         "tilt_deg": np.zeros(strength_deg.size),
-        "product_mm2": np.minimum(radians(strength_deg) / TURN_PER_MM2, 2.0),
+        "product_mm2": np.minimum(radians(strength_deg) / TURN_PER_MM2, 1.0),
     }
 
 
@@ -176,7 +176,7 @@ MAGNET_MISALIGNMENT = Effect(
             unit="mm2",
             null=0.0,
             lower=0.0,
-            upper=2.0,
+            upper=1.0,
             doc="sensor's displacement times that of the magnet's field, where both are off the axis",
             typical=0.05,
             # In an angle the plain part is an offset's: what is left is of higher order in the displacements.
@@ -191,7 +191,7 @@ MAGNET_MISALIGNMENT = Effect(
             role="phase",
             mirror=-1,
         ),
-        "log_ratio": _shape("1", 4.0, "log of the sensor's over the magnet's displacement", prior_sd=np.log(WITHIN)),
+        "log_ratio": _shape("1", 2.0, "log of the sensor's over the magnet's displacement", prior_sd=np.log(WITHIN)),
         "sensor_tilt_x_deg": _tilt("sensor's tilt about x, beside it", mirror=-1),
         "sensor_tilt_y_deg": _tilt("sensor's tilt about y, beside it", mirror=1),
         "magnet_tilt_x_deg": _tilt("magnet's tilt about x of the shaft", mirror=-1),

@@ -52,7 +52,7 @@ def design_twin(study: DesignStudy, row: Array, which: float) -> Chain:
         key: {name: float(value) for name, value in params.items()}
         for key, params in scaled_values(chain, assembly).items()
     }
-    return replace(chain, values=values, magnet=assembly)
+    return replace(chain, values=values).with_magnet(assembly)
 
 
 def check_design(study: DesignStudy, row: Array, which: float) -> Check:

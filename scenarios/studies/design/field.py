@@ -129,8 +129,10 @@ def scaled_values(chain: Chain, magnet: Assembly) -> dict[str, dict[str, Any]]:
     for key, params in chain.values.items():
         effect = find(key, chain.effects)
         values = {**effect.null(), **params}
-        factors = {name: effect.field_factor(name, values, **ratios) for name in followed(effect) if name in params}
-        scaled[key] = {name: value * factors.get(name, 1.0) for name, value in params.items()}
+        # What is not stated is at the twin's own magnet, too: the field that a stray one is counted against.
+        factors = {name: effect.field_factor(name, values, **ratios) for name in followed(effect)}
+        stated = {**{name: values[name] for name in factors}, **params}
+        scaled[key] = {name: value * factors.get(name, 1.0) for name, value in stated.items()}
     return scaled
 
 

@@ -190,6 +190,14 @@ def test_a_single_wild_temperature_is_its_neighbours() -> None:
     assert not over_temperature([replace(sweep, temperature_c=at_one)])
 
 
+def test_temperatures_that_take_turns_stay_as_they_are() -> None:
+    sweep = warm().simulate(over(COLD_ROOM_HOT), seed=1)
+    assert sweep.temperature_c is not None
+    taking_turns = np.tile(np.array(COLD_ROOM_HOT, dtype=np.float64), len(sweep) // len(COLD_ROOM_HOT))
+    found = temperature_of(replace(sweep, temperature_c=taking_turns))
+    np.testing.assert_array_equal(found, taking_turns)
+
+
 def test_a_sweep_that_counts_the_other_way_round_is_refused() -> None:
     first, second, third = each_at({c: warm() for c in COLD_ROOM_HOT})
     turned = replace(second, measured_deg=-second.measured_deg, name="turned.csv")

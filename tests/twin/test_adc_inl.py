@@ -1,0 +1,33 @@
+"""The converter's transfer curve at its ends and in another field."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from twin.adc.adc_inl import ADC_INL
+from twin.adc.adc_quantisation import FULL_SCALE
+from twin.chain import Chain
+from twin.motion import Motion
+
+VALUES = {**ADC_INL.null(), "bit1_lsb": 50.0, "bit3_lsb": -20.0}
+
+
+def added(signal: np.ndarray, **values: float) -> np.ndarray:
+    motion = Motion.from_angle(np.zeros(signal.shape[-1]))
+    return ADC_INL.forward(signal, motion, {**VALUES, **values}, None) - signal
+
+
+def test_beyond_its_range_no_bit_turns_over() -> None:
+    inside, beyond = (np.full((2, 1), level * FULL_SCALE) for level in (0.998, 1.02))
+    lsb = FULL_SCALE / 2**13
+    # The curve's straight part goes on; of its steps none is left: half the weights' errors is what one would make.
+    assert np.max(np.abs(added(beyond) - added(inside))) < 5.0 * lsb
+
+
+def test_in_twice_the_field_a_step_is_half_as_much_of_the_amplitude() -> None:
+    signal = np.array([[0.4, 0.9, -0.7], [0.1, -0.3, 0.8]])
+    factor = {name: float(ADC_INL.field_factor(name, VALUES, field_ratio=2.0)) for name in VALUES}
+    stronger = {name: value * factor[name] for name, value in VALUES.items()}
+    # The same volts are twice the amplitudes of the weaker field.
+    np.testing.assert_allclose(added(0.5 * signal, **stronger), 0.5 * added(signal), rtol=1e-9)
+    assert Chain().with_effect("adc_inl", bit1_lsb=1.0).values

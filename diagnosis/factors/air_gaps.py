@@ -8,7 +8,7 @@ is named; where none does, nothing is.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -28,6 +28,8 @@ SEEN_SIGMA = 5.0
 """Standard errors of a sensor's displacement from which a magnet's can be looked for: it shows in their product."""
 MOST_SWEEPS = 64
 """More are not fitted together: the work goes with the square of their number."""
+HELD_SHARE = 0.1
+"""Of the field's change over the gaps, in logarithms: channels that change by less do not follow the field."""
 SMALLEST_CHANGE = 0.1
 """Relative change of the field from which sweeps count as different air gaps."""
 _GAPS_TRIED = 60
@@ -73,6 +75,8 @@ class AirGaps:
     quadratic: Law
     parting_mm: float | None
     """The nearest air gap that would part electronics from a sensor off the axis; None where there is none in reach."""
+    amplitudes_held: bool = False
+    """Whether the channels are of one size at all stated gaps, so that they gauge no gap."""
 
     @property
     def misfit(self) -> bool:
@@ -139,6 +143,7 @@ def air_gaps(sweeps: Sequence[GapSweep], names: Sequence[str], mounting: Mountin
     start = start_gaps(sweeps, mounting)
     if start is None:
         return None
+    sweeps, held = without_held_amplitudes(sweeps, mounting)
     fits = _Fits(Problem(tuple(sweeps), mounting, start), freedom)
     full_2, sets_1 = fits.full_2(), fits.order_1()
     order_1 = _simplest(fits, [(one, full_2) for one in sets_1])
@@ -161,6 +166,7 @@ def air_gaps(sweeps: Sequence[GapSweep], names: Sequence[str], mounting: Mountin
         fits=fits,
         quadratic=quadratic_law([sweep.point[QUAD] for sweep in sweeps], _errors(sweeps), mounting.field_mT(start)),
         parting_mm=_parting_mm(sweeps[0], fits, first) if either else None,
+        amplitudes_held=held,
     )
 
 
@@ -208,6 +214,21 @@ def start_gaps(sweeps: Sequence[GapSweep], mounting: Mounting) -> Array | None:
         return None
     field = mounting.field_mT(gaps)
     return gaps if np.ptp(field) >= SMALLEST_CHANGE * field.max() else None
+
+
+def without_held_amplitudes(sweeps: Sequence[GapSweep], mounting: Mounting) -> tuple[Sequence[GapSweep], bool]:
+    """The sweeps, without their amplitudes where these do not follow the field of the stated gaps; whether they do not.
+
+    An automatic gain, or a record in shares of the amplitude, holds the channels at one size. They are taken for such
+    where they change by less than a tenth of what the field does.
+    """
+    logs = [sweep.log_amplitude for sweep in sweeps]
+    if len(mounting.air_gap_mm) != len(sweeps) or None in logs:
+        return sweeps, False
+    demanded = np.ptp(np.log(mounting.field_mT(np.array(mounting.air_gap_mm))))
+    if np.ptp(np.array(logs, dtype=np.float64)) > HELD_SHARE * demanded:
+        return sweeps, False
+    return [replace(sweep, log_amplitude=None) for sweep in sweeps], True
 
 
 def quadratic_law(values: Sequence[float], errors: Array, field_mT: Array) -> Law:

@@ -30,7 +30,14 @@ def magnet_words(mounting: Mounting) -> str:
 def sentences(found: AirGaps) -> tuple[str, ...]:
     """The answer of several air gaps."""
     gaps = ", ".join(f"{gap:.2f}" for gap in found.told.gap_mm)
-    said = [f"air gaps: {gaps} mm before {magnet_words(found.mounting)}"]
+    stated = ", ".join(f"{gap:.2f}" for gap in found.mounting.air_gap_mm)
+    given = f" (stated {stated} mm)" if len(found.mounting.air_gap_mm) == len(found.names) else ""
+    said = [f"air gaps: fitted {gaps} mm{given} before {magnet_words(found.mounting)}"]
+    if found.amplitudes_held:
+        said.append(
+            "air gaps: vx and vy are of one size at all gaps, as an automatic gain makes them: they gauge no gap, and "
+            "the stated ones are taken"
+        )
     if found.misfit:
         return (*said, *_misfit(found))
     return (*said, *_order_2(found), *_order_1(found), *_magnet(found), _quadratic(found))

@@ -106,6 +106,28 @@ def test_stated_gaps_do_without_channels() -> None:
         diagnose_many(sweeps, mounting=Mounting(air_gap_mm=(1.0, 2.0, 3.0)))
 
 
+def test_channels_that_an_automatic_gain_holds_at_one_size_gauge_no_gap() -> None:
+    rng, gaps = np.random.default_rng(0), (1.0, 2.0, 3.0)
+    sweeps = [Truth(sensor=0.5 - 0.2j).sweep(gap, rng, noise_deg=0.02) for gap in gaps]
+    held = []
+    for sweep in sweeps:
+        assert sweep.vx is not None
+        assert sweep.vy is not None
+        size = float(np.mean(np.hypot(sweep.vx, sweep.vy)))
+        held.append(replace(sweep, vx=sweep.vx / size, vy=sweep.vy / size))
+    told = [
+        diagnose_many(given, output_sense=1, mounting=Mounting(air_gap_mm=gaps)).air_gap_fit for given in (sweeps, held)
+    ]
+    assert [found.amplitudes_held for found in told if found is not None] == [False, True]
+    found = told[1]
+    assert found is not None
+    assert found.named == ("sensor",)
+    assert any("automatic gain" in words for words in sentences(found))
+    displaced = found.displaced("sensor")
+    assert displaced is not None
+    assert displaced.low < abs(0.5 - 0.2j) < displaced.high
+
+
 @pytest.mark.parametrize(
     ("truth", "magnet"),
     [

@@ -111,10 +111,8 @@ def test_channels_that_an_automatic_gain_holds_at_one_size_gauge_no_gap() -> Non
     sweeps = [Truth(sensor=0.5 - 0.2j).sweep(gap, rng, noise_deg=0.02) for gap in gaps]
     held = []
     for sweep in sweeps:
-        assert sweep.vx is not None
-        assert sweep.vy is not None
-        size = float(np.mean(np.hypot(sweep.vx, sweep.vy)))
-        held.append(replace(sweep, vx=sweep.vx / size, vy=sweep.vy / size))
+        size = float(np.mean(np.hypot(sweep["vx"], sweep["vy"])))
+        held.append({**sweep, "vx": sweep["vx"] / size, "vy": sweep["vy"] / size})
     told = [
         diagnose_many(given, output_sense=1, mounting=Mounting(air_gap_mm=gaps)).air_gap_fit for given in (sweeps, held)
     ]

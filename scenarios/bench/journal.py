@@ -58,6 +58,12 @@ def finished_path(sweep: Path) -> Path:
     return sweep.with_name(f"{sweep.name}.log.jsonl")
 
 
+def _plain_or_nothing(path: Path) -> None:
+    """Raise UserError where a link, a folder, a pipe or a device bears the name."""
+    with contextlib.suppress(FileNotFoundError):
+        os.close(opened(path))
+
+
 class Journal:
     """Open for appending; a line is with the operating system before the next angle is driven to.
 
@@ -75,6 +81,7 @@ class Journal:
         self._plan = plan
         self.path, self.log = running_path(sweep), finished_path(sweep)
         check_own(self.path)
+        _plain_or_nothing(self.log)
         asked = {"plan": asdict(plan), **settings}
         if restart:
             self.path.unlink(missing_ok=True)
@@ -122,8 +129,19 @@ class Journal:
         self._line({"summary": summary})
 
     def finish(self) -> None:
-        """Give the journal its lasting name."""
+        """Give the journal its lasting name.
+
+        Raises UserError where another file has taken its name, or its lasting name is that of no plain file.
+        """
+        ours = os.fstat(self._file.fileno())
         self._file.close()
+        there = os.stat(self.path, follow_symlinks=False) if os.path.lexists(self.path) else None
+        if there is None or not os.path.samestat(ours, there):
+            raise UserError(
+                f"{self.path}: another file has taken the journal's place while the bench ran; the sweep is written, "
+                "the record of its readings is lost"
+            )
+        _plain_or_nothing(self.log)
         self.path.replace(self.log)
 
     def close(self) -> None:

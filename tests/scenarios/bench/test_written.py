@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from scenarios.bench.journal import Journal
 from tests.command_line import halltwin
 
 SHORT = ("--points", "12", "--no-chamber")
@@ -39,6 +40,32 @@ def refused(*arguments: str) -> str:
     assert (ended.code, ended.err.count("\n")) == (2, 1), ended
     assert contents(Path()) == before
     return ended.err
+
+
+def test_a_pipe_in_the_logs_place_stays_one(folder: Path) -> None:
+    os.mkfifo("a.csv.log.jsonl")
+    ended = halltwin("bench", "-o", "a.csv", *SHORT)
+    assert (ended.code, ended.err.count("\n")) == (2, 1), ended
+    assert "expected a plain file" in ended.err
+    assert [path.name for path in folder.iterdir()] == ["a.csv.log.jsonl"]
+    assert not Path("a.csv.log.jsonl").is_file()
+
+
+def test_a_file_in_the_journals_place_is_not_taken_for_it(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Put there while the bench runs: it keeps its name and its bytes."""
+
+    def in_its_place(journal: Journal) -> None:
+        Path("theirs").write_text("precious")
+        os.replace("theirs", journal.path)
+        finish(journal)
+
+    finish = Journal.finish
+    monkeypatch.setattr(Journal, "finish", in_its_place)
+    ended = halltwin("bench", "-o", "a.csv", *SHORT)
+    assert ended.code == 2
+    assert "another file has taken the journal's place" in ended.err
+    assert Path("a.csv.journal.jsonl").read_text() == "precious"
+    assert not Path("a.csv.log.jsonl").exists()
 
 
 def test_a_measurement_is_replaced_with_force_alone(folder: Path) -> None:

@@ -139,7 +139,9 @@ def spin(
     before = np.roll(steady, 1, axis=1)
     elapsed = (np.arange(plate.samples) + 0.5) / plate.samples * plate.phase_s
     held = elapsed >= plate.blanking * plate.phase_s
-    decay = np.exp(-elapsed / plate.settling_s) if plate.settling_s > 0.0 else np.zeros(plate.samples)
+    with np.errstate(over="ignore"):
+        # So short a time constant that it is none.
+        decay = np.exp(-elapsed / plate.settling_s) if plate.settling_s > 0.0 else np.zeros(plate.samples)
     at_plate = steady[..., None] + (before - steady)[..., None] * decay
     rate = plate.samples / plate.phase_s
     noise = (

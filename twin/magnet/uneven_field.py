@@ -17,10 +17,11 @@ from twin.angles import TAU, Array
 from twin.magnet.assembly import Assembly
 from twin.magnet.axis_series import axis_taylor, transverse_weights
 
-TERMS = 8
-"""In the squared distance from the axis, in radii: at half a radius the last adds less than 1e-5 of the field."""
-HEIGHTS = 4
-"""In the change of height: of 0.1 radii, which 5 deg bring at most half a radius off the axis, the last adds 1e-4."""
+TERMS = 6
+"""In the squared distance from the axis, in radii."""
+HEIGHTS = 3
+"""In the change of height, which tilts bring. Both as few as a fit needs: with the usual magnet 0.4 mm and its sensor
+0.8 mm off the axis and 3 deg tilted, they leave out 3e-6 of the field."""
 
 _SMALL = 1e-3
 """Displacement in radii, tilt in radians, for a derivative: the next order is that much smaller."""
@@ -138,6 +139,8 @@ def _horner(terms: Array, square: Any, up: Any) -> Any:
 
 def _tilted(vector: Vector, tilt: tuple[Any, Any]) -> Vector:
     """Turned about x, then about the fixed y axis."""
+    if not (np.any(tilt[0]) or np.any(tilt[1])):
+        return vector
     x, y, z = vector
     (c, s), (d, t) = ((np.cos(angle), np.sin(angle)) for angle in tilt)
     y, z = c * y - s * z, s * y + c * z
@@ -146,6 +149,8 @@ def _tilted(vector: Vector, tilt: tuple[Any, Any]) -> Vector:
 
 def _back(vector: Vector, tilt: tuple[Any, Any]) -> Vector:
     """The same the other way."""
+    if not (np.any(tilt[0]) or np.any(tilt[1])):
+        return vector
     x, y, z = vector
     (c, s), (d, t) = ((np.cos(angle), np.sin(angle)) for angle in tilt)
     x, z = d * x - t * z, d * z + t * x

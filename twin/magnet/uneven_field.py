@@ -112,7 +112,9 @@ class UnevenField:
         """Bx + i By in the sensor's axes at the field angles whose unit vectors are ``turn``, over B on the axis."""
         if pose.centred:
             return np.asarray(turn)
-        away = (pose.sensor * np.conj(turn) - pose.magnet) / self.radius_mm
+        # A sensor on the axis sees the magnet turn rigidly: one point for the whole turn.
+        around = np.conj(turn) if np.any(pose.sensor) else 0.0
+        away = np.asarray(pose.sensor * around - pose.magnet) / self.radius_mm
         inside = _back((away.real, away.imag, self.height), pose.magnet_tilt)
         x, y, z = _tilted(self._gradient(inside), pose.magnet_tilt)
         plane = turn * (x + 1j * y)
@@ -122,19 +124,19 @@ class UnevenField:
     def _gradient(self, point: Vector) -> Vector:
         """Of x S(u, z), in the magnet's frame."""
         x, y, z = point
-        square, up = x * x + y * y, z - self.height
-        power, rise = np.arange(TERMS)[1:, None], np.arange(HEIGHTS)[1:]
-        value = _horner(self.terms, square, up)
-        slope = _horner(self.terms[1:] * power, square, up)
-        return value + 2.0 * x * x * slope, 2.0 * x * y * slope, x * _horner(self.terms[:, 1:] * rise, square, up)
+        value, slope, rise = _sums(self.terms, x * x + y * y, z - self.height)
+        return value + 2.0 * x * x * slope, 2.0 * x * y * slope, x * rise
 
 
-def _horner(terms: Array, square: Any, up: Any) -> Any:
-    """The polynomial with these coefficients (powers of square, powers of up)."""
-    if np.ndim(up) == 0 and up == 0.0:
-        return np.polynomial.polynomial.polyval(square, terms[:, 0])
-    square, up = np.broadcast_arrays(square, up)
-    return np.polynomial.polynomial.polyval2d(square, up, terms)
+def _sums(terms: Array, square: Any, up: Any) -> tuple[Any, Any, Any]:
+    """The polynomial with coefficients (powers of square, HEIGHTS powers of up), and its derivatives by both."""
+    value, slope, rise = 0.0, 0.0, 0.0
+    for still, first, second in terms[::-1]:
+        # Horner's rule, and its derivative.
+        slope = slope * square + value
+        value = value * square + (still + up * (first + up * second))
+        rise = rise * square + (first + 2.0 * second * up)
+    return value, slope, rise
 
 
 def _tilted(vector: Vector, tilt: tuple[Any, Any]) -> Vector:

@@ -65,7 +65,7 @@ RIGHT: dict[str, str] = {
     **dict.fromkeys(("--off-axis", "--tilt", "--magnet-off-axis", "--magnet-tilt", "--stray"), "-1 0 36.9"),
 }
 """Which of ODD are right, by option, or by command and option; a bore is what a ring alone has."""
-NONE_IS_RIGHT = frozenset({"--temperatures", "design --tolerance"})
+NONE_IS_RIGHT = frozenset({"--temperatures"})
 """Where nothing at all between the quotes means none."""
 LONG = frozenset({"explain", "spinning", "hardware", "paper", "diagnose", "generate"})
 """Commands that take their time: what is right for them is tried elsewhere."""

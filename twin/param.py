@@ -48,9 +48,6 @@ class Param:
     mirror : {-1, 0, 1}, optional
         What it is multiplied by in the mirrored chain (see :meth:`Effect.mirrored`); 0: no value of it reads the same
         there. Not given: what follows from its role and from the signal that the effect acts on.
-    trial : float
-        The size at which a search tries a strength whose change of the signal grows faster than itself, so that what
-        is plain in proportion may be another cause's; 0: small enough to be in proportion.
     prior_sd : float
         For a shape that a fit moves: standard deviation of what is known of it before any sweep; 0: anything goes. One
         that a sweep does not show then stays where the search set out, and its interval says so.
@@ -72,7 +69,6 @@ class Param:
     field_power: float = 0.0
     distance_power: Callable[[Parameters], float] | None = None
     mirror: Literal[-1, 0, 1] | None = None
-    trial: float = 0.0
     prior_sd: float = 0.0
     aside: bool = False
     scatter: float = 0.0

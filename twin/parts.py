@@ -20,6 +20,8 @@ from twin.part import in_mirror
 from twin.shown import shown
 from twin.tables import from_table, to_table
 
+_IDEAL = Plate()
+
 
 @dataclass(frozen=True, kw_only=True)
 class Parts:
@@ -56,7 +58,7 @@ class Parts:
     @property
     def plates(self) -> tuple[Plate, Plate]:
         """Of x and y; ideal where none is described."""
-        plate = self.plate or Plate()
+        plate = self.plate or _IDEAL
         return plate, self.plate_y or plate
 
     def acting(self, nominal_mT: Any) -> tuple[Effect, ...]:

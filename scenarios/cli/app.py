@@ -14,9 +14,6 @@ from scenarios.cli.studies import design, generate, recover
 from scenarios.cli.sweeps import compensate, diagnose, explain, monitor
 from scenarios.cli.verbosity import with_verbosity
 
-NONE_BY_EMPTY = "tolerance"
-"""The option whose empty value means none: a design without tolerances of its mounting."""
-
 
 class Command(TyperCommand):
     """A command that refuses an empty value: as the name of a file it would mean the working folder."""
@@ -28,7 +25,7 @@ class Command(TyperCommand):
             asked: Any = param
             values = given.get(str(param.name))
             empty = "" in (values if isinstance(values, list | tuple) else [values])
-            if empty and param.default != "" and param.name != NONE_BY_EMPTY:
+            if empty and param.default != "":
                 raise typer.BadParameter("is empty; give a value", ctx=ctx, param=asked)
         return super().parse_args(ctx, args)
 

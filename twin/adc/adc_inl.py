@@ -85,6 +85,8 @@ ADC_INL = Effect(
     },
     forward=forward,
     needs=frozenset({"one turn"}),
+    # Eight sizes at once describe a good deal of anything: it must explain far more than a plainer cause.
+    handicap=20.0,
     shapes=shapes,
     zoomed=("full_scale_percent",),
     fitted_shapes=("full_scale_percent",),

@@ -10,7 +10,7 @@ from twin.motion import Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    return signal - 0.01 * np.asarray(values["k_percent"]) * signal**3
+    return signal - 0.01 * np.asarray(values["k_percent"]) * (signal * signal * signal)
 
 
 SATURATION = Effect(

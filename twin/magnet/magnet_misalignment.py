@@ -179,8 +179,6 @@ MAGNET_MISALIGNMENT = Effect(
             upper=1.0,
             doc="sensor's displacement times that of the magnet's field, where both are off the axis",
             typical=0.05,
-            # In an angle the plain part is an offset's: what is left is of higher order in the displacements.
-            trial=0.25,
         ),
         "phase_deg": Param(
             unit="deg",
@@ -198,7 +196,8 @@ MAGNET_MISALIGNMENT = Effect(
         "magnet_tilt_y_deg": _tilt("magnet's tilt about y of the shaft", mirror=1),
     },
     forward=Misplaced(UnevenField(Assembly(MAGNET, Placement(air_gap_mm=AIR_GAP_MM)))),
-    needs=frozenset({"one turn"}),
+    # In an angle alone its order 1 is an offset's, and of its higher orders so little is left that they fit anything.
+    needs=frozenset({"vx", "one turn"}),
     shapes=shapes,
     fitted_shapes=(
         *("direction_deg", "log_ratio"),

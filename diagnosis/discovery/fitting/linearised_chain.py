@@ -207,7 +207,7 @@ class Linear:
             if effect.params[term.param].role == "level":
                 out[:, place] = self.change(effect, effect.null(), null, batch=count)
                 continue
-            step = effect.params[term.param].trial or 1e-3 * effect.params[term.param].typical
+            step = 1e-3 * effect.params[term.param].typical
             moved = {**null, term.param: effect.params[term.param].null + step}
             if term.phase_deg is not None:
                 moved[effect.roles("phase")[0]] = term.phase_deg

@@ -60,9 +60,8 @@ def example(effect: Effect) -> dict[str, Any]:
     # Edges have slopes where noise blurs them.
     blur = {"blur_percent": 0.1} if "blur_percent" in effect.params else {}
     # What no plain example sets: both displaced, and tilted.
-    held = {
-        name: param.null + 0.4 * param.typical for name, param in effect.params.items() if param.prior_sd or param.trial
-    }
+    free = [name for name, param in effect.params.items() if param.prior_sd or name == "product_mm2"]
+    held = {name: effect.params[name].null + 0.4 * effect.params[name].typical for name in free}
     return {**EXAMPLES[effect.name].params, **held, **blur}
 
 
@@ -139,17 +138,16 @@ def test_columns_of_a_candidate_at_null(chain: str, effect: Effect) -> None:
     point = linear(base)
     shapes = {**effect.null(), **EXAMPLES[effect.name].shapes}
     values = {**shapes, **{name: EXAMPLES[effect.name].params.get(name, 0.0) for name in effect.roles("level")}}
-    names = {*effect.roles("shape"), *effect.roles("level")}
+    # Beside a strength a search leaves levels at null.
+    names = {*effect.roles("shape"), *(effect.roles("level") if effect.whole else ())}
     columns = point.columns(effect, [{name: float(values[name]) for name in names}])[0]
     for column, term in zip(columns, point.terms(effect), strict=True):
         param = effect.params[term.param]
         if param.role == "strength":
-            # What is not in proportion is tried at its size, once; else the derivative is of either side.
-            step = param.trial or 1e-3 * param.typical
-            below = 0.0 if param.trial else -step
+            step = 1e-3 * param.typical
             at = {name: values[name] for name in names} | dict.fromkeys(effect.roles("phase"), term.phase_deg)
-            up, down = (observed(present(base, effect, {**at, term.param: to})) for to in (step, below))
-            change, size = wrap(up - down) / (step - below), 1.0 / step
+            up, down = (observed(present(base, effect, {**at, term.param: to})) for to in (step, -step))
+            change, size = wrap(up - down) / (2.0 * step), 1.0 / step
         else:
             whole = {name: values[name] for name in names}
             if term.turn is not None:

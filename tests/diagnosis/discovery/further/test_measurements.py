@@ -7,7 +7,6 @@ sigma and a tenth: a false alarm in fewer than one in ten thousand of the compar
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,7 +16,7 @@ import pytest
 from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.further.measurements import MENU, Recording
-from diagnosis.discovery.further.power import best, expected, separation_sigma
+from diagnosis.discovery.further.power import expected, separation_sigma
 from diagnosis.discovery.result import Discovery
 from tests.hidden.generator import draw
 from tests.hidden.motion import Motion
@@ -82,12 +81,8 @@ def test_advice_holds(case: Case, tmp_path: Path) -> None:
     assert named.name == cause
     assert rival in named.rivals
     # Beside this rival others may stand that only another measurement parts.
-    alone = [replace(one, sigma=one.parted[rival]) for one in named.options]
-    together = any(one.sigma > first.fit.settings.sigma_enough for one in named.options)
-    option = best(named.options if together else alone)
-    assert option is not None
-    assert option.name == advised
-    assert option.sigma > first.fit.settings.sigma_enough
+    (sigma,) = (one.parted[rival] for one in named.options if one.name == advised)
+    assert sigma > first.fit.settings.sigma_enough
     plan = PLAN[advised](first.fit.observations.motion)
     assert plan is not None
     (recording,) = plan

@@ -48,13 +48,6 @@ CASES = {
         parts="more turns",
         parts_not="raw channels",
     ),
-    # Saturation grows with the square of the field, what a converter does counts less in a larger one.
-    "saturation with channels": Case(
-        made=Made(causes=(("saturation", 0.05),), points=120, channels=True),
-        rival="adc_inl",
-        parts="second air gap",
-        parts_not="other direction",
-    ),
     "harmonic of order 5": Case(made=Made(causes=(("magnet_harmonic", 0.05),), points=120, seed=2)),
 }
 

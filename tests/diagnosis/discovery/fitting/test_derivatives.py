@@ -145,9 +145,11 @@ def test_columns_of_a_candidate_at_null(chain: str, effect: Effect) -> None:
         param = effect.params[term.param]
         if param.role == "strength":
             step = 1e-3 * param.typical
+            # An amplitude has one side: what is even in it, as a single displacement squared, shows there alone.
+            below = 0.0 if param.lower == 0.0 else -step
             at = {name: values[name] for name in names} | dict.fromkeys(effect.roles("phase"), term.phase_deg)
-            up, down = (observed(present(base, effect, {**at, term.param: to})) for to in (step, -step))
-            change, size = wrap(up - down) / (2.0 * step), 1.0 / step
+            up, down = (observed(present(base, effect, {**at, term.param: to})) for to in (step, below))
+            change, size = wrap(up - down) / (step - below), 1.0 / step
         else:
             whole = {name: values[name] for name in names}
             if term.turn is not None:

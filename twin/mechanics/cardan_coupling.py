@@ -23,6 +23,8 @@ CARDAN_COUPLING = Effect(
     },
     forward=forward,
     needs=frozenset({"vx", "one turn"}),
+    # It is told from the radius alone, which a saturating disk and a misplaced magnet change too (400 to 1).
+    handicap=6.0,
     source="Cardan joint at angle b: tan(out) = cos(b) tan(in), so the amplitude is tan^2(b/2) to leading order",
     signature="order 2 in the angle error, absent from the x-y ellipse",
 )

@@ -20,12 +20,12 @@ from twin.motion import Motion
 MAGNET = Magnet()
 AIR_GAP_MM = float(Placement().air_gap_mm)
 """The cylinder that millimetres and degrees are counted against where no magnet is described."""
+USUAL = UnevenField(Assembly(MAGNET, Placement(air_gap_mm=AIR_GAP_MM)))
+"""The field of that cylinder."""
 TOLERANCE_DEG = 2.0
 """Standard deviation of a tilt before anything is known of it: a mounting that is off by more is seen."""
 WITHIN = 3.0
 """Sensor and magnet are placed alike: neither is further off than the other by more than this, two times of three."""
-TURN_PER_MM2 = 0.07
-"""What a product of displacements turns the usual magnet's field by [rad/mm2]: twice its curvature S'(0) / S(0)."""
 
 
 def tensor(off_axis_mm: Array, tilt_deg: Array) -> tuple[Array, Array]:
@@ -120,7 +120,7 @@ def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str,
     return {
         "off_axis_mm": np.zeros(strength_deg.size),
         "tilt_deg": np.zeros(strength_deg.size),
-        "product_mm2": np.minimum(radians(strength_deg) / TURN_PER_MM2, 1.0),
+        "product_mm2": np.minimum(radians(strength_deg) / USUAL.turn_per_mm2, 1.0),
     }
 
 
@@ -195,7 +195,7 @@ MAGNET_MISALIGNMENT = Effect(
         "magnet_tilt_x_deg": _tilt("magnet's tilt about x of the shaft", mirror=-1),
         "magnet_tilt_y_deg": _tilt("magnet's tilt about y of the shaft", mirror=1),
     },
-    forward=Misplaced(UnevenField(Assembly(MAGNET, Placement(air_gap_mm=AIR_GAP_MM)))),
+    forward=Misplaced(USUAL),
     # In an angle alone its order 1 is an offset's, and of its higher orders so little is left that they fit anything.
     needs=frozenset({"vx", "one turn"}),
     shapes=shapes,

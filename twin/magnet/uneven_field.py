@@ -86,6 +86,11 @@ class UnevenField:
         found = transverse_weights(TERMS) * binomial * along[order + up]
         return np.asarray(found / found[0, 0])
 
+    @property
+    def turn_per_mm2(self) -> float:
+        """What a product of both displacements turns the angle by [rad/mm2], to the leading order."""
+        return float(2.0 * np.abs(self.terms[1, 0]) / self.radius_mm**2)
+
     @cached_property
     def shift_of_tilt_mm(self) -> tuple[complex, complex]:
         """Which displacements of the magnet [mm] show as its tilts about x and y [1/rad] do, to first order.

@@ -61,7 +61,7 @@ _TYPES: tuple[tuple[tuple[str, ...], Callable[[Any], bool], str], ...] = (
     ),
     (("forward", "shapes", "begin", "derived", "angle_only", "figures"), callable, "a function"),
     (
-        ("spread", "attainable", "stair", "drawing"),
+        ("spread", "attainable", "stair", "drawing", "computes", "at_magnet"),
         lambda value: value is None or callable(value),
         "a function, or None",
     ),

@@ -30,6 +30,7 @@ from twin.link.frames import (
     word_angles,
 )
 from twin.motion import Motion
+from twin.parts import Parts
 
 CAN_IDENTIFIER = 0x123
 
@@ -76,10 +77,11 @@ def run(chain: Chain, motion: Motion, rng: np.random.Generator | None = None) ->
         Readings are those of :meth:`twin.chain.Chain.simulate` with the same generator.
     """
     steps = list(chain.steps(motion, rng))
-    parts, in_plane = chain.parts, chain.nominal_mT
-    vertical = parts.gain * in_plane * behind(steps, "concentrator")
-    spun = parts.gain * in_plane * behind(steps, "hall")
-    channels = next(step.before for step in steps if step.key == "after channels")
+    in_plane, vertical, voltage = (
+        in_units(chain.parts, chain.nominal_mT, stage, behind(steps, stage)) for stage in INSIDE
+    )
+    computed = next(step for step in steps if step.key == "after channels")
+    plates = chain.parts.plates
     measured = steps[-1].after[0]
     bits = word_bits(chain)
     words = angle_words(measured, bits)
@@ -87,17 +89,18 @@ def run(chain: Chain, motion: Motion, rng: np.random.Generator | None = None) ->
     can = can_frames(CAN_IDENTIFIER, spi)
     data, whole = can_data(can)
     received, sound, _ = spi_words(data, bits)
-    plates = zip(vertical, parts.plates, strict=True)
-    sensitivity = np.array([[plate.sensitivity_uV_per_mT] for plate in parts.plates])
+    unspun = [
+        spin(field, plate, temp_c=motion.temperature_c).unspun_mT for field, plate in zip(vertical, plates, strict=True)
+    ]
     return Run(
-        in_plane_mT=in_plane * behind(steps, "magnet"),
+        in_plane_mT=in_plane,
         vertical_mT=vertical,
-        unspun_mT=np.stack([spin(field, plate, temp_c=motion.temperature_c).unspun_mT for field, plate in plates]),
-        spun_mT=spun,
-        voltage_uV=sensitivity * spun,
-        amplitude=channels,
-        codes=_codes(chain, channels),
-        computed_rad=next(step.after for step in steps if step.key == "after channels")[0],
+        unspun_mT=np.stack(unspun),
+        spun_mT=voltage / sensitivity_uV_per_mT(chain.parts),
+        voltage_uV=voltage,
+        amplitude=computed.before,
+        codes=_codes(chain, computed.before),
+        computed_rad=computed.after[0],
         words=words,
         bits=bits,
         spi=spi,
@@ -105,6 +108,25 @@ def run(chain: Chain, motion: Motion, rng: np.random.Generator | None = None) ->
         received_rad=word_angles(received, bits),
         sound=sound & whole,
     )
+
+
+INSIDE = ("magnet", "concentrator", "hall")
+"""Stages behind which the channels have a unit of their own: millitesla in the plane and under the disk, microvolts."""
+
+
+def in_units(parts: Parts, nominal_mT: float, stage: str, channels: Array) -> Array:
+    """Channels of nominal amplitude 1 behind one of :data:`INSIDE`, in that stage's unit."""
+    in_plane_mT = nominal_mT * channels
+    if stage == "magnet":
+        return in_plane_mT
+    # Behind the disk the nominal amplitude 1 stands for the vertical field under it.
+    vertical_mT = parts.gain * in_plane_mT
+    return vertical_mT if stage == "concentrator" else sensitivity_uV_per_mT(parts) * vertical_mT
+
+
+def sensitivity_uV_per_mT(parts: Parts) -> Array:
+    """Of the plates of x and y (2, 1)."""
+    return np.array([[plate.sensitivity_uV_per_mT] for plate in parts.plates])
 
 
 def behind(steps: Iterable[Step], stage: str) -> Array:

@@ -61,12 +61,18 @@ class Parts:
         plate = self.plate or _IDEAL
         return plate, self.plate_y or plate
 
+    @property
+    def ideal(self) -> bool:
+        """Whether they change no signal."""
+        disk = self.disk is None or self.disk.ideal
+        return disk and (self.plate is None or all(plate.ideal for plate in self.plates))
+
     def acting(self, nominal_mT: Any) -> tuple[Effect, ...]:
         """The parts that are not ideal as operations on channels whose amplitude 1 stands for this in-plane field [mT].
 
         ``nominal_mT`` may hold one number for each design (designs,).
         """
-        if (self.disk is None or self.disk.ideal) and all(plate.ideal for plate in self.plates):
+        if self.ideal:
             return ()
         return _acting_at(self, float(nominal_mT)) if np.ndim(nominal_mT) == 0 else _acting(self, nominal_mT)
 
@@ -78,7 +84,7 @@ class Parts:
 
     def in_mirror(self) -> Parts:
         """The parts of the chain that counts the other way on both sides and reads the same."""
-        return replace(self, mirrored=not self.mirrored) if self.acting(self.field_mT) else self
+        return self if self.ideal else replace(self, mirrored=not self.mirrored)
 
 
 def _acting(parts: Parts, nominal_mT: Any) -> tuple[Effect, ...]:

@@ -11,6 +11,7 @@ from twin.angles import Array, wrap
 from twin.catalogue import STAGES
 from twin.chain import Chain, Step
 from twin.hall.spinning_current import residual_offset_mT
+from twin.hardware import INSIDE, in_units
 from twin.motion import Motion
 from twin.sweep_file import csv_text
 
@@ -20,6 +21,14 @@ CONVERSIONS = {
     "after channels": "computed angle",
     "after angle": "reading",
 }
+
+
+_NAMES = {
+    "magnet": ("field in the plane", "mT"),
+    "concentrator": ("vertical field", "mT"),
+    "hall": ("Hall voltage", "uV"),
+}
+"""By stage the name and the unit of the signal behind it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,24 +82,15 @@ class _Inside:
 
     def __init__(self, chain: Chain) -> None:
         self.parts, self.nominal = chain.parts, chain.nominal_mT
-        self.left = ["magnet", "concentrator", "hall"]
+        self.left = list(INSIDE)
 
     def before(self, step: Step) -> Iterator[Signal]:
         """What is complete before this step acts."""
         reached = STAGES.index(step.effect.stage) if step.effect else len(STAGES)
         while self.left and STAGES.index(self.left[0]) < reached:
-            yield self._signal(self.left.pop(0), step.before)
-
-    def _signal(self, stage: str, channels: Array) -> Signal:
-        in_plane, still = self.nominal * channels, np.zeros(channels.shape[-1])
-        if stage == "magnet":
-            return Signal("field in the plane", "mT", in_plane, still)
-        # Behind the disk the nominal amplitude 1 stands for the vertical field under it.
-        vertical = self.parts.gain * in_plane
-        if stage == "concentrator":
-            return Signal("vertical field", "mT", vertical, still)
-        sensitivity = np.array([[plate.sensitivity_uV_per_mT] for plate in self.parts.plates])
-        return Signal("Hall voltage", "uV", sensitivity * vertical, still)
+            stage = self.left.pop(0)
+            values = in_units(self.parts, self.nominal, stage, step.before)
+            yield Signal(*_NAMES[stage], values, np.zeros(values.shape[-1]))
 
 
 def _notes(chain: Chain) -> tuple[str, ...]:

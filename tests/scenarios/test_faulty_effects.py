@@ -44,26 +44,27 @@ FAULTS: dict[str, tuple[str, str]] = {
 }
 
 
+def in_its_place(folder: Path, code: str) -> Path:
+    """The gear's effect with this ``forward`` in the place of its own, which is then called ``right``."""
+    path = folder / "gear_mesh.py"
+    source = GEAR.read_text().replace("def forward(", "def right(", 1)
+    path.write_text(source.replace("EFFECT = ", f"{code}\n\nEFFECT = ", 1))
+    return path
+
+
 @pytest.mark.parametrize("case", FAULTS)
 def test_a_fault_that_the_checks_do_not_meet_ends_in_one_line(case: str, tmp_path: Path) -> None:
     """Beyond the lengths at which promises are checked; the search itself is then the first to meet it."""
     code, said = FAULTS[case]
-    path = tmp_path / "gear_mesh.py"
-    source = GEAR.read_text().replace("def forward(", "def right(", 1)
-    path.write_text(
-        source.replace(
-            "EFFECT = ",
-            f"""
+    path = in_its_place(
+        tmp_path,
+        f"""
 def forward(signal, motion, values, rng):
     after = np.array(right(signal, motion, values, rng))
     if len(motion) > {len(full_motion())} and np.any(np.asarray(values["forward_deg"]) != 0.0):
         {code}
     return after
-
-
-EFFECT = """,
-            1,
-        )
+""",
     )
     motion = Motion.from_angle(np.linspace(0.0, 30.0, len(full_motion()) + 1))
     (effect,) = (one for one in effects_with([path]) if one.name == "gear_mesh")
@@ -114,12 +115,9 @@ def test_a_skeleton_needs_an_answer(case: str, tmp_path: Path) -> None:
 
 
 def test_an_interrupt_within_an_effect_gives_the_answer_so_far(tmp_path: Path) -> None:
-    path = tmp_path / "gear_mesh.py"
-    source = GEAR.read_text().replace("def forward(", "def right(", 1)
-    path.write_text(
-        source.replace(
-            "EFFECT = ",
-            f"""
+    path = in_its_place(
+        tmp_path,
+        f"""
 def forward(signal, motion, values, rng):
     import signal as signals
     global CALLS
@@ -131,9 +129,7 @@ def forward(signal, motion, values, rng):
 
 
 CALLS = 0
-EFFECT = """,
-            1,
-        )
+""",
     )
     ended = halltwin("explain", SWEEP, "--effects", path, "--json", tmp_path / "answer.json")
     assert ended.code == 130

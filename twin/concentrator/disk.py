@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -81,7 +82,7 @@ class Disk:
         size = self.gain * np.exp(-0.5 * (off_edge / self.falloff_um) ** 2)
         return np.asarray(size[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1))
 
-    @property
+    @cached_property
     def conversion(self) -> Array:
         """The channels' vertical field for unit in-plane fields (2, 2): half the difference of opposite plates."""
         gains = self.plate_gains
@@ -136,9 +137,9 @@ def _bent(saturation_mT: float, share: float) -> Callable[[Array], Array]:
 
 
 def described(disk: Disk, nominal_mT: Any) -> Effect:
-    """The disk as an operation on channels of nominal amplitude 1, which ``nominal_mT`` (or one a design) in the plane
+    """The disk as an operation on channels whose amplitude 1 stands for ``nominal_mT`` (or one a design) in the plane.
 
-    stand for; behind it the amplitude is again 1, now of ``gain`` times as many millitesla under the disk.
+    Behind it the amplitude 1 stands for ``gain`` times as many millitesla under the disk.
     """
     scale = per_design(nominal_mT)
 

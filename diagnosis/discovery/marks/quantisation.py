@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -55,17 +54,18 @@ def finite_set(
     words = np.round(measured / resolution).astype(np.int64) % cells
     distinct = np.unique(words).size
     best: tuple[Mapping[str, float], float] = ({}, 0.0)
-    for values, off in itertools.product(tried, CELLS_OFF):
-        cell = np.round(effect.attainable(values) / resolution).astype(np.int64)
-        allowed = np.unique((cell[:, None] + off) % cells)
-        share = allowed.size / cells
-        missed = int(np.count_nonzero(~np.isin(words, allowed)))
-        if share > settings.set_share or missed > settings.set_missed * words.size:
-            continue
-        chance = (distinct - missed) * np.log(share) + missed * -np.log(settings.set_missed)
-        log_p = chance + np.log(len(tried) * len(CELLS_OFF))
-        if log_p < best[1]:
-            best = (values, float(log_p))
+    for values in tried:
+        cell = np.round(effect.attainable(values) / resolution).astype(np.int64)[:, None]
+        for off in CELLS_OFF:
+            allowed = np.unique((cell + off) % cells)
+            share = allowed.size / cells
+            missed = int(np.count_nonzero(~np.isin(words, allowed)))
+            if share > settings.set_share or missed > settings.set_missed * words.size:
+                continue
+            chance = (distinct - missed) * np.log(share) + missed * -np.log(settings.set_missed)
+            log_p = chance + np.log(len(tried) * len(CELLS_OFF))
+            if log_p < best[1]:
+                best = (values, float(log_p))
     return best
 
 

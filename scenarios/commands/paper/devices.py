@@ -153,15 +153,15 @@ def figure_14(plt: Any, found: dict[str, Device]) -> tuple[Any, dict[str, Array]
         axis.plot(
             turn, _printed_curve(device, turn), "--", color="crimson", linewidth=1.0, label="parameters of Table 2"
         )
-        axis.set(
-            title=f"({device.name})  {device.found.rms_deg:.3f} deg RMS left",
-            xlabel="shaft angle [deg]",
-            ylabel="angle error [deg]",
-            xticks=range(0, 361, 90),
-        )
-        axis.grid(alpha=0.3)
+        _framed(axis, f"({device.name})  {device.found.rms_deg:.3f} deg RMS left")
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
     return figure, columns
+
+
+def _framed(axis: Any, title: str) -> None:
+    """Title, axes and grid of one device's error over the turn."""
+    axis.set(title=title, xlabel="shaft angle [deg]", ylabel="angle error [deg]", xticks=range(0, 361, 90))
+    axis.grid(alpha=0.3)
 
 
 def _groups(device: Device) -> tuple[Array, IntArray]:
@@ -197,13 +197,7 @@ def figure_16(plt: Any, found: dict[str, Device]) -> tuple[Any, dict[str, Array]
                 side, color="0.3", linestyle="--", linewidth=0.9, label="0.2 deg, as printed" if side > 0 else None
             )
         largest = device.compensated.peak_deg
-        axis.set(
-            title=f"({device.name})  largest error {largest[0]:.2f} to {largest[1]:.3f} deg",
-            xlabel="shaft angle [deg]",
-            ylabel="angle error [deg]",
-            xticks=range(0, 361, 90),
-        )
-        axis.grid(alpha=0.3)
+        _framed(axis, f"({device.name})  largest error {largest[0]:.2f} to {largest[1]:.3f} deg")
     figure.legend(
         *axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8, markerscale=4.0
     )

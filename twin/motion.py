@@ -14,6 +14,10 @@ STOP_AND_MEASURE_S = 0.02
 """Readings farther apart than this, with no speed recorded, were taken at standstill."""
 
 
+NOMINAL_C = 25.0
+"""Temperature [C] at which figures are stated, from which drifts count, and of readings that record none."""
+
+
 @dataclass(frozen=True, eq=False)
 class Motion:
     """Shaft angle and conditions, one row a reading, in the order in which they were taken.
@@ -111,7 +115,7 @@ class Motion:
             turn=np.zeros(n, dtype=np.int64)
             if turn is None
             else np.unique(turn, return_inverse=True)[1].astype(np.int64),
-            temperature_c=np.full(n, 25.0) if temperature is None else temperature,
+            temperature_c=np.full(n, NOMINAL_C) if temperature is None else temperature,
             columns=frozenset(name for name, given in recorded.items() if given),
         )
 

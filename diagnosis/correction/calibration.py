@@ -29,6 +29,7 @@ from twin.angles import Array
 from twin.chain import Chain
 from twin.effect import BoolArray
 from twin.empirical.orders import UNNAMED_ORDER
+from twin.motion import NOMINAL_C
 
 ORDERS = np.arange(3, 33)
 _FALLS = (0.5, 1.0, 2.0, 3.0)
@@ -38,7 +39,6 @@ _FLAT_TO = 4.0
 _SMALLEST_DEG = 1e-4
 _FEWEST_ROBUST = 24
 _FEWEST_ROWS = 8
-_CALIBRATED_C = 25.0
 _NO_NOISE = 1e-14
 
 
@@ -69,7 +69,7 @@ class Calibration:
     @property
     def chain(self) -> Chain:
         """The calibrated twin at 25 C."""
-        return self.at(_CALIBRATED_C)
+        return self.at(NOMINAL_C)
 
     def at(self, temperature_c: float) -> Chain:
         """The calibrated twin at a temperature [C], as if it had no other; beyond the span as at its end."""
@@ -92,10 +92,10 @@ def calibrate(reference_rad: Array, measured_rad: Array, *, rng: np.random.Gener
     """The twin with the error curve of readings (n,), n >= 8; isolated gross errors are left out where n is large."""
     n = reference_rad.size
     fit = fit_baseline(reference_rad, measured_rad, rng=rng, robust=n >= _FEWEST_ROBUST)
-    span, used = Span(_CALIBRATED_C, _CALIBRATED_C), ~fit.outliers
+    span, used = Span(NOMINAL_C, NOMINAL_C), ~fit.outliers
     if used.sum() < _FEWEST_ROWS:
         return Calibration(fit, span, fit.point[:, None], np.zeros(2 * ORDERS.size))
-    readings = Recording.at_one_temperature(reference_rad[used], measured_rad[used], _CALIBRATED_C)
+    readings = Recording.at_one_temperature(reference_rad[used], measured_rad[used], NOMINAL_C)
     model = Model(readings, (fit.senses.sensor, fit.senses.output), span, np.ones((6, 1), dtype=bool))
     coefficients, orders = _with_orders(model, fit.point[:, None], Beside(ORDERS))
     return Calibration(fit, span, coefficients, orders)

@@ -20,12 +20,13 @@ from diagnosis.thermal.evidence import FAMILY_LEVEL, Evidence
 from diagnosis.thermal.levels import Span
 from diagnosis.thermal.sums import Mask, Model
 from twin.angles import TAU, Array
+from twin.motion import NOMINAL_C
 
 Verdict = Literal["sensitive", "immune", "not told"]
 SENSITIVE: Verdict = "sensitive"
 IMMUNE: Verdict = "immune"
 NOT_TOLD: Verdict = "not told"
-FROM_C = 25.0
+FROM_C = NOMINAL_C
 """Laws count the temperature from here, as the twin's drifts do."""
 _ROUNDING = 1e-12
 _PAIRS = 9

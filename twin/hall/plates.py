@@ -9,8 +9,8 @@ import numpy as np
 
 from twin.angles import Array
 from twin.effect import Effect, Parameters
-from twin.hall.spinning_current import NOMINAL_C, Plate, Spinning, spin
-from twin.motion import Motion
+from twin.hall.spinning_current import Plate, Spinning, spin
+from twin.motion import NOMINAL_C, Motion
 from twin.part import part, per_design
 
 

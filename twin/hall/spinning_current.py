@@ -20,9 +20,8 @@ import numpy as np
 
 from twin.angles import Array
 from twin.limits import require_within
+from twin.motion import NOMINAL_C
 
-NOMINAL_C = 25.0
-"""Temperature at which the sensitivity is stated [C]."""
 PHASES = 4
 SIGNAL_SIGN = np.array([1.0, -1.0, 1.0, -1.0])
 """Sign of the Hall voltage at the amplifier in each phase; the demodulator multiplies by the same."""

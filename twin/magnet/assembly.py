@@ -14,12 +14,9 @@ from twin.limits import OutOfRangeError
 from twin.magnet.field import Series, series_of
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement, designs_of
-from twin.motion import Motion
+from twin.motion import NOMINAL_C, Motion
 from twin.shown import shown
 from twin.tables import from_table, to_table
-
-NOMINAL_C = 25.0
-"""Temperature at which the nominal amplitude is 1, the same as that of the drifts [C]."""
 
 
 @dataclass(frozen=True, eq=False)

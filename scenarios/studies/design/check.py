@@ -11,10 +11,11 @@ from scenarios.studies.design.field import scaled_values
 from scenarios.studies.design.study import POINTS, DesignStudy
 from twin.angles import Array, wrap_deg
 from twin.chain import Chain
-from twin.magnet.assembly import NOMINAL_C, Assembly
+from twin.magnet.assembly import Assembly
 from twin.magnet.magnet import Magnet
 from twin.magnet.materials import grade
 from twin.magnet.placement import Placement
+from twin.motion import NOMINAL_C
 
 _AVERAGED = 16
 """Simulated records that are averaged, so that the noise does not count as error."""

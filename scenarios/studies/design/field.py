@@ -13,11 +13,11 @@ from twin.angles import Array, channels_of
 from twin.catalogue import find
 from twin.chain import Chain
 from twin.effect import BoolArray, Effect
-from twin.magnet.assembly import NOMINAL_C, Assembly
+from twin.magnet.assembly import Assembly
 from twin.magnet.field import Series, basis, series_by_group
 from twin.magnet.placement import Placement, designs_of
 from twin.mechanics.zero import ZERO
-from twin.motion import Motion
+from twin.motion import NOMINAL_C, Motion
 from twin.parts import Parts
 
 TOLERANCE = 1e-7

@@ -20,8 +20,7 @@ from twin.effect import BoolArray
 from twin.extensions import effects_with
 from twin.files import from_dict
 from twin.hall.noise import NOISE
-from twin.magnet.assembly import NOMINAL_C
-from twin.motion import Motion
+from twin.motion import NOMINAL_C, Motion
 
 POINTS, MOUNTED_POINTS = 72, 36
 """Angles a turn and direction: of a design, and of each of its mountings."""

@@ -10,7 +10,7 @@ from typing import Any, get_args
 import numpy as np
 
 from twin.catalogue import STAGES
-from twin.effect import ActsOn, Effect, Footprint, Line, Marks, Param, Role
+from twin.effect import ActsOn, Effect, Footprint, Line, Marks, Owner, Param, Role
 from twin.shown import shown
 
 NEEDS = frozenset(
@@ -118,6 +118,8 @@ def _unclear(name: str, param: Param) -> Iterator[str]:
         yield f"{name}: null, lower, upper and typical must be finite, and typical positive"
     if param.mirror not in (None, -1, 0, 1):
         yield f"{name}: mirror is {shown(param.mirror)}; expected -1, 1, or 0 where no value reads the same"
+    if param.owner is not None and param.owner not in get_args(Owner):
+        yield f"{name}: owner is {shown(param.owner)}; expected one of {', '.join(get_args(Owner))}"
     low, high = param.allowed or (param.lower, param.upper)
     if not param.lower <= low <= param.null <= high <= param.upper:
         yield f"{name}: allowed is {param.allowed}; expected a range within [lower, upper] that holds the null"

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from twin.angles import TAU, Array
 from twin.motion import Motion
+from twin.param import OWNER_OF_STAGE
+from twin.param import Owner as Owner
 from twin.param import Param as Param
 from twin.param import Parameters as Parameters
 from twin.param import Role as Role
@@ -304,6 +306,10 @@ class Effect:
         """Random parameters as the turns' own values show them: another record's turns are drawn with these."""
         told = self.derived(values) if self.roles("per turn") else {}
         return {name: told[name][0] for name in self.roles("random") if name in told}
+
+    def owner(self, name: str) -> Owner:
+        """Whose a parameter is: see :data:`twin.param.Owner`."""
+        return self.params[name].owner or OWNER_OF_STAGE[self.stage]
 
     # ---- what becomes of it elsewhere ---------------------------------------------------------------------------
 

@@ -17,6 +17,29 @@ Role = Literal["strength", "level", "phase", "shape", "per turn", "random"]
 ``random``    acts only where a generator is given: the size of a spread, the number of rare events
 """
 
+Owner = Literal["device", "mounting", "bench", "recording"]
+"""Whose a parameter is: with what it stays as it is, and with what it changes.
+
+``device``     the sensor: the same wherever and whenever it is measured, temperature laws included
+``mounting``   how sensor and magnet sit: changes when either is taken off and put back; the magnet, which sits on the
+               shaft, is among it
+``bench``      reference, coupling, drive and surroundings: the same for every device measured there
+``recording``  this one record: noise, events, movements in time, phases that count from its middle
+"""
+
+OWNER_OF_STAGE: Mapping[str, Owner] = {
+    "mechanics": "bench",
+    "magnet": "mounting",
+    "concentrator": "device",
+    "hall": "device",
+    "adc": "device",
+    "cordic": "device",
+    "empirical": "device",
+    "link": "device",
+    "reference": "bench",
+}
+"""Whose a parameter is that does not say so itself, by its effect's stage."""
+
 Parameters = Mapping[str, Any]
 
 
@@ -55,6 +78,8 @@ class Param:
         Whether an answer gives it only where it is not at null: a detail that no search sets.
     scatter : float
         Half width of the range over which devices of one kind differ in it.
+    owner : str, optional
+        Whose it is: see :data:`Owner`. Not given: what its effect's stage says, :data:`OWNER_OF_STAGE`.
     """
 
     unit: str
@@ -72,6 +97,7 @@ class Param:
     prior_sd: float = 0.0
     aside: bool = False
     scatter: float = 0.0
+    owner: Owner | None = None
 
     def __post_init__(self) -> None:
         if not self.lower <= self.null <= self.upper:

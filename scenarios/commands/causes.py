@@ -39,13 +39,22 @@ def parameters(effect: Effect) -> str:
     return ", ".join(said)
 
 
+def owners(effect: Effect) -> str:
+    """Whose its parameters are: the word of most of them, and which are another's."""
+    by_owner: dict[str, list[str]] = {}
+    for name in effect.params:
+        by_owner.setdefault(effect.owner(name), []).append(name)
+    most, *others = sorted(by_owner, key=lambda owner: -len(by_owner[owner]))
+    return "; ".join([most, *(f"{owner}: {', '.join(by_owner[owner])}" for owner in others)])
+
+
 def needs(effect: Effect) -> str:
     """What a sweep must hold for the effect to be visible."""
     return ", ".join(sorted(need.replace("|", " or ") for need in effect.needs)) or "any sweep"
 
 
 def row(effect: Effect) -> tuple[str, ...]:
-    """Name, stage, parameters, needs, signature, footprint, source."""
+    """Name, stage, parameters, needs, signature, footprint, owner, source."""
     return (
         effect.name,
         effect.stage,
@@ -53,11 +62,12 @@ def row(effect: Effect) -> tuple[str, ...]:
         needs(effect),
         effect.signature,
         FOOTPRINTS[effect.footprint],
+        owners(effect),
         effect.source,
     )
 
 
-HEADS = ("cause", "stage", "parameters", "needs", "signature in the error", "shows in", "source")
+HEADS = ("cause", "stage", "parameters", "needs", "signature in the error", "shows in", "belongs to", "source")
 
 
 def as_markdown(effects: Sequence[Effect] = CATALOGUE) -> str:

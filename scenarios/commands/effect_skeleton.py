@@ -82,7 +82,9 @@ _EFFECT = """EFFECT = Effect(
     # size that makes about 0.1 deg. Roles: "strength" where none is given, "phase" in deg, "shape" for what is tried on
     # the grid `shapes` (orders, widths), "level" for a strength that is tried there, "random" for the size of noise.
     # Where they apply: allowed=(low, high) for what physics allows, field_power=-1.0 for what falls with the magnet's
-    # field, mirror=-1 for what changes sign when sensor and output count the other way.
+    # field, mirror=-1 for what changes sign when sensor and output count the other way, owner="device", "mounting",
+    # "bench" or "recording" for whose it is where it is not its stage's (mechanics and reference: the bench's, magnet:
+    # the mounting's, others: the device's).
     params={{
 {params}
     }},

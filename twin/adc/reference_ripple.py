@@ -83,7 +83,9 @@ REFERENCE_RIPPLE = Effect(
             role="shape",
             typical=1e3,
         ),
-        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
+        "phase_deg": Param(
+            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase", owner="recording"
+        ),
     },
     forward=forward,
     channel_shapes=("delay_us",),

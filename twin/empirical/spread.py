@@ -22,9 +22,15 @@ UNNAMED_BURST = Effect(
     stage="empirical",
     acts_on="angle",
     params={
-        "first_row": Param(unit="row", null=0.0, lower=0.0, upper=1e9, doc="first row", role="shape", counts=True),
-        "last_row": Param(unit="row", null=0.0, lower=0.0, upper=1e9, doc="last row", role="shape", counts=True),
-        "rms_deg": Param(unit="deg", null=0.0, lower=0.0, upper=90.0, doc="RMS beyond the noise", role="random"),
+        "first_row": Param(
+            unit="row", null=0.0, lower=0.0, upper=1e9, doc="first row", role="shape", counts=True, owner="recording"
+        ),
+        "last_row": Param(
+            unit="row", null=0.0, lower=0.0, upper=1e9, doc="last row", role="shape", counts=True, owner="recording"
+        ),
+        "rms_deg": Param(
+            unit="deg", null=0.0, lower=0.0, upper=90.0, doc="RMS beyond the noise", role="random", owner="recording"
+        ),
     },
     forward=_burst,
     footprint="spread",

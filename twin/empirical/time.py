@@ -31,9 +31,13 @@ UNNAMED_TONE = Effect(
     stage="empirical",
     acts_on="angle",
     params={
-        "frequency_Hz": Param(unit="Hz", null=1.0, lower=0.0, upper=1e7, doc="frequency", role="shape"),
-        "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=90.0, doc="amplitude"),
-        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
+        "frequency_Hz": Param(
+            unit="Hz", null=1.0, lower=0.0, upper=1e7, doc="frequency", role="shape", owner="recording"
+        ),
+        "amplitude_deg": Param(unit="deg", null=0.0, lower=0.0, upper=90.0, doc="amplitude", owner="recording"),
+        "phase_deg": Param(
+            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase", owner="recording"
+        ),
     },
     forward=_tone,
     line=Line(param="frequency_Hz", clock="time", limits=_tone_limits, within=_any_tone),
@@ -67,7 +71,9 @@ UNNAMED_DRIFT = Effect(
     stage="empirical",
     acts_on="angle",
     params={
-        f"mode{k}_deg": Param(unit="deg", null=0.0, lower=-90.0, upper=90.0, doc=f"cos({k} pi t / duration)")
+        f"mode{k}_deg": Param(
+            unit="deg", null=0.0, lower=-90.0, upper=90.0, doc=f"cos({k} pi t / duration)", owner="recording"
+        )
         for k in range(1, MODES + 1)
     },
     forward=_drift,

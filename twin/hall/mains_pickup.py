@@ -44,14 +44,32 @@ MAINS_PICKUP = Effect(
             doc="50 or 60 Hz within 1 %",
             role="shape",
             typical=0.1,
+            owner="recording",
         ),
         "x_percent": Param(
-            unit="%", null=0.0, lower=-50.0, upper=50.0, doc="amplitude on x", typical=0.2, field_power=-1.0
+            unit="%",
+            null=0.0,
+            lower=-50.0,
+            upper=50.0,
+            doc="amplitude on x",
+            typical=0.2,
+            field_power=-1.0,
+            owner="bench",
         ),
         "y_percent": Param(
-            unit="%", null=0.0, lower=-50.0, upper=50.0, doc="amplitude on y", typical=0.2, field_power=-1.0, mirror=-1
+            unit="%",
+            null=0.0,
+            lower=-50.0,
+            upper=50.0,
+            doc="amplitude on y",
+            typical=0.2,
+            field_power=-1.0,
+            mirror=-1,
+            owner="bench",
         ),
-        "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase"),
+        "phase_deg": Param(
+            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase", owner="recording"
+        ),
     },
     forward=forward,
     needs=frozenset({"time_s", "moving shaft"}),

@@ -70,7 +70,16 @@ def _of_each_channel(rng: np.random.Generator, shape: tuple[int, ...], noise: No
 
 
 def _shape(unit: str, null: float, bounds: tuple[float, float], doc: str, *, typical: float = 0.1) -> Param:
-    return Param(unit=unit, null=null, lower=bounds[0], upper=bounds[1], doc=doc, role="shape", typical=typical)
+    return Param(
+        unit=unit,
+        null=null,
+        lower=bounds[0],
+        upper=bounds[1],
+        doc=doc,
+        role="shape",
+        typical=typical,
+        owner="recording",
+    )
 
 
 _SCALE = {
@@ -89,7 +98,14 @@ NOISE = Effect(
     acts_on="channels",
     params={
         "rms_deg": Param(
-            unit="deg", null=0.0, lower=0.0, upper=180.0, doc="RMS in the angle", role="random", field_power=-1.0
+            unit="deg",
+            null=0.0,
+            lower=0.0,
+            upper=180.0,
+            doc="RMS in the angle",
+            role="random",
+            field_power=-1.0,
+            owner="recording",
         ),
         "correlation": _shape("1", 0.0, (0.0, 0.999), "from one reading to the next", typical=0.5),
         "correlated_share": _shape("1", 1.0, (0.0, 1.0), "share of the variance that is correlated or 1/f"),
@@ -103,6 +119,7 @@ NOISE = Effect(
             doc="1: the spectrum is that of angle and radius, 0: of each channel",
             role="shape",
             counts=True,
+            owner="recording",
         ),
         **_SCALE,
     },

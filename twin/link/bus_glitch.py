@@ -71,7 +71,9 @@ BUS_GLITCH = Effect(
     stage="link",
     acts_on="angle",
     params={
-        "count": Param(unit="1", null=0, lower=0, upper=1e6, doc="words hit", role="random", counts=True),
+        "count": Param(
+            unit="1", null=0, lower=0, upper=1e6, doc="words hit", role="random", counts=True, owner="recording"
+        ),
     },
     forward=forward,
     footprint="sequence",

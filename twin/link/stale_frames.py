@@ -58,7 +58,11 @@ STALE_FRAMES = Effect(
     name="stale_frames",
     stage="link",
     acts_on="angle",
-    params={"fraction_percent": Param(unit="%", null=0.0, lower=0.0, upper=99.0, doc="of the frames", role="random")},
+    params={
+        "fraction_percent": Param(
+            unit="%", null=0.0, lower=0.0, upper=99.0, doc="of the frames", role="random", owner="recording"
+        )
+    },
     forward=forward,
     footprint="sequence",
     marks=Marks(find=marks, told=told, early=True),

@@ -33,8 +33,18 @@ STRAY_FIELD = Effect(
     stage="magnet",
     acts_on="channels",
     params={
-        "bx_mT": Param(unit="mT", null=0.0, lower=-50.0, upper=50.0, doc="stray field along the sensor's x"),
-        "by_mT": Param(unit="mT", null=0.0, lower=-50.0, upper=50.0, doc="stray field along the sensor's y", mirror=-1),
+        "bx_mT": Param(
+            unit="mT", null=0.0, lower=-50.0, upper=50.0, doc="stray field along the sensor's x", owner="bench"
+        ),
+        "by_mT": Param(
+            unit="mT",
+            null=0.0,
+            lower=-50.0,
+            upper=50.0,
+            doc="stray field along the sensor's y",
+            mirror=-1,
+            owner="bench",
+        ),
         "field_mT": Param(
             unit="mT",
             null=FIELD_MT,

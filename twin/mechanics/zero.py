@@ -19,7 +19,13 @@ ZERO = Effect(
     acts_on="field",
     params={
         "zero_deg": Param(
-            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="reference zero to sensor x axis", scatter=180.0
+            unit="deg",
+            null=0.0,
+            lower=-360.0,
+            upper=360.0,
+            doc="reference zero to sensor x axis",
+            scatter=180.0,
+            owner="mounting",
         )
     },
     forward=forward,

@@ -38,7 +38,9 @@ ZERO_DRIFT = Effect(
     stage="mechanics",
     acts_on="shaft",
     params={
-        "amplitude_deg": Param(unit="deg", null=0.0, lower=-20.0, upper=20.0, doc="movement over the whole record"),
+        "amplitude_deg": Param(
+            unit="deg", null=0.0, lower=-20.0, upper=20.0, doc="movement over the whole record", owner="recording"
+        ),
         "time_constant_s": Param(
             unit="s",
             null=1e3,
@@ -47,6 +49,7 @@ ZERO_DRIFT = Effect(
             doc="first-order time constant",
             role="shape",
             typical=1e3,
+            owner="recording",
         ),
     },
     forward=forward,

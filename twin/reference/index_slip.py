@@ -34,7 +34,7 @@ INDEX_SLIP = Effect(
     stage="reference",
     acts_on="reference",
     params={
-        "step_deg": Param(unit="deg", null=0.0, lower=-180.0, upper=180.0, doc="the jump"),
+        "step_deg": Param(unit="deg", null=0.0, lower=-180.0, upper=180.0, doc="the jump", owner="recording"),
         "time_s": Param(
             unit="s",
             null=0.0,
@@ -42,6 +42,7 @@ INDEX_SLIP = Effect(
             upper=1e12,
             doc="its instant; the row without time stamps",
             role="shape",
+            owner="recording",
         ),
     },
     forward=forward,

@@ -44,9 +44,17 @@ REFERENCE_REZERO = Effect(
     stage="reference",
     acts_on="reference",
     params={
-        "zeros_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="one zero a turn", role="per turn"),
+        "zeros_deg": Param(
+            unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="one zero a turn", role="per turn", owner="recording"
+        ),
         "spread_deg": Param(
-            unit="deg", null=0.0, lower=0.0, upper=360.0, doc="scatter of zeros drawn anew", role="random"
+            unit="deg",
+            null=0.0,
+            lower=0.0,
+            upper=360.0,
+            doc="scatter of zeros drawn anew",
+            role="random",
+            owner="recording",
         ),
     },
     forward=forward,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,17 @@ SEEN_IN_MIRROR = np.array([[1.0], [-1.0]])
 """What a mirror along the x axis does to the channels."""
 
 
-def part(name: str, stage: str, forward: Forward, source: str) -> Effect:
+def part(name: str, stage: str, forward: Forward, source: str, *, noisy: bool = False) -> Effect:
     """A part that acts on the channels (..., 2, n) of nominal amplitude 1, ahead of the effects of its stage."""
     return Effect(
-        name=name, stage=stage, acts_on="channels", params={}, forward=forward, source=source, signature="as described"
+        name=name,
+        stage=stage,
+        acts_on="channels",
+        params={},
+        forward=forward,
+        source=source,
+        signature="as described",
+        footprint="spread" if noisy else "mean",
     )
 
 
@@ -27,7 +35,7 @@ def in_mirror(given: Effect) -> Effect:
     def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
         return SEEN_IN_MIRROR * given.forward(SEEN_IN_MIRROR * signal, motion, values, rng)
 
-    return part(given.name, given.stage, forward, given.source)
+    return replace(given, forward=forward)
 
 
 def per_design(value: Any) -> Array:

@@ -11,9 +11,9 @@ import pytest
 
 from scenarios.commands.protocol import Protocol
 from scenarios.studies.machines import Machines
-from scenarios.studies.training.draw import Ranges
+from scenarios.studies.training.draw import Ranges, uniforms_needed
 from scenarios.studies.training.job import Training
-from scenarios.studies.training.recipe import parameter_names, recipe_of
+from scenarios.studies.training.recipe import parameter_names, recipe_of, simulate_block
 from scenarios.studies.training.run import generate
 from tests.scenarios.study_jobs import content
 from twin.drawing import YARDSTICK_DEG
@@ -37,6 +37,52 @@ def test_a_sweep_depends_on_seed_and_number_alone() -> None:
         for name, values in whole.items():
             assert values[first - 16 : first - 11].tobytes() == part[name].tobytes(), name
     assert not np.array_equal(training(1).arrays(0)["error_deg"], training(0).arrays(0)["error_deg"])
+
+
+NOISY_PLATES = """
+schema = "halltwin.twin/1"
+[reference]
+lines = 500
+[hardware.disk]
+shift_x_um = 1.0
+[hardware.plate]
+offset_uV = 1000.0
+asymmetry = 0.002
+white_nV = 2000.0
+[effects.adc_quantisation]
+bits = 12
+[effects.cordic_truncation]
+iterations = 10
+word_bits = 12
+angle_bits = 14
+[effects.output_quantisation]
+bits = 12
+"""
+
+
+def test_a_training_sweep_is_what_the_same_twin_records(tmp_path: Path) -> None:
+    (tmp_path / "twin.toml").write_text(NOISY_PLATES)
+    recipe = recipe_of(str(tmp_path / "twin.toml"), protocol=BENCH, ranges=Ranges(), seed=3)
+    block = simulate_block(recipe, range(12))
+    names, whole = parameter_names(recipe), {"iterations", "bits"}
+    drawn_iterations = set()
+    for k in range(12):
+        stream = np.random.default_rng(np.random.SeedSequence(3, spawn_key=(k,)))
+        stream.random(uniforms_needed(recipe.causes))
+        chain = recipe.chain
+        for effect, param in names:
+            value = float(block.draw.values[effect][param][k])
+            chain = chain.with_effect(effect, **{param: int(value) if param in whole else value})
+        drawn_iterations.add(chain.values["cordic_truncation"]["iterations"])
+        steps = list(chain.steps(recipe.motion, stream))
+        reference = chain.recorded_reference(recipe.motion, stream)
+        error = np.angle(np.exp(1j * (steps[-1].after[0] - reference)))
+        found = np.radians(block.error_deg[k] + block.mean_deg[k])
+        # The same run but for the rounding of the mean that is taken off and put back.
+        np.testing.assert_allclose(np.angle(np.exp(1j * (found - error))), 0.0, atol=1e-12)
+        channels = next(step.before for step in steps if step.key == "after channels")
+        assert block.channels[k].tobytes() == channels.tobytes()
+    assert len(drawn_iterations) > 1
 
 
 def test_labels_strengths_and_parameters_agree() -> None:

@@ -7,10 +7,12 @@ import pytest
 
 from twin.adc.adc_quantisation import codes_of
 from twin.angles import TAU, wrap
+from twin.chain import Chain
 from twin.cordic.bit_true import Cordic, Table, angle_rad, look_up, vectoring
 from twin.cordic.cordic_truncation import rotations
 from twin.cordic.cordic_truncation import vectoring as unbounded
 from twin.limits import OutOfRangeError
+from twin.motion import Motion
 
 WORD_BITS = 14
 RADIUS = 0.8 * 2 ** (WORD_BITS - 1)
@@ -78,6 +80,23 @@ def test_axes_are_near_their_angles() -> None:
     unit = Cordic(iterations=16, guard_bits=6, angle_bits=24)
     words, _ = vectoring(x, y, unit)
     np.testing.assert_allclose(wrap(angle_rad(words, 24) - np.array([0, 90, 180, -90]) * TAU / 360), 0.0, atol=1e-4)
+
+
+def test_each_entry_of_a_batch_has_its_own_words() -> None:
+    """Units of several lengths, one of unbounded codes and none at all, side by side and one by one."""
+    motion = Motion.from_angle(np.radians(np.arange(0.0, 360.0, 0.7)))
+    numbers = {
+        "iterations": [14, 8, 8, 6, 0],
+        "word_bits": [14, 14, 12, 0, 12],
+        "guard_bits": 3,
+        "angle_bits": [18] * 5,
+    }
+    for rng in (None, np.random.default_rng(0)):
+        *_, last = Chain().with_effect("cordic_truncation", **numbers).steps(motion, rng)
+        for k in range(5):
+            own = {name: value[k] if isinstance(value, list) else value for name, value in numbers.items()}
+            *_, alone = Chain().with_effect("cordic_truncation", **own).steps(motion, rng)
+            np.testing.assert_array_equal(last.after[k, 0], alone.after[0])
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from twin.adc.adc_quantisation import codes_of
 from twin.angles import Array, radians, wrap
 from twin.cordic import bit_true
 from twin.cordic.bit_true import Cordic, angle_rad
-from twin.effect import Effect, Param, Parameters
+from twin.effect import BoolArray, Effect, Param, Parameters
 from twin.motion import Motion
 
 EXACT_BITS = 40
@@ -44,35 +44,64 @@ def vectoring(angle: Array, steps: Array) -> Array:
 
 
 def unit_of(values: Parameters) -> Cordic | None:
-    """The integer unit that the parameters describe; None where they leave its codes unbounded."""
+    """The integer unit that the parameters describe; None where they leave its codes unbounded, or it has no step."""
     numbers = {name: int(np.ravel(values.get(name, 0))[0]) for name in ("iterations", "word_bits", "guard_bits")}
-    if numbers["word_bits"] == 0:
+    if numbers["word_bits"] == 0 or numbers["iterations"] == 0:
         return None
     angle_bits = int(np.ravel(values.get("angle_bits", 0))[0]) or EXACT_BITS
     return Cordic(**numbers, angle_bits=angle_bits)
 
 
+def alike(values: Parameters) -> list[tuple[BoolArray, Parameters]]:
+    """The entries of a batch that share all whole numbers, as masks (batch,), with these numbers."""
+    names = [name for name in CORDIC_TRUNCATION.params if name in values]
+    table = np.stack(np.broadcast_arrays(*(np.ravel(values[name]) for name in names)), axis=-1)
+    kinds = np.unique(table, axis=0)
+    return [(np.all(table == kind, axis=-1), dict(zip(names, kind.tolist(), strict=True))) for kind in kinds]
+
+
 def computes(channels: Array, values: Parameters) -> Array | None:
-    """The angle [rad] (..., 1, n) that the integer unit returns for the converter's codes of the channels."""
+    """The angle [rad] (..., 1, n) that the integer unit returns for the converter's codes of the channels.
+
+    In a batch an entry without such a unit gets the arctangent, cut short by its own iterations.
+    """
+    kinds = alike(values)
+    if all(unit_of(one) is None for _, one in kinds):
+        return None
+    if len(kinds) == 1:
+        return _angle(channels, kinds[0][1])
+    channels = np.broadcast_to(channels, (kinds[0][0].size, *channels.shape[-2:]))
+    angle = np.empty((len(channels), 1, channels.shape[-1]))
+    for rows, one in kinds:
+        angle[rows] = _angle(channels[rows], one)
+    return angle
+
+
+def _angle(channels: Array, values: Parameters) -> Array:
+    """The angle [rad] (..., 1, n) of one unit, or of one number of iterations on unbounded codes."""
+    x, y = channels[..., :1, :], channels[..., 1:, :]
     unit = unit_of(values)
     if unit is None:
-        return None
-    codes = codes_of(channels, unit.word_bits)
-    words, _ = bit_true.vectoring(codes[..., :1, :], codes[..., 1:, :], unit)
+        return _cut_short(np.asarray(np.arctan2(y, x)), values)
+    words, _ = bit_true.vectoring(codes_of(x, unit.word_bits), codes_of(y, unit.word_bits), unit)
     return angle_rad(words, unit.angle_bits)
 
 
+def _cut_short(angle: Array, values: Parameters) -> Array:
+    """Angles [rad], any shape, as these iterations on unbounded codes return them."""
+    return angle if values["iterations"] == 0 else angle + wrap(vectoring(angle, rotations(values)) - angle)
+
+
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    if rng is not None and unit_of(values) is not None:
-        return signal  # The integer unit has computed it.
-    iterations = np.asarray(values["iterations"])
-    if iterations.size == 1:
-        count = int(iterations.ravel()[0])
-        return signal if count == 0 else signal + wrap(vectoring(signal, rotations(values)) - signal)
-    counts = np.ravel(iterations)
-    parts = np.broadcast_to(signal, (counts.size, *signal.shape[-2:]))
-    single = ({**values, "iterations": float(count)} for count in counts)
-    return np.stack([forward(part, motion, one, rng) for part, one in zip(parts, single, strict=True)])
+    kinds = alike(values)
+    if rng is not None and any(unit_of(one) is not None for _, one in kinds):
+        return signal  # The integer units have computed it.
+    if len(kinds) == 1:
+        return _cut_short(signal, kinds[0][1])
+    out = np.array(np.broadcast_to(signal, (kinds[0][0].size, *signal.shape[-2:])))
+    for rows, one in kinds:
+        out[rows] = _cut_short(out[rows], one)
+    return out
 
 
 def attainable(values: Parameters) -> Array:

@@ -41,7 +41,8 @@ def described(plates: tuple[Plate, Plate], vertical_mT: Any) -> Effect:
         seen = [_seen_mT(*one, motion.temperature_c, rng) for one in zip(axes, plates, strict=True)]
         return np.concatenate(seen, axis=-2) / scale
 
-    return part("plates", "hall", forward, "the Hall plates as described in [hardware.plate] and [hardware.plate_y]")
+    source = "the Hall plates as described in [hardware.plate] and [hardware.plate_y]"
+    return part("plates", "hall", forward, source, noisy=any(plate.white_nV > 0.0 for plate in plates))
 
 
 def _seen_mT(field_mT: Array, plate: Plate, temp_c: Array, rng: np.random.Generator | None) -> Array:

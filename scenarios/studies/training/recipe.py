@@ -68,21 +68,15 @@ class Block:
 
 
 def simulate_block(recipe: Recipe, numbers: range) -> Block:
-    """Simulate the sweeps with these numbers."""
+    """Simulate the sweeps with these numbers, as built: with noise, integers and words, as a bench records them."""
     streams = [np.random.default_rng(np.random.SeedSequence(recipe.seed, spawn_key=(k,))) for k in numbers]
     uniforms = np.stack([stream.random(uniforms_needed(recipe.causes)) for stream in streams])
     motion = recipe.motion
     drawn = draw(uniforms, recipe.chain, recipe.causes, motion, recipe.ranges)
     chain = row_chain(recipe.chain, drawn.values, streams)
-    channels = measured = None
-    for step in chain.steps(motion):
-        if step.key == "after channels":
-            channels = step.before
-        measured = step.after
-    assert channels is not None
-    assert measured is not None
-    slope = chain.sensor_sense * chain.output_sense
-    error = wrap(measured[:, 0] - slope * chain.reference(motion))
+    steps, reference = chain.as_built(motion)
+    channels = next(step.before for step in steps if step.key == "after channels")
+    error = wrap(steps[-1].after[:, 0] - chain.sensor_sense * chain.output_sense * reference)
     mean = np.angle(np.mean(np.exp(1j * error), axis=1))
     return Block(wrap_deg(np.degrees(error - mean[:, None])), channels, np.degrees(mean), drawn)
 

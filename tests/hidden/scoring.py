@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-VERDICTS = ("right", "missed", "extra", "wrong name")
+VERDICTS = ("right", "honest unnamed", "missed", "extra", "wrong name")
+"""From the best to the worst. Honest unnamed: of what has a name it was said that there is something, and no name."""
 
 
 def named(answer: Mapping[str, Any]) -> list[frozenset[str]]:
@@ -36,12 +37,21 @@ def verdict(answer: Mapping[str, Any], truth: Mapping[str, Any]) -> str:
     """One of VERDICTS.
 
     An entry of the answer fits a cause of the truth if it bears its name or lists it among those it
-    cannot be told from. What the truth tolerates may be given or left out.
+    cannot be told from. What the truth tolerates may be given or left out. Where several answers are
+    right, the verdict is that against the one which comes nearest.
     """
-    causes = list(truth["causes"])
-    given = named(answer)
-    matched = _most_matched(causes, given)
-    tolerated = set(truth.get("tolerated", ()))
+    right_ones = truth.get("answers", [truth["causes"]])
+    tolerated = frozenset(truth.get("tolerated", ()))
+    best = min((_against(answer, list(causes), tolerated) for causes in right_ones), key=VERDICTS.index)
+    if best == "wrong name" and truth.get("named", False):
+        besides = {entry["name"] for entry in answer["causes"]} - tolerated
+        return "honest unnamed" if besides == {"unnamed"} else best
+    return best
+
+
+def _against(answer: Mapping[str, Any], causes: Sequence[str], tolerated: frozenset[str]) -> str:
+    """The verdict where these causes are the right ones."""
+    matched = _most_matched(causes, named(answer))
     surplus = [
         position
         for position, entry in enumerate(answer["causes"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from statistics import median
@@ -10,6 +11,8 @@ from typing import Any, Protocol
 from rich.console import Console
 from rich.table import Table
 
+from .physics.sets import PhysicsJob
+from .scoring import VERDICTS
 from .sets import Job
 
 CLEAR_SIGMA = 8.0
@@ -20,7 +23,7 @@ class Scored(Protocol):
     """The part of a result that a table shows."""
 
     @property
-    def job(self) -> Job: ...
+    def job(self) -> Job | PhysicsJob: ...
     @property
     def truth(self) -> Mapping[str, Any]: ...
     @property
@@ -31,6 +34,8 @@ class Scored(Protocol):
     def cpu_s(self) -> float: ...
     @property
     def noise_ratio(self) -> float | None: ...
+    @property
+    def transfer(self) -> float | None: ...
     @property
     def message(self) -> str: ...
 
@@ -51,7 +56,7 @@ def print_group(console: Console, group: str, results: Sequence[Scored]) -> None
         return
     table = Table(title=group, title_justify="left")
     table.add_column("hidden", no_wrap=True)
-    for heading in ("right", "right of clear", "missed", "extra", "wrong name", "failed"):
+    for heading in ("right", "right of clear", *VERDICTS[1:], "failed"):
         table.add_column(heading, justify="right")
     table.add_column("named instead or besides")
     labels = list(dict.fromkeys(result.job.label for result in results))
@@ -67,13 +72,13 @@ def print_group(console: Console, group: str, results: Sequence[Scored]) -> None
             for result in members
             if result.verdict != "right"
             for name in result.names
-            if name not in result.truth["causes"]
+            if name not in (*result.truth["causes"], *result.truth.get("tolerated", ()))
         )
         table.add_row(
             label,
             _share(members),
             _share([result for result in members if clear(result.truth)]),
-            *(str(counts[kind] or "") for kind in ("missed", "extra", "wrong name", "failed")),
+            *(str(counts[kind] or "") for kind in (*VERDICTS[1:], "failed")),
             ", ".join(f"{name} {count}" for name, count in wrong.most_common(6)),
         )
     console.print(table)
@@ -82,6 +87,13 @@ def print_group(console: Console, group: str, results: Sequence[Scored]) -> None
     if ratios:
         summary += f"; RMS left over noise put in: median {median(ratios):.3f} of {len(ratios)}"
     console.print(summary)
+    transfers = sorted(result.transfer for result in results if result.transfer is not None)
+    if transfers:
+        console.print(
+            "another recording of the device predicted, RMS over noise and rounding: "
+            f"median {median(transfers):.3f}, 90 % {transfers[math.ceil(0.9 * len(transfers)) - 1]:.3f}, "
+            f"worst {transfers[-1]:.3f} of {len(transfers)}"
+        )
     for result in results:
         if result.verdict != "right":
             console.print(failure(result), highlight=False, soft_wrap=True)

@@ -377,7 +377,7 @@ def test_the_catalogue_is_listed_whole_with_a_source_each() -> None:
     text = as_markdown()
     for effect in CATALOGUE:
         line = next(line for line in text.splitlines() if line.startswith(f"| `{effect.name}` |"))
-        assert line.replace("\\|", "").count("|") == 8
+        assert line.replace("\\|", "").count("|") == 9
 
 
 def test_a_cause_without_gain_on_the_mean_is_not_sold_as_one() -> None:

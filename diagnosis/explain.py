@@ -68,7 +68,8 @@ def explain(
     on_interrupt : {"raise", "answer"}, optional
         What an interrupt (Ctrl-C) does: raise KeyboardInterrupt, or end the search where it stands and answer with
         what it holds, finished and proven like any other; a second one raises. Such an answer says so in
-        ``to_dict()["cut_short"]``, and its verdict is never ``"adequate"`` or ``"explained"``.
+        ``to_dict()["cut_short"]``, and its verdict is never ``"adequate"`` or ``"explained"``, but ``"stopped"`` where
+        nothing had been found.
 
     Returns
     -------

@@ -10,6 +10,8 @@ from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.observations import of_readings
 from diagnosis.discovery.proof.cross_validation import rms_deg
+from diagnosis.discovery.proof.lack_of_fit import LackOfFit
+from diagnosis.discovery.proof.misfit import Misfit, misfits
 from diagnosis.discovery.proof.predictive_check import PredictiveCheck
 from diagnosis.discovery.state import State
 from twin.catalogue import unnamed
@@ -27,7 +29,8 @@ class Discovery:
 
     ``baseline`` is the paper's error model alone, ``fit`` the extended one; ``masked`` the raw rows (n_raw,) that
     belong to single-reading causes; ``invisible`` the effects that this sweep cannot show, with what it lacks;
-    ``cut_short`` the stage in which the search was stopped, where it was.
+    ``cut_short`` the stage in which the search was stopped, where it was; ``misfits`` what the extended twin does not
+    predict although neither a cause nor structure tells of it.
     """
 
     sweep: Sweep
@@ -44,6 +47,8 @@ class Discovery:
     given: Chain | None = None
     invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
     likeness: PredictiveCheck | None = None
+    lack: LackOfFit | None = None
+    misfits: tuple[Misfit, ...] = ()
     cut_short: str | None = None
 
     def __repr__(self) -> str:
@@ -79,15 +84,22 @@ class Discovery:
                 if not unnamed(effect.name) and not effect.visible_in(provides)
             },
             likeness=state.likeness,
+            lack=state.lack,
+            misfits=misfits(fit, state.likeness, state.lack),
             cut_short=state.watch.stopped_in,
         )
 
     @property
     def verdict(self) -> str:
-        """adequate, explained, partly explained or unnamed; of a search that was stopped one of the last two."""
+        """adequate, explained, partly explained or unnamed; stopped where the search was before it found anything.
+
+        Explained is only what leaves no structure, is no misfit, and was searched to the end.
+        """
         named = any(cause.name != "unnamed" for cause in self.causes)
         without_name = any(cause.name == "unnamed" for cause in self.causes)
-        unfinished = self.cut_short is not None
-        if named or (unfinished and not without_name):
-            return "partly explained" if without_name or unfinished else "explained"
-        return "unnamed" if without_name else "adequate"
+        open_still = without_name or bool(self.misfits)
+        if named:
+            return "partly explained" if open_still or self.cut_short is not None else "explained"
+        if self.cut_short is not None and not without_name:
+            return "stopped"
+        return "unnamed" if open_still else "adequate"

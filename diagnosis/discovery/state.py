@@ -18,6 +18,7 @@ from twin.effect import BoolArray, Effect
 from twin.sweep import Sweep
 
 if TYPE_CHECKING:
+    from diagnosis.discovery.proof.lack_of_fit import LackOfFit
     from diagnosis.discovery.proof.predictive_check import PredictiveCheck
 
 
@@ -38,7 +39,7 @@ class State:
     the raw rows (n_raw,) that single-reading causes have claimed; ``looked_at``, how many effects were searched for;
     ``fold`` (n,), the block in which each row was held out; ``held``, held-out residuals (n,) [rad] of the baseline and
     after each of ``keys``, and once there is an answer after each of ``causes``; ``causes``, the entries of
-    the answer; ``likeness``, the predictive check.
+    the answer; ``likeness``, the predictive check; ``lack``, what is left against repeated readings.
     """
 
     sweep: Sweep
@@ -58,6 +59,7 @@ class State:
     held: tuple[Array, ...] = ()
     causes: tuple[Finding, ...] = ()
     likeness: PredictiveCheck | None = None
+    lack: LackOfFit | None = None
     watch: Watch = field(default_factory=Watch)
 
     def __repr__(self) -> str:

@@ -55,6 +55,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "noise_floor_from": found.noise_floor_from,
             "noise": found.fit.weighting.family.labels[found.fit.weighting.member],
             "verdict": found.verdict,
+            **_checked(found),
             "causes": [_cause(found, cause) for cause in found.causes],
             "unexplained": {
                 "rms_deg": _rms(extended[kept]),
@@ -87,6 +88,18 @@ def _not_checked(found: Discovery) -> dict[str, Any] | None:
         return None
     why = why_not_checked(found.fit)
     return {"why": "it was left out", "readings": found.fit.rows, "needed": None} if why is None else why._asdict()
+
+
+def _checked(found: Discovery) -> dict[str, Any]:
+    """The two checks of the extended twin, None where one was not made, and what they find off."""
+    like, lack = found.likeness, found.lack
+    figures = lack and {"f_ratio": lack.ratio, "left_deg": lack.left_deg, "by_scatter_deg": lack.by_scatter_deg}
+    return {
+        "lack_of_fit_p": lack and lack.p,
+        "predictive_p": like and like.p,
+        "lack_of_fit": figures,
+        "misfits": [vars(one) for one in found.misfits],
+    }
 
 
 def _cut_short(found: Discovery) -> dict[str, str] | None:

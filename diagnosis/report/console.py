@@ -16,7 +16,8 @@ from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.statements import FactorRow
 from diagnosis.report.wording import chance
 
-_VERDICT_STYLE = {"adequate": "green", "explained": "green", "partly explained": "yellow", "unnamed": "yellow"}
+_ALL_SAID = ("adequate", "explained")
+"""Verdicts that leave nothing open."""
 _NARROW = 72
 """Characters from which on two factors stand beside each other."""
 _WRONG = "What the simulation gets wrong"
@@ -149,7 +150,8 @@ def _details(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list[str]:
 def _verdict(answer: Mapping[str, Any]) -> RenderableType:
     verdict = answer["verdict"]
     said = f". {statements.verdict_words(answer)}"
-    return Text.assemble(("Verdict: ", "bold"), (verdict, f"bold {_VERDICT_STYLE[verdict]}"), said)
+    style = "green" if verdict in _ALL_SAID else "yellow"
+    return Text.assemble(("Verdict: ", "bold"), (verdict, f"bold {style}"), said)
 
 
 def _invisible(answer: Mapping[str, Any]) -> RenderableType | None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from diagnosis.discovery.proof.misfit import LACK_OF_FIT, LIKENESS
 from diagnosis.discovery.result import REPEATED
 from diagnosis.discovery.settings import UNLIKE
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
@@ -34,6 +35,7 @@ _LACKS = {
 _ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two speeds|both directions": "moving shaft"}
 """A want that goes without saying where the second one is wanted too."""
 
+_UNEXPLAINED = "Structure is there that no cause of the catalogue explains"
 HELD = "The given twin's factors were held as they are, its zero alone was fitted"
 _ORDERS_OF_FACTORS = ((1.0, "offset x or y"), (2.0, "gain ratio or phase"), (3.0, "quadratic term"))
 """Orders of the turn that a change of each factor makes, to first order; the quadratic term makes order 1 as well."""
@@ -261,7 +263,7 @@ def rivals_words(cause: Mapping[str, Any]) -> str:
 
 def verdict_words(answer: Mapping[str, Any]) -> str:
     """The verdict and what follows from it, in one or two sentences."""
-    like = likeness_words(answer["extended"])
+    like = "; ".join(filter(None, (lack_words(answer), likeness_words(answer))))
     names = {cause["name"] for cause in answer["causes"]}
     rest = " Part of that is structure without a name." if len(names) > 1 and "unnamed" in names else ""
     return f"{_gain_words(answer)}{f'; {like}' if like else ''}.{rest}{cut_words(answer)}"
@@ -273,8 +275,32 @@ def cut_words(answer: Mapping[str, Any]) -> str:
     return f" The search was stopped before its end, which leaves open {cut['left_open']}." if cut else ""
 
 
-def likeness_words(extended: Mapping[str, Any]) -> str:
+def lack_words(answer: Mapping[str, Any]) -> str:
+    """How what the fit leaves compares with the scatter of repeated readings; empty where none were repeated."""
+    lack = answer.get("lack_of_fit")
+    if lack is None:
+        return ""
+    p = answer["lack_of_fit_p"]
+    figures = f"F = {plain(lack['f_ratio'], 2)}, {'p < 1e-6' if p < 1e-6 else f'p = {plain(p, 2)}'}"
+    if p >= UNLIKE:
+        return f"repeated readings leave no lack of fit ({figures})"
+    return (
+        f"it lies off the means of repeated readings by {plain(lack['left_deg'])} deg RMS, where their scatter makes "
+        f"{plain(lack['by_scatter_deg'])} ({figures}{_where(answer, LACK_OF_FIT)})"
+    )
+
+
+def _where(answer: Mapping[str, Any], against: str) -> str:
+    """Where a check's misfit lies and how large it is there; empty where it found none."""
+    for one in answer.get("misfits", ()):
+        if one["against"] == against:
+            return "".join(f"; {said}" for said in (one["where"],) if said) + f", {plain(one['size_deg'])} deg"
+    return ""
+
+
+def likeness_words(answer: Mapping[str, Any]) -> str:
     """Whether sweeps simulated from the extended twin match the measured one, or why that was not checked."""
+    extended = answer["extended"]
     p = extended.get("likeness_p")
     if p is None:
         why = extended["likeness_not_checked"]
@@ -283,7 +309,7 @@ def likeness_words(extended: Mapping[str, Any]) -> str:
         few = "" if why["needed"] is None else f": {why['readings']} independent readings, {why['needed']} are needed"
         return f"whether simulated sweeps match was not checked ({why['why']}{few})"
     if p < UNLIKE:
-        return f"simulated sweeps do not match (p < {UNLIKE:g}: {extended['likeness_worst']})"
+        return f"simulated sweeps do not match (p < {UNLIKE:g}: {extended['likeness_worst']}{_where(answer, LIKENESS)})"
     return f"simulated sweeps match (p = {plain(p, 2)})"
 
 
@@ -291,10 +317,10 @@ def _gain_words(answer: Mapping[str, Any]) -> str:
     if answer["verdict"] == "adequate":
         return "The baseline is adequate: nothing else stands out of the noise"
     if not answer["causes"]:
-        return "No cause was found"
+        return "No cause was found" if answer["verdict"] == "stopped" else _UNEXPLAINED
     closer = closer_words(answer)
     if answer["verdict"] == "unnamed":
-        return f"Structure is there that no cause of the catalogue explains. {closer}"
+        return f"{_UNEXPLAINED}. {closer}"
     return closer
 
 

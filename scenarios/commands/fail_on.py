@@ -57,6 +57,8 @@ def in_explanation(answer: Mapping[str, Any]) -> dict[str, str]:
         found["cause"] = ", ".join(cause["name"] for cause in named)
     if len(named) < len(answer["causes"]):
         found["unexplained"] = "structure without a name"
+    elif answer.get("misfits"):
+        found["unexplained"] = f"held against {answer['misfits'][0]['against']}, {answer['misfits'][0]['what']}"
     return found | _rejected(answer["sweep"]["name"], answer["sweep"]["rejected"])
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.discovery.fitting.repeats import Repeats
 from twin.angles import Array, IntArray, wrap
 from twin.effect import BoolArray
 from twin.motion import Motion
@@ -26,7 +27,8 @@ class Observations:
     row against the usual one. ``group`` maps each raw row to its row here, and ``ahead`` (n_raw,) [rad] is how much
     further the reading of a raw row is expected to be than that of its row, the shaft having moved meanwhile.
     ``repeat_rms`` [rad] is the scatter of readings that became one row, ``within`` the mean square [rad^2] over all
-    readings that averaging them has taken away.
+    readings that averaging them has taken away. ``repeats`` are the readings repeated at one angle, where the bench
+    stood still for some.
     """
 
     motion: Motion
@@ -39,6 +41,7 @@ class Observations:
     ahead: Array
     repeat_rms: float | None
     within: float
+    repeats: Repeats | None = None
 
     def __len__(self) -> int:
         return int(self.measured.size)
@@ -59,7 +62,7 @@ def collect(sweep: Sweep) -> Observations:
     measured = np.radians(sweep.measured_deg)
     group = _repeats(motion)
     count: IntArray = np.bincount(group)
-    repeat_rms, within = None, 0.0
+    repeat_rms, within, repeats = None, 0.0, None
     ahead = np.zeros(count.sum())
     if count.max() > 1:
         first: IntArray = np.searchsorted(group, np.arange(count.size)).astype(np.int64)
@@ -69,7 +72,10 @@ def collect(sweep: Sweep) -> Observations:
         motion = _averaged(motion, group, count, first)
         sense = np.sign(np.sum(wrap(np.diff(measured)) * np.diff(raw)))
         ahead = sense * (raw - motion.shaft_rad[group])
-        squares = float(np.sum((deviation - mean[group] - ahead) ** 2))
+        off = deviation - mean[group] - ahead
+        squares = float(np.sum(off**2))
+        if _in_place(sweep.motion()):
+            repeats = Repeats.of(off, group)
         repeat_rms = float(np.sqrt(squares / max(int(np.sum(count - 1)), 1)))
         within = squares / group.size
         measured = measured[first] + mean
@@ -91,6 +97,7 @@ def collect(sweep: Sweep) -> Observations:
         ahead=ahead,
         repeat_rms=repeat_rms,
         within=within,
+        repeats=repeats,
     )
 
 
@@ -101,9 +108,14 @@ def of_readings(row_rms_deg: float, observations: Observations) -> float:
 
 def block_length(motion: Motion) -> int:
     """Readings that are averaged into one row: 1 but for long records far denser than any structure searched for."""
-    if np.mean(_stands_still(motion)) >= 0.4:
+    if _in_place(motion):
         return 1
     return max(1, min(-(-len(motion) // MOST_ROWS), int(motion.points_per_turn // DENSE_POINTS)))
+
+
+def _in_place(motion: Motion) -> bool:
+    """Whether readings are repeated at one angle: the shaft stands still between many of them."""
+    return bool(np.mean(_stands_still(motion)) >= 0.4)
 
 
 def _stands_still(motion: Motion) -> BoolArray:
@@ -118,8 +130,7 @@ def _repeats(motion: Motion) -> IntArray:
     A record far denser than any structure searched for is averaged over short blocks.
     """
     n = len(motion)
-    still = _stands_still(motion)
-    if np.mean(still) < 0.4:
+    if not _in_place(motion):
         block = block_length(motion)
         if block < 2:
             return np.arange(n)
@@ -130,7 +141,7 @@ def _repeats(motion: Motion) -> IntArray:
         start = np.concatenate([[0], np.flatnonzero(ends) + 1])
         inside = (np.arange(n) - start[part]) // block
         return np.concatenate([[0], np.cumsum((np.diff(part) != 0) | (np.diff(inside) != 0))])
-    same = still & (np.diff(motion.turn) == 0) & (np.diff(motion.direction) == 0)
+    same = _stands_still(motion) & (np.diff(motion.turn) == 0) & (np.diff(motion.direction) == 0)
     return np.concatenate([[0], np.cumsum(~same)])
 
 

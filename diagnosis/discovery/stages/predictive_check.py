@@ -1,4 +1,4 @@
-"""Predictive check: sweeps simulated from the extended twin, noise included, are held against the measured one."""
+"""Predictive check: the extended twin against sweeps simulated from it, noise included, and repeated readings."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from diagnosis.discovery.proof.bootstrap import noise_of, twin_parameters
+from diagnosis.discovery.proof.lack_of_fit import lack_of_fit
 from diagnosis.discovery.proof.predictive_check import likeness
 from diagnosis.discovery.state import State
 from twin.catalogue import find
@@ -17,10 +18,14 @@ from twin.noise.description import Noise
 
 
 def predictive_check(state: State) -> State:
-    """Complete the extended chain by its noise, and ask whether its sweeps can be told from the measured one."""
+    """Complete the extended chain by its noise, and ask whether its sweeps can be told from the measured one.
+
+    Where readings were repeated in place, their scatter is asked as well.
+    """
     noise, rng = noise_of(state.fit), deepcopy(state.rng)
     fit = replace(state.fit, chain=_with_noise(state, noise))
-    return state.with_(fit, likeness=likeness(fit, rng=rng, noise=noise), rng=rng)
+    lack = lack_of_fit(fit, step_rad=state.step)
+    return state.with_(fit, likeness=likeness(fit, rng=rng, noise=noise), lack=lack, rng=rng)
 
 
 def _with_noise(state: State, noise: Noise) -> Chain:

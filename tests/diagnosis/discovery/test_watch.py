@@ -99,7 +99,7 @@ def test_a_search_stopped_before_it_began_finds_nothing_and_is_not_adequate() ->
     listen, _ = when(lambda progress: progress.stage == "observe", stop)
     found = explain(sweep_of(TWO), progress=listen)
     assert found.causes == ()
-    assert found.verdict == "partly explained"
+    assert found.verdict == "stopped"
     assert found.discovery.cut_short == "observe"
 
 

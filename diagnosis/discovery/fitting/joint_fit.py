@@ -18,6 +18,7 @@ from twin.chain import Chain
 from twin.effect import Effect
 from twin.mechanics.zero import ZERO
 from twin.noise.spectrum import to_rows
+from twin.param import Param
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ class Fit:
     """A chain fitted to observations.
 
     ``residual`` (O, n) over the rows, ``jacobian`` (P, O, n) there too; ``cosine_residual`` and ``cosine_jacobian``
-    their coefficients with the priors of per-turn zeros appended, flattened to (N,) and (P, N) by :func:`flat`.
+    their coefficients (O, n) and (P, O, n). ``strengths`` (P,) are those of the priors.
     """
 
     chain: Chain
@@ -79,8 +80,7 @@ class Fit:
     jacobian: Array
     cosine_residual: Array
     cosine_jacobian: Array
-    prior_residual: Array
-    prior_jacobian: Array
+    strengths: Array
 
     def __repr__(self) -> str:
         left = np.degrees(np.sqrt(np.mean(self.residual[0][self.observations.usable] ** 2)))
@@ -95,6 +95,18 @@ class Fit:
     def rows(self) -> int:
         """Rows in use."""
         return int(np.count_nonzero(self.observations.usable))
+
+    @property
+    def prior_residual(self) -> Array:
+        """What the parameters that a prior holds lack to its centre, in units of the residual."""
+        away: Array = self.strengths * _turns_zeros(self.chain, self.free)
+        return -away[self.strengths > 0.0]
+
+    @property
+    def prior_jacobian(self) -> Array:
+        """How that follows each free parameter, one column for every one that is held."""
+        held: Array = np.diag(self.strengths)[:, self.strengths > 0.0]
+        return held
 
     def whitened(self, member: int | None = None) -> tuple[Array, Array]:
         """Residual (N,) and Jacobian (P, N) whitened by a family member (the one in force if not given)."""
@@ -130,6 +142,10 @@ class Fit:
         return np.concatenate([rows, whitened[..., size:]], axis=-1)
 
 
+SMALL_GAIN = 1e-3
+"""Gain in chi-square below which a fit is at its optimum: a parameter that means nothing gains 1 by chance."""
+
+
 def root_weights(weighting: Weighting, observables: int, member: int | None = None) -> Array:
     """Square roots of the weights (O, n) on cosine coefficients."""
     weights = weighting.family.weights
@@ -139,8 +155,17 @@ def root_weights(weighting: Weighting, observables: int, member: int | None = No
     return np.asarray(np.sqrt(np.stack(rows)))
 
 
-def evaluate(chain: Chain, free: tuple[Free, ...], observations: Observations, weighting: Weighting) -> Fit:
-    """Residual and Jacobian of a chain at its present parameters."""
+def evaluate(
+    chain: Chain,
+    free: tuple[Free, ...],
+    observations: Observations,
+    weighting: Weighting,
+    strengths: Array | None = None,
+) -> Fit:
+    """Residual and Jacobian of a chain at its present parameters.
+
+    ``strengths`` (P,) are those with which priors hold them; not given, they follow from what the chain leaves.
+    """
     observables = observations.observables
     linear = Linear(chain, observations.motion, blur=weighting.blur, observables=observables, slopes=weighting.slopes)
     residual = np.empty((observations.observables, len(observations)))
@@ -156,7 +181,8 @@ def evaluate(chain: Chain, free: tuple[Free, ...], observations: Observations, w
         basis = np.linalg.qr(np.stack(nuisance).T)[0].T
         residual[1] -= (residual[1] @ basis.T) @ basis
         jacobian[:, 1] -= (jacobian[:, 1] @ basis.T) @ basis
-    prior_residual, prior_jacobian = _priors(chain, free, observations, residual[0])
+    if strengths is None:
+        strengths = _prior_strengths(chain, free, observations, residual[0])
     return Fit(
         chain=chain,
         free=free,
@@ -167,8 +193,7 @@ def evaluate(chain: Chain, free: tuple[Free, ...], observations: Observations, w
         jacobian=jacobian,
         cosine_residual=observables_to_cosine(observations, residual),
         cosine_jacobian=observables_to_cosine(observations, jacobian),
-        prior_residual=prior_residual,
-        prior_jacobian=prior_jacobian,
+        strengths=strengths,
     )
 
 
@@ -182,31 +207,28 @@ def radius_nuisance(observations: Observations) -> list[Array]:
     return columns
 
 
-def _priors(chain: Chain, free: tuple[Free, ...], observations: Observations, residual: Array) -> tuple[Array, Array]:
-    """What is known of parameters before the sweep, in units of the residual's RMS.
+def _prior_strengths(chain: Chain, free: tuple[Free, ...], observations: Observations, residual: Array) -> Array:
+    """How firmly each free parameter (P,) is held by what is known before the sweep, in units of the residual's RMS.
 
     Per-turn zeros scatter: each is held by the scatter of all. This makes them a random effect, so that an effect
     common to many turns (a direction) is not given away to them, and it fixes their common part, which belongs to
     ``zero``. A shape that its declaration gives a standard deviation is held by that about where it stands: it goes
-    where the readings send it, and what they do not tell has a finite interval.
+    where the readings send it, and what they do not tell has a finite interval. 0: anything goes.
     """
+    params = [find(f.key, chain.effects).params[f.name] for f in free]
     turns = [k for k, f in enumerate(free) if f.turn is not None]
-    known = [(k, find(f.key, chain.effects).params[f.name].prior_sd) for k, f in enumerate(free) if f.turn is None]
-    shapes = [(k, sd) for k, sd in known if sd > 0.0]
-    held = np.zeros(len(turns) + len(shapes))
-    jacobian = np.zeros((len(free), held.size))
-    if not held.size:
-        return held, jacobian
     # Whitened residuals are in radians: a prior of one sigma counts as one residual RMS.
     unit = float(np.sqrt(np.mean(residual[observations.usable] ** 2)))
-    if turns:
-        zeros = np.array([float(np.asarray(chain.values[free[k].key][free[k].name])[free[k].turn or 0]) for k in turns])
-        strength = unit / max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
-        held[: zeros.size] = -strength * zeros
-        jacobian[turns, np.arange(zeros.size)] = strength
-    for row, (k, sd) in enumerate(shapes, start=len(turns)):
-        jacobian[k, row] = unit / sd
-    return held, jacobian
+    strengths = np.array([unit / param.prior_sd if param.prior_sd > 0.0 else 0.0 for param in params])
+    zeros = _turns_zeros(chain, free)[turns]
+    strengths[turns] = unit / max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
+    return strengths
+
+
+def _turns_zeros(chain: Chain, free: tuple[Free, ...]) -> Array:
+    """Each free parameter (P,) that has one value a turn, in its own unit; 0 for the others."""
+    own = [0.0 if f.turn is None else float(np.asarray(chain.values[f.key][f.name])[f.turn]) for f in free]
+    return np.array(own)
 
 
 def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
@@ -227,25 +249,80 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
         normal = a @ a.T
         gradient = a @ r
         sigma = np.sqrt(cost / max(fit.rows - len(fit.free), 1))
+        growth = 2.0
         improved = False
         for _ in range(6):
             system = normal + (1e-12 + damping) * np.eye(len(unit))
-            step = np.where(alive, np.linalg.solve(system, gradient), 0.0)
-            trial = evaluate(_moved(fit, step / unit), fit.free, fit.observations, fit.weighting)
+            step = np.where(alive, step_within(system, gradient, *(room * unit for room in _room(fit))), 0.0)
+            # What priors hold follows from the residual: a trial is compared by those of the fit that it starts from.
+            trial = evaluate(_moved(fit, step / unit), fit.free, fit.observations, fit.weighting, fit.strengths)
             new_cost = _cost(trial)
             if new_cost <= cost * (1.0 + 1e-12):
                 improved = True
                 break
-            damping = max(4.0 * damping, 1e-3)
+            damping, growth = (growth * damping if damping else 1e-3), 2.0 * growth
         if not improved:
             break
         moved = float(np.max(np.abs(step)))
         gained = cost - new_cost
-        fit, cost = trial, new_cost
-        damping *= 0.25
-        if moved < tolerance * sigma or gained < 1e-7 * cost:
+        share = gained / max(float(step @ (2.0 * gradient - normal @ step)), 1e-300)
+        damping *= max(1.0 / 3.0, 1.0 - (2.0 * share - 1.0) ** 3)
+        fit = replace(trial, strengths=_prior_strengths(trial.chain, fit.free, fit.observations, trial.residual[0]))
+        cost = _cost(fit)
+        if moved < tolerance * sigma or gained < SMALL_GAIN * sigma**2:
             break
     return fit
+
+
+def step_within(system: Array, gradient: Array, lower: Array, upper: Array) -> Array:
+    """The step (P,) that solves ``system @ step = gradient`` as far as bounds on it allow.
+
+    A parameter that would pass its bound is held there, and the others are solved for anew: with their steps left as
+    they were, they would go on making up for a move that does not take place.
+
+    Parameters
+    ----------
+    system : numpy.ndarray, shape (P, P)
+        Normal matrix, symmetric and positive definite.
+    gradient : numpy.ndarray, shape (P,)
+        Right-hand side.
+    lower, upper : numpy.ndarray, shape (P,)
+        What a step may be at least and at most; ``lower <= 0 <= upper``.
+
+    Returns
+    -------
+    numpy.ndarray, shape (P,)
+        The step.
+    """
+    step = np.zeros(gradient.size)
+    free = np.ones(gradient.size, dtype=bool)
+    while free.any():
+        rest = gradient[free] - system[np.ix_(free, ~free)] @ step[~free]
+        step[free] = np.linalg.solve(system[np.ix_(free, free)], rest)
+        within = np.clip(step, lower, upper)
+        beyond = free & (within != step)
+        if not beyond.any():
+            break
+        step, free = within, free & ~beyond
+    return step
+
+
+def _room(fit: Fit) -> tuple[Array, Array]:
+    """How far each free parameter may move down and up (P,), in its own unit; phases and turns' zeros go anywhere."""
+    lower, upper = np.full(len(fit.free), -np.inf), np.full(len(fit.free), np.inf)
+    for place, free in enumerate(fit.free):
+        param = find(free.key, fit.chain.effects).params[free.name]
+        if free.turn is None and param.role != "phase":
+            value = float(fit.chain.values[free.key][free.name])
+            least, most = _bounds(param)
+            lower[place], upper[place] = min(least - value, 0.0), max(most - value, 0.0)
+    return lower, upper
+
+
+def _bounds(param: Param) -> tuple[float, float]:
+    """Between which a parameter is fitted: an amplitude may pass through zero, its phase then turns by half a turn."""
+    through_zero = param.role == "strength" and param.lower == 0.0
+    return (-param.upper if through_zero else param.lower), param.upper
 
 
 def _cost(fit: Fit) -> float:
@@ -264,12 +341,8 @@ def _moved(fit: Fit, step: Array) -> Chain:
             values[free.key][free.name] = zeros
             continue
         moved = float(values[free.key][free.name]) + step[place]
-        # An amplitude may pass through zero on its way: its phase then turns by half a turn, afterwards.
-        lower = -param.upper if param.role == "strength" and param.lower == 0.0 else param.lower
-        if param.role == "phase":
-            values[free.key][free.name] = moved
-        else:
-            values[free.key][free.name] = float(np.clip(moved, lower, param.upper))
+        # A rounding beyond its bound.
+        values[free.key][free.name] = moved if param.role == "phase" else float(np.clip(moved, *_bounds(param)))
     return replace(fit.chain, values=values)
 
 

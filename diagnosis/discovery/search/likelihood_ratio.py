@@ -32,7 +32,7 @@ def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
     turns = [k for k, free in enumerate(fit.free) if free.turn is not None]
     integrated = [*base, *turns]
     dof = fit.rows * fit.observations.observables - len(base)
-    prior = float(np.sum(np.log(np.abs(fit.prior_jacobian[turns].sum(axis=1))))) if turns else 0.0
+    prior = float(np.sum(np.log(fit.strengths[turns]))) if turns else 0.0
     cost = family.cost(fit.rows)
     best = -np.inf
     for member in members or fit.weighting.plausible:

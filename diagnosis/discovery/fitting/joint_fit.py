@@ -174,8 +174,11 @@ def evaluate(
     if observations.log_radius is not None:
         residual[1] = observations.log_radius - linear.log_radius
         nuisance = radius_nuisance(observations)
-    columns = [linear.derivative(f.key, find(f.key, chain.effects), f.name, f.turn) for f in free]
-    jacobian = np.stack(columns) if columns else np.zeros((0, observations.observables, len(observations)))
+    jacobian = np.empty((len(free), observations.observables, len(observations)))
+    for key in dict.fromkeys(f.key for f in free):
+        own = [place for place, f in enumerate(free) if f.key == key]
+        moved = [(free[place].name, free[place].turn) for place in own]
+        jacobian[own] = linear.derivatives(key, find(key, chain.effects), moved)
     if nuisance:
         # The channels' common scale and its drift with temperature tell nothing about an angle: projected out.
         basis = np.linalg.qr(np.stack(nuisance).T)[0].T

@@ -58,7 +58,6 @@ class Linear:
         self._order = chain.places()
         self._points: list[tuple[float, Insertion]] = []
         self.stair_variance: Array | None = None
-        self._made: dict[str, Array] = {}
         self._run(blur)
 
     def _run(self, blur: float) -> None:
@@ -142,7 +141,7 @@ class Linear:
         if effect.acts_on == "reference":
             # The reference reads too much by this, so the shaft stands back by it.
             start: Array = self._points[0][1].sensitivity.sum(axis=1)
-            return -start * moved
+            return -start * (moved if batch is None else np.broadcast_to(moved, (batch, *moved.shape[-2:])))
         point = self.at(effect)
         if batch is None:
             return np.asarray(np.einsum("okn,kn->on", point.sensitivity, moved))
@@ -156,24 +155,33 @@ class Linear:
     def _given(self, effect: Effect) -> Array:
         return self.motion.shaft_rad[None, :] if effect.acts_on == "reference" else self.before(effect).signal
 
-    def derivative(self, key: str, effect: Effect, name: str, turn: int | None = None) -> Array:
-        """Column (O, n) of one parameter of an effect that is present, in the parameter's own unit."""
+    def derivatives(self, key: str, effect: Effect, moved: Sequence[tuple[str, int | None]]) -> Array:
+        """Columns (len(moved), O, n) of parameters of an effect that is present, in the parameters' own units.
+
+        Each is named with its turn, where it has one value a turn. They are moved side by side, in one batch.
+        """
         values = {**effect.null(), **self.chain.values[key]}
-        param = effect.params[name]
-        step = 1e-4 * param.typical
-        moved = dict(values)
-        if turn is not None:
-            zeros = np.array(values[name], dtype=np.float64)
-            zeros[turn] += step
-            moved[name] = zeros
-        else:
-            if effect.line is not None and name == effect.line.param:
-                # Over the whole clock a small change of a frequency turns the phase by much.
-                step = 1e-7 * max(abs(float(values[name])), 1.0)
-            moved[name] = float(values[name]) + step
-        if key not in self._made:
-            self._made[key] = self.made(effect, values)
-        return self.change(effect, values, moved, before=self._made[key]) / step
+        steps = [self._step(effect, name, values) for name, _ in moved]
+        count = len(moved)
+        batch = dict(values)
+        for place, (name, turn) in enumerate(moved):
+            if turn is None:
+                batch[name] = np.full((count, 1, 1), float(values[name]))
+                batch[name][place] += steps[place]
+                continue
+            if np.ndim(batch[name]) < 3:
+                batch[name] = np.tile(np.asarray(values[name], dtype=np.float64), (count, 1, 1))
+            batch[name][place, 0, turn] += steps[place]
+        changes = self.change(effect, values, batch, batch=count)
+        return np.asarray(changes / np.array(steps)[:, None, None])
+
+    @staticmethod
+    def _step(effect: Effect, name: str, values: Parameters) -> float:
+        """By how much a parameter is moved for its derivative."""
+        if effect.line is not None and name == effect.line.param:
+            # Over the whole clock a small change of a frequency turns the phase by much.
+            return 1e-7 * max(abs(float(values[name])), 1.0)
+        return 1e-4 * effect.params[name].typical
 
     def terms(self, effect: Effect) -> tuple[Term, ...]:
         """The linear coefficients that a candidate has at fixed shape."""

@@ -115,7 +115,7 @@ def test_derivative(case: Case) -> None:
     free = case.free
     effect = find(free.key)
     chain = CHAINS[case.chain].with_effect(free.key, **example(effect))
-    derivative = linear(chain).derivative(free.key, effect, free.name, free.turn)
+    (derivative,) = linear(chain).derivatives(free.key, effect, [(free.name, free.turn)])
     step = step_of(effect, free.name, float(np.ravel(chain.values[free.key][free.name])[free.turn or 0]))
     up, here, down = (observed(moved(chain, free, way * step)) for way in (1.0, 0.0, -1.0))
     central = wrap(up - down) / (2.0 * step)

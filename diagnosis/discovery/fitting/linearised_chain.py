@@ -14,13 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from twin.angles import Array, wrap
+from diagnosis.discovery.fitting.blurred_stairs import blurred_stairs
+from twin.angles import Array
 from twin.chain import SIGNALS, Chain, Step
 from twin.effect import Effect, Parameters
 from twin.motion import Motion
 
 _STEP = 1e-6
-BLUR_NODES = 15
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,20 +104,16 @@ class Linear:
 
     def _blurred(self, computed: Array, blur: float) -> Array:
         """Expected reading where stairs follow: the angle's steps averaged over Gaussian noise of RMS ``blur``."""
-        active = list(self.chain.active("angle"))
-        if not any(effect.footprint == "values" for _, effect, _ in active):
-            nodes = np.zeros((1, 1, 1))
-        else:
-            share = (np.arange(BLUR_NODES) + 0.5) / BLUR_NODES
-            nodes = blur * _normal_quantile(share)[:, None, None]
-        signal = computed[None] + nodes
-        for _, effect, values in active:
-            signal = effect.forward(signal, self.motion, values, None)
-        away = wrap(signal[:, 0] - computed[0])
-        if nodes.size > 1:
-            self.stair_variance = np.var(away, axis=0)
-        mean: Array = np.mean(away, axis=0)
-        return np.asarray(self.chain.output_sense * (computed[0] + mean))
+        active = [(effect, values) for _, effect, values in self.chain.active("angle")]
+        stairs = [one for one in active if one[0].footprint == "values"]
+        signal = computed
+        if stairs:
+            away, self.stair_variance = blurred_stairs(stairs, blur).at(computed[0])
+            signal = computed + away
+        for effect, values in active:
+            if effect.footprint != "values":
+                signal = effect.forward(signal, self.motion, values, None)
+        return np.asarray(self.chain.output_sense * signal[0])
 
     def at(self, effect: Effect) -> Insertion:
         """The point behind the effect's own place: the signal it made, or would be given were it not at null."""
@@ -255,9 +251,3 @@ def _last_places(chain: Chain) -> dict[str, float]:
         if effect.acts_on in last:
             last[effect.acts_on] = float(place)
     return dict(zip(last, itertools.accumulate(last.values(), max), strict=True))
-
-
-def _normal_quantile(share: Array) -> Array:
-    from scipy.special import ndtri
-
-    return np.asarray(ndtri(share))

@@ -202,8 +202,9 @@ class DiscoverySettings:
     heldout_slack: float = _ratio(1.004)
     """Limit. Growth of the held-out RMS that is forgiven a cause that stands beyond doubt: the RMS counts correlated
     noise in full, which such a cause leaves as it is."""
-    heldout_lost: float = _ratio(1.5)
-    """Limit. Growth of the held-out RMS above which the fit has not seen at all what the cause is about."""
+    heldout_seen: float = _within(0.1, 0.0, 0.5)
+    """Limit. Share of what a cause does that the rows of each held-out fit must hold, as squares; by design it is three
+    quarters. From a tenth its strength has ten times the variance that all rows would give it."""
     predictive_sweeps: int = _count(199, fewest=round(1.0 / UNLIKE))
     """Derived. Sweeps simulated for the predictive check: of N the smallest p is 1/(N + 1), here 1/200. With fewer than
     a hundred it never falls below ``UNLIKE``, and no sweep could be called unlike."""

@@ -244,8 +244,26 @@ TWIN: tuple[Mutation, ...] = (
 
 _LINEAR = "diagnosis/discovery/fitting/linearised_chain.py"
 _DERIVATIVE = "tests/diagnosis/discovery/fitting/test_derivatives.py::test_derivative"
+_WITHIN = "tests/diagnosis/discovery/fitting/test_step_within.py"
+_STAIRS = "tests/diagnosis/discovery/fitting/test_blurred_stairs.py"
 
 FITTING: tuple[Mutation, ...] = (
+    Mutation(
+        "joint_fit.others_go_as_if_no_bound_were_there",
+        "diagnosis/discovery/fitting/joint_fit.py",
+        "        step, free = within, free & ~beyond\n",
+        "        return within\n",
+        (f"{_WITHIN}::test_at_a_bound_the_others_make_up_for_what_takes_place",),
+        short=True,
+    ),
+    Mutation(
+        "blurred_stairs.no_blur",
+        "diagnosis/discovery/fitting/blurred_stairs.py",
+        "density = np.exp(-0.5 * (order * blur) ** 2)",
+        "density = np.ones(order.size)",
+        (f"{_STAIRS}::test_the_mean_is_smooth",),
+        short=True,
+    ),
     Mutation(
         "linearised_chain.ideal_field_in_place_of_the_magnet",
         _LINEAR,
@@ -265,8 +283,8 @@ FITTING: tuple[Mutation, ...] = (
     Mutation(
         "linearised_chain.reference_leads",
         _LINEAR,
-        "return -start * moved",
-        "return start * moved",
+        "return -start * (moved if",
+        "return start * (moved if",
         (f"{_DERIVATIVE}[index_slip.step_deg-alone]",),
         short=True,
     ),

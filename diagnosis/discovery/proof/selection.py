@@ -88,11 +88,10 @@ def prove(fit: Fit, effects: tuple[Effect, ...], keys: Sequence[str], *, rng: np
     causes = sorted((_judged(views, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
     ordered = [cause.key for cause in causes]
     fold = folds(fit)
-    held, weighed = _held_out(fit, ordered, fold)
-    if fit.weighting.member == 0 and _lost(weighed, fit.settings.heldout_lost):
+    if fit.weighting.member == 0 and least_seen(fit, ordered, fold) < fit.settings.heldout_seen:
         # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere.
         fold = scattered(fit)
-        held, weighed = _held_out(fit, ordered, fold)
+    held, weighed = _held_out(fit, ordered, fold)
     family = _calibrated(fit, effects, causes, rng)
     return Proof(fit, effects, tuple(causes), fold, tuple(held), tuple(weighed), family)
 
@@ -119,9 +118,13 @@ def _held_out(fit: Fit, keys: Sequence[str], fold: IntArray) -> tuple[list[Array
     return held, [rms_deg(residual / fit.observations.scale, fit.observations.usable) for residual in held]
 
 
-def _lost(rms: Sequence[float], most: float) -> bool:
-    """Whether any step makes the held-out RMS so many times worse."""
-    return any(after > most * before for before, after in itertools.pairwise(rms))
+def least_seen(fit: Fit, keys: Sequence[str], fold: IntArray) -> float:
+    """Least share of what any parameter of the causes does, as squares, on the rows outside of one fold; 1 of none."""
+    columns = fit.jacobian[[free.key in keys for free in fit.free]]
+    squares = np.sum(np.where(fit.observations.usable, columns, 0.0) ** 2, axis=1)
+    squares = squares[np.any(squares > 0.0, axis=1)]
+    inside = np.stack([squares[:, fold == number].sum(axis=1) for number in range(fit.settings.folds)])
+    return float(np.min(1.0 - inside / squares.sum(axis=1), initial=1.0))
 
 
 def _calibrated(

@@ -125,18 +125,23 @@ def test_as_many_sweeps_are_simulated_as_there_is_room_for(
 
 
 @pytest.mark.parametrize(
-    ("growth", "member", "scatters"), [(0.95, 0, False), (1.05, 0, True), (1.05, 1, False), (0.5, 0, False)]
+    ("share", "member", "scatters"), [(0.11, 0, False), (0.09, 0, True), (0.09, 1, False), (0.5, 0, False)]
 )
 def test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost(
-    growth: float, member: int, scatters: bool, monkeypatch: pytest.MonkeyPatch
+    share: float, member: int, scatters: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The growth of the held-out RMS on either side of what is too much; never in coloured noise."""
+    """What a cause does outside of one fold, on either side of what is too little; never in coloured noise."""
     fit = handed().fit
-    fit = replace(fit, weighting=replace(fit.weighting, member=member))
-    monkeypatch.setattr(selection, "_held_out", lambda *_: ([], [0.02, 0.02 * growth * 1.5]))
+    fold = folds(fit)
+    column = np.where(fold == 1, np.sqrt((1.0 - share) / np.sum(fold == 1)), np.sqrt(share / np.sum(fold != 1)))
+    jacobian = np.array(fit.jacobian)
+    jacobian[[free.key == SATURATION for free in fit.free]] = column
+    fit = replace(fit, jacobian=jacobian, weighting=replace(fit.weighting, member=member))
+    assert selection.least_seen(fit, [SATURATION], fold) == pytest.approx(share)
+    monkeypatch.setattr(selection, "_held_out", lambda *_: ([], [0.02, 0.01]))
     monkeypatch.setattr(selection, "_calibrated", lambda *_: None)
     proof = prove(fit, handed().searched[:EFFECTS], [SATURATION], rng=np.random.default_rng(0))
-    assert np.array_equal(proof.fold, scattered(fit) if scatters else folds(fit))
+    assert np.array_equal(proof.fold, scattered(fit) if scatters else fold)
 
 
 @pytest.mark.parametrize(("member", "grid", "views"), [(0, True, 1), (3, True, 2), (3, False, 1)])

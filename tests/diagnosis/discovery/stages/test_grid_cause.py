@@ -53,7 +53,7 @@ def test_rounding_is_a_cause_from_half_of_the_noise_on(factor: float, named: boo
 
 @pytest.mark.parametrize(
     ("share", "points", "log_p", "named"),
-    [(1.2, 60, -6.1, False), (1.2, 40, -7.3, True), (1.2, 360, -9.3, True), (1.6, 80, -21.3, True)],
+    [(1.2, 40, -6.4, False), (1.2, 90, -8.2, True), (1.2, 360, -8.5, True), (1.6, 80, -20.9, True)],
 )
 def test_stairs_must_be_seen(share: float, points: int, log_p: float, named: bool) -> None:
     """Noise blurs them: knowing them has to gain what chance hardly ever does; the limit for one of two is -6.7."""

@@ -254,7 +254,6 @@ FITTING: tuple[Mutation, ...] = (
         "        step, free = within, free & ~beyond\n",
         "        return within\n",
         (f"{_WITHIN}::test_at_a_bound_the_others_make_up_for_what_takes_place",),
-        short=True,
     ),
     Mutation(
         "blurred_stairs.no_blur",
@@ -262,7 +261,6 @@ FITTING: tuple[Mutation, ...] = (
         "density = np.exp(-0.5 * (order * blur) ** 2)",
         "density = np.ones(order.size)",
         (f"{_STAIRS}::test_the_mean_is_smooth",),
-        short=True,
     ),
     Mutation(
         "linearised_chain.ideal_field_in_place_of_the_magnet",

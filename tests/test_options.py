@@ -27,6 +27,7 @@ BASE: dict[str, tuple[str, ...]] = {
     "hardware": ("-o", "out/hardware"),
     "paper": ("-o", "out/paper"),
     "compensate": ("short.csv", "--header", "out/c.h"),
+    "compensate --temperature": ("paper-encoder", "--header", "out/c.h"),
     "monitor": tuple(f"s{k}.csv" for k in range(8)),
     "bench": ("--points", "8", "-o", "out/bench.csv"),
     "generate": ("-o", "out/study"),
@@ -89,11 +90,14 @@ def begun(*_: object, **__: object) -> int:
 
 
 def run(command: str, option: str, value: str) -> Ended:
-    """The command with one option more, in a fresh folder for its outputs."""
+    """The command with one option more, or another value of it, in a fresh folder for its outputs."""
     shutil.rmtree("out", ignore_errors=True)
     Path("out").mkdir()
+    others = list(BASE.get(f"{command} {option}", BASE[command]))
+    if option in others:
+        del others[others.index(option) : others.index(option) + 2]
     with within(30):
-        return halltwin(command, *BASE[command], f"{option}={value}")
+        return halltwin(command, *others, f"{option}={value}")
 
 
 NUMBERS = [one for one in options() if one.kind in ("number", "text") and one.name not in WORDS]

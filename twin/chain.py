@@ -119,7 +119,9 @@ class Chain:
                     f"{key}.{name} must lie between {param.lower:g} and {param.upper:g} {param.unit}; "
                     f"found {value if np.ndim(value) else shown(value)}"
                 )
-        merged = {**effect.null(), **self.values.get(key, {}), **params}
+        # What is not given of an effect that counts in the magnet's field is that magnet's, also of one to come.
+        rest = {} if effect.at_magnet is not None else effect.null()
+        merged = {**rest, **self.values.get(key, {}), **params}
         return replace(self, values={**self.values, key: merged})
 
     def with_magnet(self, magnet: Assembly) -> Chain:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
@@ -18,7 +18,7 @@ from twin.limits import OutOfRangeError, require_within
 from twin.magnet.stray_field import FIELD_MT
 from twin.part import in_mirror
 from twin.shown import shown
-from twin.tables import from_table, to_table
+from twin.tables import UNLISTED, from_table, to_table
 
 _IDEAL = Plate()
 
@@ -36,14 +36,15 @@ class Parts:
     plate, plate_y : Plate or None
         The Hall plates of x and of y; ``plate_y`` None: like that of x.
     mirrored : bool
-        Whether the parts are seen in a mirror along x: those of a chain that counts the other way on both sides.
+        Whether the parts are seen in a mirror along x: those of a chain that counts the other way on both sides. The
+        program writes it, nobody has such parts.
     """
 
     field_mT: float = FIELD_MT
     disk: Disk | None = None
     plate: Plate | None = None
     plate_y: Plate | None = None
-    mirrored: bool = False
+    mirrored: bool = field(default=False, metadata=UNLISTED)
 
     def __post_init__(self) -> None:
         require_within("field_mT", self.field_mT, 1e-3, 1e4, "mT")

@@ -13,12 +13,15 @@ from twin.limits import OutOfRangeError
 from twin.shown import shown
 
 Part = TypeVar("Part")
+UNLISTED = {"unlisted": True}
+"""Metadata of a field that is read where it stands, and that no message offers."""
 
 
 def from_table(kind: type[Part], content: Any, where: str) -> Part:
     """An instance of the dataclass ``kind`` with the table's values, the rest at their defaults.
 
-    ``where`` names the table in messages. Raises OutOfRangeError for an unknown name or a value out of range.
+    ``where`` names the table in messages, which do not offer a field that is :data:`UNLISTED`.
+    Raises OutOfRangeError for an unknown name or a value out of range.
     """
     known = {item.name: item for item in fields(kind)}  # type: ignore[arg-type]
     if not isinstance(content, Mapping):
@@ -26,7 +29,8 @@ def from_table(kind: type[Part], content: Any, where: str) -> Part:
     values = {}
     for key, value in content.items():
         if key not in known:
-            raise OutOfRangeError(f"{where} has no '{key}'{nearest(key, known)}; it has {', '.join(known)}")
+            listed = [name for name, item in known.items() if item.metadata != UNLISTED]
+            raise OutOfRangeError(f"{where} has no '{key}'{nearest(key, listed)}; it has {', '.join(listed)}")
         default = known[key].default
         if isinstance(value, list | Mapping):
             raise OutOfRangeError(f"{key} is {shown(value)}; expected a single value")

@@ -65,7 +65,7 @@ class Correction:
 
     ``slope`` is -1 where the sensor counts against the shaft. ``left_out`` names effects that one reading cannot
     correct; ``tolerance_rad`` bounds what the dropped orders held together. With a ``drift``, zero and series are
-    those at 25 C.
+    those at 25 C. ``to_middle`` names effects of the direction, which are corrected to the middle between both.
     """
 
     slope: int
@@ -74,6 +74,7 @@ class Correction:
     left_out: tuple[str, ...]
     tolerance_rad: float
     drift: Drift | None = None
+    to_middle: tuple[str, ...] = ()
 
     def shaft(self, measured_rad: Array, temperature_c: Array | float = FROM_C) -> Array:
         """Corrected shaft angle [rad], any shape, in [-pi, pi); a temperature for all readings or for each."""
@@ -112,7 +113,8 @@ def correction_of(chain: Chain, *, temperature_c: float = FROM_C, tolerance_deg:
     slope, zero, series, left_out = _inverse(chain, temperature_c)
     keep = _orders_needed(np.hypot(*series), np.radians(tolerance_deg))
     dropped = float(np.sum(np.hypot(*series[:, keep:])))
-    return Correction(slope, zero, np.ascontiguousarray(series[:, :keep]), left_out, dropped)
+    kept = np.ascontiguousarray(series[:, :keep])
+    return Correction(slope, zero, kept, left_out, dropped, to_middle=_to_middle(chain))
 
 
 def correction_over(
@@ -138,7 +140,8 @@ def correction_over(
     dropped = float(np.sum(np.hypot(*series[0, :, keep:])) + np.sum(moves[follow:]))
     drift = Drift(low_c, high_c, terms[1:, 0], np.ascontiguousarray(series[1:, :, :follow])) if power else None
     constant = np.ascontiguousarray(series[0, :, :keep])
-    return Correction(found[0][0], float(wrap(terms[0, 0])), constant, found[0][3], dropped, drift)
+    middle = _to_middle(chain_at(low_c))
+    return Correction(found[0][0], float(wrap(terms[0, 0])), constant, found[0][3], dropped, drift, middle)
 
 
 def _polynomial(t: Array, values: Array, tolerance: float) -> tuple[int, Array]:
@@ -179,6 +182,12 @@ def _inverse(chain: Chain, temperature_c: float) -> tuple[int, float, Array, tup
 def _uncorrectable(chain: Chain, key: str) -> bool:
     effect = find(key, chain.effects)
     return bool(effect.needs & _BEYOND_ONE_READING) or effect.footprint in _BEYOND_MEAN
+
+
+def _to_middle(chain: Chain) -> tuple[str, ...]:
+    """Effects of the direction, of which a correction takes the mean of both."""
+    directed = (key for key, values in chain.values.items() if not find(key, chain.effects).is_null(values))
+    return tuple(key for key in directed if "both directions" in find(key, chain.effects).needs)
 
 
 def _settled_turn(chain: Chain, shaft: Array, way: float, temperature_c: float) -> Array:

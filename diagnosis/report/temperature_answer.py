@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.thermal.laws import FROM_C, FactorLaw, Figure
 from diagnosis.thermal.over_temperature import OverTemperature
-from twin.angles import wrap_deg
+from twin.angles import Array, wrap_deg
 from twin.baseline import FACTORS, Factor
 
 POWERS = ("per_K", "per_K2")
@@ -24,6 +24,7 @@ def to_dict(found: OverTemperature, *, sweeps: int) -> dict[str, Any]:
         "low_c": found.model.span.low_c,
         "high_c": found.model.span.high_c,
         "levels_c": [float(level) for level in found.levels.temperature_c],
+        "widest_gap_c": _widest_gap_c(found.model.recording.temperature_c),
         "highest_power": found.power,
         "from_c": FROM_C,
         "noise_floor_deg": float(np.degrees(found.noise_rad)),
@@ -33,6 +34,13 @@ def to_dict(found: OverTemperature, *, sweeps: int) -> dict[str, Any]:
             for place, (factor, law) in enumerate(zip(FACTORS, found.factors, strict=True))
         },
     }
+
+
+def _widest_gap_c(temperature_c: Array) -> list[float]:
+    """The two temperatures [C] of readings (n,) that lie farthest apart with none between them."""
+    ascending = np.sort(temperature_c)
+    place = int(np.argmax(np.diff(ascending)))
+    return [float(ascending[place]), float(ascending[place + 1])]
 
 
 def _law(factor: Factor, law: FactorLaw, *, zero: bool) -> dict[str, Any]:

@@ -10,6 +10,8 @@ from diagnosis.report.factor_names import LABELS, SCALES, UNITS
 from diagnosis.report.temperature_answer import POWERS
 from diagnosis.report.wording import figure, plain
 
+_LONG_GAP_K = 65.0
+"""Wider apart than cold, room and hot of a usual part, -40, 25 and 85 C, readings leave the law between open."""
 _VERDICTS = ("sensitive", "immune", "not told")
 
 
@@ -61,6 +63,9 @@ def sentences(answer: Mapping[str, Any]) -> list[str]:
         said.append("the reference was set anew on the way: what the zero does with temperature cannot be told")
     if not answer["low_c"] <= answer["from_c"] <= answer["high_c"]:
         said.append(f"no reading was taken about {answer['from_c']:g} C: the values there are those of the laws")
+    cold, warm = answer["widest_gap_c"]
+    if warm - cold > _LONG_GAP_K:
+        said.append(f"no reading was taken between {cold:.0f} and {warm:.0f} C: there the laws are an interpolation")
     bent = [LABELS[key] for key, law in factors.items() if law["verdict"] == "sensitive" and POWERS[1] in law]
     if bent and len(answer["levels_c"]) <= answer["highest_power"] + 1:
         said.append(

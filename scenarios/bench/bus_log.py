@@ -11,6 +11,7 @@ from typing import Any
 
 import can
 
+from twin.ending import ending_of
 from twin.errors import UserError
 
 LOG_FORMATS = (".asc", ".blf", ".csv", ".db", ".log", ".trc")
@@ -76,5 +77,5 @@ class BusLog:
 
 def check_log_name(path: Path) -> None:
     """Raise UserError where python-can cannot tell the format by the name."""
-    if path.suffix.lower() not in LOG_FORMATS:
-        raise UserError(f"{path.name}: bus logs end in {', '.join(LOG_FORMATS)}; found '{path.suffix}'")
+    if (ending := ending_of(path)) not in LOG_FORMATS:
+        raise UserError(f"{path.name}: bus logs end in {', '.join(LOG_FORMATS)}; found '{ending}'")

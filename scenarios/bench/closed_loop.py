@@ -12,6 +12,7 @@ import numpy as np
 
 from diagnosis.correction.compensation import Correction, correction_of
 from diagnosis.correction.correction_file import to_dict
+from diagnosis.thermal.recording import SMALLEST_SPAN_K
 from scenarios.bench.faults import Opener
 from scenarios.bench.loading import numbers
 from scenarios.bench.measure import Measured, Measurement, finish, journal_of, measure
@@ -20,10 +21,12 @@ from scenarios.bench.readings import Reading
 from scenarios.bench.written import part_path, record_path
 from scenarios.commands.outputs import json_text
 from twin.angles import Array, wrap_deg
-from twin.catalogue import CATALOGUE
+from twin.catalogue import CATALOGUE, find
+from twin.chain import Chain
 from twin.effect import Effect
 from twin.errors import UserError
 from twin.files import twin_text
+from twin.motion import NOMINAL_C
 
 if TYPE_CHECKING:
     from diagnosis.explanation import Explanation
@@ -82,7 +85,7 @@ def run_loop(
         found = _explained(first.output, effects, seed)
         found = replace(found, made=replace(found.made, command=command))
         answer = found.to_dict()
-        correction = correction_of(found.extended)
+        correction = correction_of(found.extended, temperature_c=_temperature_c(before, found.extended, say))
         job.files.write(
             {
                 part_path(job.output, "twin", ".toml"): twin_text(found.extended),
@@ -104,6 +107,21 @@ def run_loop(
             finish(second, later, after, witness=earlier)
         finish(first, earlier, before)
     return loop
+
+
+def _temperature_c(measured: Measured, twin: Chain, say: Callable[[str], None]) -> float:
+    """The temperature [C] that the encoder is corrected for: the mean of the readings'; where it is one of several."""
+    warm = [one.temperature_c for one in measured.pretreated.kept if one.temperature_c is not None]
+    if not warm:
+        return NOMINAL_C
+    mean_c = float(np.mean(warm))
+    following = [key for key in twin.values if "temperature_c" in find(key, twin.effects).needs]
+    if following and np.ptp(warm) > SMALLEST_SPAN_K:
+        say(
+            f"{', '.join(following)}: corrected as at {mean_c:.1f} C, the mean of the readings; the encoder takes no "
+            "correction that follows the temperature"
+        )
+    return mean_c
 
 
 def _explained(sweep: Path, effects: tuple[Effect, ...], seed: int) -> Explanation:

@@ -16,13 +16,18 @@ from scenarios.cli.verbosity import with_verbosity
 
 
 class Command(TyperCommand):
-    """A command that refuses an empty value: as the name of a file it would mean the working folder."""
+    """A command that refuses an empty value, as the name of a file it would mean the working folder, and a second one.
+
+    Of two values for what takes one the last would count, whichever was meant.
+    """
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """See click. Raises BadParameter."""
-        given, _, _ = self.make_parser(ctx).parse_args(args=list(args))
+        """See click. Raises UsageError."""
+        given, _, order = self.make_parser(ctx).parse_args(args=list(args))
         for param in self.get_params(ctx):
             asked: Any = param
+            if order.count(asked) > 1 and not param.multiple:
+                ctx.fail(f"{param.opts[-1]} is given more than once; give it once")
             values = given.get(str(param.name))
             empty = "" in (values if isinstance(values, list | tuple) else [values])
             if empty and param.default != "":

@@ -8,11 +8,14 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+from typing import Any
 
 from scenarios.cli import streams
 
 CRASHED = 70
 """Exit code of a fault of the program's own, EX_SOFTWARE of sysexits.h: with Python's 1 it would pass for an answer."""
+_BY_TYPER = 130
+"""Exit code that typer makes of an interrupt before or after the command itself."""
 _DAY = "SOURCE_DATE_EPOCH"
 """See ``check_day`` in ``diagnosis/report/provenance.py``, which need not be loaded where it is not set."""
 
@@ -40,7 +43,7 @@ def main() -> None:
 def _run() -> tuple[int, str]:
     """Exit code of the command, and the line to end with; empty where nothing is to be said."""
     try:
-        _command()
+        code = _command()
     except SystemExit as ended:
         if streams.reader_is_gone(ended.__context__):
             return streams.READER_GONE, ""
@@ -52,18 +55,26 @@ def _run() -> tuple[int, str]:
         if code == CRASHED:
             sys.excepthook(type(error), error, error.__traceback__)
         return code, said
-    return 0, ""
+    return _ending(KeyboardInterrupt()) if code == _BY_TYPER else (code, "")
 
 
-def _command() -> None:
-    """Run what the command line asks for."""
+def _command() -> int:
+    """Run what the command line asks for; its exit code."""
     if _DAY in os.environ:
         from diagnosis.report.provenance import check_day
 
         check_day()
+    import typer
+
     from scenarios.cli import app
 
-    app.app()
+    # Else typer ends the program by itself, and draws a box about what was wrong with the options.
+    try:
+        code = app.app(standalone_mode=False)
+    except typer.Abort:
+        # Some versions of typer make this of an interrupt, others an exit code.
+        code = _BY_TYPER
+    return code if isinstance(code, int) else 0
 
 
 def _by_interrupt(ended: BaseException | None) -> bool:
@@ -83,16 +94,26 @@ def _ending(error: Exception | KeyboardInterrupt) -> tuple[int, str]:
     from scenarios.commands.fail_on import FoundError
     from twin.errors import UserError
 
-    if isinstance(error, FoundError):
-        return 1, str(error)
-    if isinstance(error, UserError):
-        return 2, str(error)
+    if isinstance(error, FoundError | UserError):
+        return (1 if isinstance(error, FoundError) else 2), str(error)
+    if hasattr(error, "format_message"):
+        # What typer says of options; its class stands in another module in each of typer's versions.
+        return 2, _of_usage(error)
     if isinstance(error, OSError) and error.filename is not None:
         return 2, f"{error.filename}: {error.strerror}; give another path"
     # Without a buffer nothing is left to be written: whether it was standard output that failed shows in another try.
     if isinstance(error, OSError) and (unprinted := streams.settle(sys.stdout, more="\n")) is not None:
         return 2, streams.unprinted(unprinted)
     return CRASHED, "this is a fault of the program, not of the input; please report it with the lines above"
+
+
+def _of_usage(error: Any) -> str:
+    """What is wrong with the options, and where to read on; empty where the help was printed instead."""
+    said = " ".join(str(error.format_message()).split()).rstrip(".")
+    command = "" if error.ctx is None or error.ctx.parent is None else f"{error.ctx.info_name} "
+    return (
+        said and f"{command.replace(' ', ': ')}{said[:1].lower()}{said[1:]}; halltwin {command}-h lists what it takes"
+    )
 
 
 if __name__ == "__main__":

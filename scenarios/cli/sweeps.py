@@ -153,11 +153,12 @@ def compensate(
         ),
     ] = None,
     temperature: Annotated[
-        str,
+        str | None,
         typer.Option(
-            metavar="C|C:C", help="Temperature in C that a twin is corrected for, or low:high of a span of them."
+            metavar="C|C:C",
+            help="Temperature in C that a twin is corrected for, or low:high of a span of them. Without: 25.",
         ),
-    ] = "25",
+    ] = None,
     tolerance: Annotated[float, typer.Option(metavar="deg", help="Largest error in deg from orders left out.")] = 1e-3,
     prefix: Annotated[str, written("Prefix of the C names.", metavar="NAME")] = "halltwin",
     force: Force = False,

@@ -34,6 +34,8 @@ _FEWEST_POINTS = 4
 _MOST_POINTS = 65536
 _COARSEST_DEG = 10.0
 _NONE = SweepFiles()
+_AT = "25"
+"""Temperature [C] that a twin is corrected for where none is given."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ def run(
     *,
     outputs: Outputs,
     check: SweepFiles = _NONE,
-    temperature: str = "25",
+    temperature: str | None = None,
     tolerance_deg: float = 1e-3,
     effect_files: Sequence[Path] = (),
     seed: int = 0,
@@ -70,12 +72,17 @@ def run(
     words = asked(fail_on, COMPENSATE)
     if not _FEWEST_POINTS <= outputs.points <= _MOST_POINTS:
         raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
-    low_c, high_c = interval("temperature", temperature, example="-40:125")
+    low_c, high_c = interval("temperature", _AT if temperature is None else temperature, example="-40:125")
     require_within("temperature", [low_c, high_c], COLDEST_C, HOTTEST_C, "C")
     require_within("tolerance", tolerance_deg, 0.0, _COARSEST_DEG, "deg")
     check_prefix(outputs.prefix)
     effects = effects_with(effect_files)
     of_twin = _is_one_twin(sources)
+    if temperature is not None and not of_twin:
+        raise UserError(
+            "--temperature is for a twin, and these are sweeps; leave it out: the correction follows the temperatures "
+            "of their column temperature_c"
+        )
     twin = read_twin_or_preset(sources[0], effects=effects) if of_twin else Chain(effects=effects)
     checked_on, paths = check.paths(), [Path(sources[0])] if of_twin else _paths(sources)
     files = _files(outputs, inputs=[*paths, *checked_on, *effect_files])

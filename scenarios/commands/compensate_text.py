@@ -77,6 +77,8 @@ def show(made: MadeOf, correction: Correction, rows: Rows, console: Console | No
     if correction.left_out:
         left_out = ", ".join(correction.left_out)
         console.print(Text(f"not in the correction, because a single angle reading cannot tell it: {left_out}"))
+    if correction.to_middle:
+        console.print(Text(f"corrected to the middle between both directions: {', '.join(correction.to_middle)}"))
     if rows:
         console.print(_table(rows) if console.width >= _NARROW else _list(rows))
 

@@ -99,6 +99,24 @@ def test_a_twin_is_corrected_over_a_span(folder: Path, tmp_path: Path) -> None:
     assert refused.code == 2
 
 
+def test_a_temperature_to_correct_for_is_refused_with_sweeps(folder: Path) -> None:
+    refused = halltwin("compensate", folder / "between.csv", "--temperature", "25")
+    assert refused.code == 2
+    assert refused.err.startswith("halltwin: --temperature is for a twin, and these are sweeps; leave it out")
+
+
+def test_a_long_gap_between_temperatures_is_said(folder: Path, tmp_path: Path) -> None:
+    warm().simulate(over((-40.0, 85.0), turns=1), seed=9).write(tmp_path / "ends.csv")
+    said = "no reading was taken between -40 and 85 C"
+    assert said in " ".join(halltwin("diagnose", tmp_path / "ends.csv").out.split())
+    assert "no reading was taken between" not in halltwin("diagnose", folder / "steps.csv").out
+
+
+def test_what_is_corrected_to_the_middle_is_said() -> None:
+    said = "corrected to the middle between both directions: hysteresis"
+    assert said in " ".join(halltwin("compensate", "paper-encoder").out.split())
+
+
 def test_one_temperature_is_said(folder: Path) -> None:
     assert "temperature 0.0 C alone" in halltwin("compensate", folder / "between.csv").out
 

@@ -12,7 +12,7 @@ from twin.angles import wrap
 from twin.chain import Chain
 from twin.concentrator.disk import Disk, vertical_mT
 from twin.cordic.bit_true import Cordic
-from twin.files import from_dict, to_dict
+from twin.files import SCHEMA, TwinError, from_dict, to_dict
 from twin.hall.plates import expected_mT
 from twin.hall.spinning_current import TYPICAL, Plate, residual_offset_mT, spin
 from twin.hardware import run
@@ -157,10 +157,15 @@ def test_shares_of_saturation_add_up_to_the_leading_term() -> None:
     np.testing.assert_allclose(lost, 10.0 * (10.0 / 400.0) ** 2 / 3.0, rtol=1e-3)
 
 
-def test_a_gain_of_one_is_no_disk_and_does_not_saturate() -> None:
-    chain = described(disk=Disk(gain=1.0, saturation_mT=60.0))
+def test_a_gain_of_one_is_no_disk_and_its_saturation_is_refused() -> None:
+    chain = described(disk=Disk(gain=1.0))
     assert chain.described == ()
     assert np.max(np.abs(chain.error(TURN))) < 1e-12
+    content = {"schema": SCHEMA, "hardware": {"disk": {"gain": 1.0, "saturation_mT": 60.0}}}
+    with pytest.raises(
+        TwinError, match="saturation_mT is 60 mT at a gain of 1, which is no disk and does not saturate"
+    ):
+        from_dict(content)
 
 
 # ---- in every run ---------------------------------------------------------------------------------------------------
@@ -178,6 +183,20 @@ def test_described_parts_are_written_and_read() -> None:
     chain = described(field_mT=70.0, disk=SHIFTED, plate=TYPICAL, plate_y=Plate(offset_uV=1.0))
     assert from_dict(to_dict(chain)).parts == chain.parts
     assert from_dict(to_dict(chain.mirrored())).parts == chain.mirrored().parts
+
+
+def test_no_message_offers_the_mirror() -> None:
+    with pytest.raises(TwinError, match=r"hardware has no 'foo'; it has field_mT, disk, plate, plate_y$"):
+        from_dict({"schema": SCHEMA, "hardware": {"foo": 1}})
+
+
+def test_a_stray_field_counts_in_the_magnet_whichever_is_set_first() -> None:
+    magnet = Assembly(Magnet(), Placement(air_gap_mm=4.0))
+    first = Chain().with_effect("stray_field", bx_mT=1.0).with_magnet(magnet)
+    last = Chain().with_magnet(magnet).with_effect("stray_field", bx_mT=1.0)
+    np.testing.assert_array_equal(first.readings(TURN), last.readings(TURN))
+    given = Chain().with_effect("stray_field", bx_mT=1.0, field_mT=50.0).with_magnet(magnet)
+    assert np.max(np.abs(given.readings(TURN) - first.readings(TURN))) > 1e-3
 
 
 def test_offsets_that_cancel_are_no_ideal_plate() -> None:

@@ -18,7 +18,7 @@ import numpy as np
 
 from twin.angles import Array
 from twin.effect import Effect, Parameters
-from twin.limits import require_within
+from twin.limits import OutOfRangeError, require_within
 from twin.motion import Motion
 from twin.part import part, per_design
 
@@ -62,13 +62,18 @@ class Disk:
         require_within("part", self.part, 0, 2**32 - 1, whole=True)
         if self.saturation_mT != math.inf:
             require_within("saturation_mT", self.saturation_mT, 1.0, 1e4, "mT")
+            if self.gain == 1.0:
+                raise OutOfRangeError(
+                    f"saturation_mT is {self.saturation_mT:g} mT at a gain of 1, which is no disk and does not "
+                    "saturate; expected another gain, or no saturation_mT"
+                )
         require_within("per_axis", self.per_axis, 0.0, 1.0)
 
     @property
     def ideal(self) -> bool:
         """Whether its channels are the field's components, times the gain."""
         centred = self.shift_x_um == self.shift_y_um == self.roughness_um == 0.0
-        return centred and (self.gain == 1.0 or self.saturation_mT == math.inf)
+        return centred and self.saturation_mT == math.inf
 
     @property
     def plate_gains(self) -> Array:
@@ -112,7 +117,7 @@ class Disk:
 
     def k_percent(self, field_mT: float) -> float:
         """``k_percent`` of the effect ``saturation`` at this amplitude [mT]: the cubic term of tanh, (B / Bs)^2 / 3."""
-        return 0.0 if self.gain == 1.0 else float(self.per_axis * 100.0 / 3.0 * (field_mT / self.saturation_mT) ** 2)
+        return float(self.per_axis * 100.0 / 3.0 * (field_mT / self.saturation_mT) ** 2)
 
 
 def vertical_mT(in_plane_mT: Array, disk: Disk) -> Array:
@@ -120,7 +125,7 @@ def vertical_mT(in_plane_mT: Array, disk: Disk) -> Array:
 
     The leading terms of the two curves, B |B|^2 (1 - per_axis) / (3 Bs^2) and B_i^3 per_axis / (3 Bs^2), add up.
     """
-    if disk.gain == 1.0 or disk.saturation_mT == math.inf:
+    if disk.saturation_mT == math.inf:
         return np.asarray(disk.conversion @ in_plane_mT)
     length = np.linalg.norm(in_plane_mT, axis=-2, keepdims=True)
     whole, each = (_bent(disk.saturation_mT, share) for share in (1.0 - disk.per_axis, disk.per_axis))

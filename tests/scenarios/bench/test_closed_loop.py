@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from diagnosis.report.provenance import day, version
+from scenarios.bench.closed_loop import _temperature_c
 from scenarios.bench.command import DEFAULT_TWIN, Options, run
 from twin.angles import wrap_deg
+from twin.chain import Chain
 from twin.errors import UserError
 from twin.presets import read_preset
 from twin.sweep import Sweep
@@ -43,6 +46,15 @@ def test_a_loop_broken_off_in_its_second_half_goes_on_there(tmp_path: Path) -> N
     (broken / "loop-after.csv").write_text("somebody's own")
     with pytest.raises(UserError, match=r"loop-after\.csv: is there already"):
         run(cut)
+
+
+def test_the_encoder_is_corrected_for_the_temperature_of_its_readings() -> None:
+    drifting = Chain().with_effect("offset_drift", x_percent_per_K=0.01)
+    for temps, told in (([60.0, 60.0], 0), ([20.0, 100.0], 1), ([None, None], 0)):
+        kept = [SimpleNamespace(temperature_c=one) for one in temps]
+        measured, said = SimpleNamespace(pretreated=SimpleNamespace(kept=kept)), []
+        assert _temperature_c(measured, drifting, said.append) == (25.0 if temps[0] is None else 60.0)
+        assert len(said) == told
 
 
 def test_the_closed_loop_names_the_hidden_effect_and_corrects_it(

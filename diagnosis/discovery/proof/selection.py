@@ -9,14 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.discovery.finding import Finding
-from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve
 from diagnosis.discovery.proof.bootstrap import noise_of
 from diagnosis.discovery.proof.cross_validation import folds, held_out_residuals, rms_deg, scattered
 from diagnosis.discovery.proof.family_wise import FamilyWise, family_wise
 from diagnosis.discovery.search.likelihood_ratio import drop, settle, take_out
 from diagnosis.discovery.search.rivals import Judged, judge
 from twin.angles import Array, IntArray
-from twin.catalogue import base_name, output_grid
+from twin.catalogue import base_name, find, output_grid
 from twin.effect import Effect
 
 
@@ -119,12 +119,19 @@ def _held_out(fit: Fit, keys: Sequence[str], fold: IntArray) -> tuple[list[Array
 
 
 def least_seen(fit: Fit, keys: Sequence[str], fold: IntArray) -> float:
-    """Least share of what any parameter of the causes does, as squares, on the rows outside of one fold; 1 of none."""
-    columns = fit.jacobian[[free.key in keys for free in fit.free]]
+    """Least share of what any strength of the causes does, as squares, on the rows outside of one fold; 1 of none.
+
+    A shape that the rows left do not tell, as a memory after the only reversal, leaves the strength to be proven.
+    """
+    columns = fit.jacobian[[free.key in keys and _strength(fit, free) for free in fit.free]]
     squares = np.sum(np.where(fit.observations.usable, columns, 0.0) ** 2, axis=1)
     squares = squares[np.any(squares > 0.0, axis=1)]
     inside = np.stack([squares[:, fold == number].sum(axis=1) for number in range(fit.settings.folds)])
     return float(np.min(1.0 - inside / squares.sum(axis=1), initial=1.0))
+
+
+def _strength(fit: Fit, free: Free) -> bool:
+    return find(free.key, fit.chain.effects).params[free.name].role in ("strength", "level", "per turn")
 
 
 def _calibrated(

@@ -74,6 +74,8 @@ class Param:
     prior_sd : float
         For a shape that a fit moves: standard deviation of what is known of it before any sweep; 0: anything goes. One
         that a sweep does not show then stays where the search set out, and its interval says so.
+    prior_mean : float, optional
+        What is most likely before any sweep: it pulls the fit, as one more reading would. Not given: nothing is.
     aside : bool
         Whether an answer gives it only where it is not at null: a detail that no search sets.
     scatter : float
@@ -95,6 +97,7 @@ class Param:
     distance_power: Callable[[Parameters], float] | None = None
     mirror: Literal[-1, 0, 1] | None = None
     prior_sd: float = 0.0
+    prior_mean: float | None = None
     aside: bool = False
     scatter: float = 0.0
     owner: Owner | None = None

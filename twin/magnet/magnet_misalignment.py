@@ -136,7 +136,7 @@ def _shape(unit: str, bound: float, doc: str, **about: Any) -> Param:
 
 
 def _tilt(doc: str, *, mirror: Any) -> Param:
-    return _shape("deg", 30.0, doc, typical=2.0, prior_sd=TOLERANCE_DEG, mirror=mirror)
+    return _shape("deg", 30.0, doc, typical=2.0, prior_sd=TOLERANCE_DEG, prior_mean=0.0, mirror=mirror)
 
 
 MAGNET_MISALIGNMENT = Effect(
@@ -189,7 +189,9 @@ MAGNET_MISALIGNMENT = Effect(
             role="phase",
             mirror=-1,
         ),
-        "log_ratio": _shape("1", 2.0, "log of the sensor's over the magnet's displacement", prior_sd=np.log(WITHIN)),
+        "log_ratio": _shape(
+            "1", 2.0, "log of the sensor's over the magnet's displacement", prior_sd=np.log(WITHIN), prior_mean=0.0
+        ),
         "sensor_tilt_x_deg": _tilt("sensor's tilt about x, beside it", mirror=-1),
         "sensor_tilt_y_deg": _tilt("sensor's tilt about y, beside it", mirror=1),
         "magnet_tilt_x_deg": _tilt("magnet's tilt about x of the shaft", mirror=-1),

@@ -99,7 +99,7 @@ class Fit:
     @property
     def prior_residual(self) -> Array:
         """What the parameters that a prior holds lack to its centre, in units of the residual."""
-        away: Array = self.strengths * _turns_zeros(self.chain, self.free)
+        away: Array = self.strengths * _from_centre(self.chain, self.free)
         return -away[self.strengths > 0.0]
 
     @property
@@ -215,23 +215,31 @@ def _prior_strengths(chain: Chain, free: tuple[Free, ...], observations: Observa
 
     Per-turn zeros scatter: each is held by the scatter of all. This makes them a random effect, so that an effect
     common to many turns (a direction) is not given away to them, and it fixes their common part, which belongs to
-    ``zero``. A shape that its declaration gives a standard deviation is held by that about where it stands: it goes
-    where the readings send it, and what they do not tell has a finite interval. 0: anything goes.
+    ``zero``. A shape that its declaration gives a standard deviation is held by that about what is most likely, or
+    where nothing is, about where it stands: then it goes where the readings send it, and what they do not tell has a
+    finite interval. 0: anything goes.
     """
     params = [find(f.key, chain.effects).params[f.name] for f in free]
     turns = [k for k, f in enumerate(free) if f.turn is not None]
     # Whitened residuals are in radians: a prior of one sigma counts as one residual RMS.
     unit = float(np.sqrt(np.mean(residual[observations.usable] ** 2)))
     strengths = np.array([unit / param.prior_sd if param.prior_sd > 0.0 else 0.0 for param in params])
-    zeros = _turns_zeros(chain, free)[turns]
+    zeros = _from_centre(chain, free)[turns]
     strengths[turns] = unit / max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
     return strengths
 
 
-def _turns_zeros(chain: Chain, free: tuple[Free, ...]) -> Array:
-    """Each free parameter (P,) that has one value a turn, in its own unit; 0 for the others."""
-    own = [0.0 if f.turn is None else float(np.asarray(chain.values[f.key][f.name])[f.turn]) for f in free]
-    return np.array(own)
+def _from_centre(chain: Chain, free: tuple[Free, ...]) -> Array:
+    """How far each free parameter (P,) is from what is most likely before the sweep, in its own unit; else 0."""
+    away = np.zeros(len(free))
+    for place, one in enumerate(free):
+        param = find(one.key, chain.effects).params[one.name]
+        value, centre = chain.values[one.key].get(one.name, param.null), param.prior_mean
+        if one.turn is not None:
+            away[place] = float(np.asarray(value)[one.turn])
+        elif centre is not None:
+            away[place] = float(value) - centre
+    return away
 
 
 def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:

@@ -62,7 +62,7 @@ def example(effect: Effect) -> dict[str, Any]:
     # What no plain example sets: both displaced, and tilted.
     free = [name for name, param in effect.params.items() if param.prior_sd or name == "product_mm2"]
     held = {name: effect.params[name].null + 0.4 * effect.params[name].typical for name in free}
-    return {**EXAMPLES[effect.name].params, **held, **blur}
+    return {**effect.null(), **EXAMPLES[effect.name].params, **held, **blur}
 
 
 def parameters(effect: Effect) -> list[Free]:

@@ -324,7 +324,7 @@ def _room(fit: Fit) -> tuple[Array, Array]:
     for place, free in enumerate(fit.free):
         param = find(free.key, fit.chain.effects).params[free.name]
         if free.turn is None and param.role != "phase":
-            value = float(fit.chain.values[free.key][free.name])
+            value = float(fit.chain.values[free.key].get(free.name, param.null))
             least, most = _bounds(param)
             lower[place], upper[place] = min(least - value, 0.0), max(most - value, 0.0)
     return lower, upper
@@ -351,7 +351,7 @@ def _moved(fit: Fit, step: Array) -> Chain:
             zeros[free.turn] += step[place]
             values[free.key][free.name] = zeros
             continue
-        moved = float(values[free.key][free.name]) + step[place]
+        moved = float(values[free.key].get(free.name, param.null)) + step[place]
         # A rounding beyond its bound.
         values[free.key][free.name] = moved if param.role == "phase" else float(np.clip(moved, *_bounds(param)))
     return replace(fit.chain, values=values)

@@ -41,9 +41,9 @@ MISPLACED = Assembly(
 )
 
 
-def chain_of(*names: str, **more: Any) -> Chain:
+def chain_of(*names: str, magnet: Assembly | None = None, **more: Any) -> Chain:
     """The examples of these effects, all at once."""
-    chain = Chain(**more)
+    chain = Chain(**more) if magnet is None else Chain(**more).with_magnet(magnet)
     for name in names:
         chain = chain.with_effect(name, **EXAMPLES[name].params)
     return chain

@@ -11,36 +11,16 @@ import numpy as np
 from twin.angles import Array, channels_of, radians
 from twin.effect import Effect, Param, Parameters
 from twin.magnet.assembly import Assembly
-from twin.magnet.body_field import cylinder_components
-from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement
 from twin.magnet.uneven_field import Pose, UnevenField
 from twin.motion import Motion
 
-MAGNET = Magnet()
-AIR_GAP_MM = float(Placement().air_gap_mm)
-"""The cylinder that millimetres and degrees are counted against where no magnet is described."""
-USUAL = UnevenField(Assembly(MAGNET, Placement(air_gap_mm=AIR_GAP_MM)))
-"""The field of that cylinder."""
+USUAL = UnevenField(Assembly())
+"""The field of the cylinder that millimetres and degrees are counted against where no magnet is described."""
 TOLERANCE_DEG = 2.0
 """Standard deviation of a tilt before anything is known of it: a mounting that is off by more is seen."""
 WITHIN = 3.0
 """Sensor and magnet are placed alike: neither is further off than the other by more than this, two times of three."""
-
-
-def tensor(off_axis_mm: Array, tilt_deg: Array) -> tuple[Array, Array]:
-    """Gains along and across the displacement (any common shape) by which a centred cylinder's field is sensed.
-
-    The field of a diametral cylinder is linear in its magnetisation: along the displacement f, across it -g, and
-    h out of the plane, of which the sensor's tilt towards the displacement takes its share.
-    """
-    off_axis, tilt = np.broadcast_arrays(np.abs(off_axis_mm), radians(tilt_deg))
-    radius, height = 0.5 * float(MAGNET.diameter_mm), float(MAGNET.height_mm)
-    z = np.asarray(AIR_GAP_MM + 0.5 * height)
-    f, g, h = cylinder_components(radius, height, np.concatenate([off_axis.ravel(), [0.0]]), z)
-    f, g, h = f / f[-1], g / g[-1], h / f[-1]
-    along = f[:-1].reshape(tilt.shape) * np.cos(tilt) - h[:-1].reshape(tilt.shape) * np.sin(tilt)
-    return np.asarray(along), g[:-1].reshape(tilt.shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,29 +30,15 @@ class Misplaced:
     field: UnevenField
 
     def __call__(self, signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-        sensed = _sensed(signal, values)
-        if not np.any(values["product_mm2"]):
-            return sensed
+        still, moved = poses(values, self.field.shift_of_tilt_mm)
+        if moved.centred:
+            return signal
         x, y = signal[..., :1, :], signal[..., 1:, :]
         turn = (x + 1j * y) / np.maximum(np.hypot(x, y), 1e-300)
         # Tilts alone turn no angle that offset, gain and phase do not: only what they do with a displacement counts.
-        still, moved = _poses(values, self.field.shift_of_tilt_mm)
         still = pose_of(self.field.assembly.placement) + still
         added = self.field.of(turn, still + moved) - self.field.of(turn, still)
-        return sensed + channels_of(added.real, added.imag)
-
-
-def _sensed(signal: Array, values: Parameters) -> Array:
-    """The channels of a sensor off the axis, or tilted, over a magnet on it."""
-    off_axis, tilt = np.asarray(values["off_axis_mm"]), np.asarray(values["tilt_deg"])
-    if not (np.any(off_axis) or np.any(tilt)):
-        return signal
-    along, across = tensor(off_axis, tilt)
-    mean, half = 0.5 * (along + across), 0.5 * (along - across)
-    twice = 2.0 * radians(values["direction_deg"])
-    x, y = signal[..., :1, :], signal[..., 1:, :]
-    c, s = half * np.cos(twice), half * np.sin(twice)
-    return channels_of((mean + c) * x + s * y, s * x + (mean - c) * y)
+        return np.asarray(signal + channels_of(added.real, added.imag))
 
 
 def pose_of(placement: Placement) -> Pose:
@@ -85,8 +51,8 @@ def pose_of(placement: Placement) -> Pose:
     return Pose(sensor, complex(placement.magnet_x_mm, placement.magnet_y_mm), **tilts)
 
 
-def _poses(values: Parameters, shift_of_tilt_mm: tuple[complex, complex]) -> tuple[Pose, Pose]:
-    """Where the sensor alone is off, with the tilts; and what is added where the magnet is off as well.
+def poses(values: Parameters, shift_of_tilt_mm: tuple[complex, complex]) -> tuple[Pose, Pose]:
+    """The tilts that stand beside the displacements; and what is added where sensor, or both, are off the axis.
 
     The magnet's displacement is that of its field at the sensor, which a tilt displaces too: so a tilt leaves the
     product of the displacements alone, which is what a sweep shows.
@@ -102,8 +68,9 @@ def _poses(values: Parameters, shift_of_tilt_mm: tuple[complex, complex]) -> tup
     away = np.exp(1j * (direction - radians(values["phase_deg"]))) * np.sign(product)
     size = np.sqrt(np.abs(product))
     tilted = sum(shift * tilt for shift, tilt in zip(shift_of_tilt_mm, tilts["magnet_tilt"], strict=True))
-    alone = Pose(sensor=np.asarray(values["off_axis_mm"]) * towards, magnet=-tilted, **tilts)
-    return alone, Pose(sensor=size * np.sqrt(ratio) * towards, magnet=size / np.sqrt(ratio) * away)
+    sensor = np.asarray(values["off_axis_mm"]) + size * np.sqrt(ratio)
+    lean = radians(values["tilt_deg"]) * towards
+    return Pose(magnet=-tilted, **tilts), Pose(sensor * towards, size / np.sqrt(ratio) * away, lean=lean)
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -125,9 +92,7 @@ def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str,
 
 
 def at_magnet(assembly: Assembly) -> Effect:
-    """The effect in the field of a described magnet; a block's field has no such series, and the usual one is kept."""
-    if assembly.magnet.shape == "block":
-        return MAGNET_MISALIGNMENT
+    """The effect in the field of a described magnet."""
     return replace(MAGNET_MISALIGNMENT, forward=Misplaced(UnevenField(assembly)))
 
 

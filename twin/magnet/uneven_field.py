@@ -1,8 +1,8 @@
-"""A round magnet's field where it turns, reading by reading: cheap enough for a fit to move magnet and sensor.
+"""A magnet's field where it turns, reading by reading: cheap enough for a fit to move magnet and sensor.
 
-With z' along the magnet's axis, p' = x' + iy' off it and u = |p'|^2 the field is the gradient of x' S(u, z')
+With z' along the axis of a round magnet, p' = x' + iy' off it and u = |p'|^2 its field is the gradient of x' S(u, z')
 (:mod:`twin.magnet.axis_series`). S is a polynomial in u and in the change of height that a tilt brings, so a
-displacement costs no field of a new design.
+displacement costs no field of a new design. A block's field is its closed form at each reading's point.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import numpy as np
 from twin.angles import TAU, Array
 from twin.magnet.assembly import Assembly
 from twin.magnet.axis_series import axis_taylor, transverse_weights
+from twin.magnet.body_field import body_field
 
 TERMS = 6
 """In the squared distance from the axis, in radii."""
@@ -33,19 +34,21 @@ Vector = tuple[Any, Any, Any]
 class Pose:
     """Where sensor and magnet sit: displacements [mm] as complex numbers, tilts [rad] about x, then y.
 
-    The sensor's count in the stator, the magnet's in the shaft; see :mod:`twin.magnet.placement`. Numbers, or arrays
-    that broadcast against signals.
+    The sensor's count in the stator, the magnet's in the shaft; see :mod:`twin.magnet.placement`. ``lean`` is one tilt
+    more of the sensor [rad], as a complex number: its normal leans by so much towards there. Numbers, or arrays that
+    broadcast against signals.
     """
 
     sensor: Any = 0.0
     magnet: Any = 0.0
     sensor_tilt: tuple[Any, Any] = (0.0, 0.0)
     magnet_tilt: tuple[Any, Any] = (0.0, 0.0)
+    lean: Any = 0.0
 
     @property
     def centred(self) -> bool:
         """Whether nothing is displaced or tilted."""
-        return not any(map(np.any, (self.sensor, self.magnet, *self.sensor_tilt, *self.magnet_tilt)))
+        return not any(map(np.any, (self.sensor, self.magnet, self.lean, *self.sensor_tilt, *self.magnet_tilt)))
 
     def __add__(self, other: Pose) -> Pose:
         """Both displacements and tilts together; tilts are small, so their order does not count."""
@@ -54,19 +57,20 @@ class Pose:
             self.magnet + other.magnet,
             (self.sensor_tilt[0] + other.sensor_tilt[0], self.sensor_tilt[1] + other.sensor_tilt[1]),
             (self.magnet_tilt[0] + other.magnet_tilt[0], self.magnet_tilt[1] + other.magnet_tilt[1]),
+            self.lean + other.lean,
         )
 
 
 @dataclass(frozen=True, eq=False)
 class UnevenField:
-    """The field of one round magnet about its place over the sensor, relative to that on the axis."""
+    """The field of one magnet about its place over the sensor, relative to that on the axis."""
 
     assembly: Assembly
 
     @property
     def radius_mm(self) -> float:
-        """Outer radius of the magnet."""
-        return 0.5 * float(self.assembly.magnet.diameter_mm)
+        """Of the circle about the axis that holds the magnet."""
+        return float(self.assembly.magnet.reach_mm)
 
     @cached_property
     def height(self) -> float:
@@ -75,7 +79,10 @@ class UnevenField:
 
     @cached_property
     def terms(self) -> Array:
-        """S over its value on the axis, as coefficients (TERMS, HEIGHTS) of powers of u and of the change of height."""
+        """S of a round magnet over its value on the axis, as coefficients (TERMS, HEIGHTS).
+
+        Of powers of u and of the change of height.
+        """
         magnet = self.assembly.magnet
         half = 0.5 * float(magnet.height_mm) / self.radius_mm
         bore = 0.5 * float(magnet.bore_mm) / self.radius_mm if magnet.shape == "ring" else 0.0
@@ -96,8 +103,8 @@ class UnevenField:
         """Which displacements of the magnet [mm] show as its tilts about x and y [1/rad] do, to first order.
 
         Off the axis by s, a displacement m of the magnet adds to the field what a constant would, and beside it
-        something to its size alone, with s times the conjugate of m: that is what an offset cannot do. A tilt adds the
-        like.
+        something to its size alone, with s times the conjugate of m in the field of a round magnet, with another
+        linear function of m in that of a block: that is what an offset cannot do. A tilt adds the like.
         """
         turn = np.exp(1j * TAU * np.arange(8) / 8.0)
         away, small = _SMALL * self.radius_mm, _SMALL
@@ -108,10 +115,14 @@ class UnevenField:
             odd = 0.5 * np.subtract(*fields)
             return complex(2.0 * np.mean((odd.real - 1j * odd.imag) * turn))
 
-        still, moved = beside_an_offset(), beside_an_offset(magnet=away)
-        tilted = (beside_an_offset(magnet_tilt=tilt) for tilt in ((small, 0.0), (0.0, small)))
-        x, y = (np.conj(away / small * (one - still) / (moved - still)) for one in tilted)
-        return complex(x), complex(y)
+        still = beside_an_offset()
+        x, y = (beside_an_offset(magnet=away * way) - still for way in (1.0, 1j))
+        by_shift = np.array([[x.real, y.real], [x.imag, y.imag]]) / away
+        shifts = []
+        for tilt in ((small, 0.0), (0.0, small)):
+            shown = (beside_an_offset(magnet_tilt=tilt) - still) / small
+            shifts.append(complex(*np.linalg.solve(by_shift, [shown.real, shown.imag])))
+        return shifts[0], shifts[1]
 
     def of(self, turn: Any, pose: Pose) -> Array:
         """Bx + i By in the sensor's axes at the field angles whose unit vectors are ``turn``, over B on the axis."""
@@ -121,16 +132,30 @@ class UnevenField:
         around = np.conj(turn) if np.any(pose.sensor) else 0.0
         away = np.asarray(pose.sensor * around - pose.magnet) / self.radius_mm
         inside = _back((away.real, away.imag, self.height), pose.magnet_tilt)
-        x, y, z = _tilted(self._gradient(inside), pose.magnet_tilt)
+        x, y, z = _tilted(self._field(inside), pose.magnet_tilt)
         plane = turn * (x + 1j * y)
+        if np.any(pose.lean):
+            towards = np.exp(1j * np.angle(pose.lean))
+            along = plane * np.conj(towards)
+            x, y, z = _back((along.real, along.imag, z), (0.0, np.abs(pose.lean)))
+            plane = (x + 1j * y) * towards
         x, y, _ = _back((plane.real, plane.imag, z), pose.sensor_tilt)
         return np.asarray(x + 1j * y)
 
-    def _gradient(self, point: Vector) -> Vector:
-        """Of x S(u, z), in the magnet's frame."""
+    def _field(self, point: Vector) -> Vector:
+        """In the magnet's frame over that on the axis, at a point in radii: of a round magnet the gradient of x S."""
         x, y, z = point
+        if self.assembly.magnet.shape == "block":
+            field = self._block(np.stack(np.broadcast_arrays(x, y, z), axis=-1))
+            return field[..., 0], field[..., 1], field[..., 2]
         value, slope, rise = _sums(self.terms, x * x + y * y, z - self.height)
         return value + 2.0 * x * x * slope, 2.0 * x * y * slope, x * rise
+
+    def _block(self, points: Array) -> Array:
+        """Of a block over that on the axis at points (..., 3) in radii."""
+        axis = body_field(self.assembly.magnet, self.radius_mm * np.array([[0.0, 0.0, self.height]]))[0, 0]
+        flat = body_field(self.assembly.magnet, self.radius_mm * points.reshape(-1, 3))
+        return np.asarray(flat.reshape(points.shape) / axis)
 
 
 def _sums(terms: Array, square: Any, up: Any) -> tuple[Any, Any, Any]:
@@ -146,19 +171,23 @@ def _sums(terms: Array, square: Any, up: Any) -> tuple[Any, Any, Any]:
 
 def _tilted(vector: Vector, tilt: tuple[Any, Any]) -> Vector:
     """Turned about x, then about the fixed y axis."""
-    if not (np.any(tilt[0]) or np.any(tilt[1])):
-        return vector
     x, y, z = vector
-    (c, s), (d, t) = ((np.cos(angle), np.sin(angle)) for angle in tilt)
-    y, z = c * y - s * z, s * y + c * z
-    return d * x + t * z, y, d * z - t * x
+    y, z = _turned(y, z, tilt[0])
+    z, x = _turned(z, x, tilt[1])
+    return x, y, z
 
 
 def _back(vector: Vector, tilt: tuple[Any, Any]) -> Vector:
     """The same the other way."""
-    if not (np.any(tilt[0]) or np.any(tilt[1])):
-        return vector
     x, y, z = vector
-    (c, s), (d, t) = ((np.cos(angle), np.sin(angle)) for angle in tilt)
-    x, z = d * x - t * z, d * z + t * x
-    return x, c * y + s * z, c * z - s * y
+    z, x = _turned(z, x, -tilt[1])
+    y, z = _turned(y, z, -tilt[0])
+    return x, y, z
+
+
+def _turned(first: Any, second: Any, angle: Any) -> tuple[Any, Any]:
+    """Two components turned from the first towards the second."""
+    if not np.any(angle):
+        return first, second
+    c, s = np.cos(angle), np.sin(angle)
+    return c * first - s * second, s * first + c * second

@@ -46,12 +46,16 @@ class Assembly:
         """From the centre of the untilted magnet to the sensing plane, along the shaft."""
         return np.asarray(self.placement.air_gap_mm) + 0.5 * np.asarray(self.magnet.height_mm)
 
+    def warm(self, temperature_c: Array) -> Array:
+        """Magnetisation at these temperatures (n,) over that at 25 C."""
+        return np.asarray(self.magnet.remanence_at(temperature_c) / self.magnet.remanence_at(NOMINAL_C))
+
     def channels(self, angle_rad: Array, motion: Motion) -> Array:
         """x and y (..., 2, n) of nominal amplitude 1 at the field angles [rad] (..., 2, n), by the magnet's field.
 
         The magnet's own part follows the temperature of each reading; the stray field does not.
         """
-        warm = self.magnet.remanence_at(motion.temperature_c) / self.magnet.remanence_at(NOMINAL_C)
+        warm = self.warm(motion.temperature_c)
         stray = self.placement.stray_mT @ self.placement.sensor_axes
         x, y = (
             (self.series.component(axis, angle_rad[..., axis : axis + 1, :]) - stray[axis]) * warm + stray[axis]

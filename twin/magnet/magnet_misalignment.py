@@ -28,9 +28,11 @@ class Misplaced:
     """What the channels see of one magnet's field where sensor and magnet are off the axis."""
 
     field: UnevenField
+    described: bool = False
+    """Whether it is the field of a described magnet, which weakens with the heat."""
 
     def __call__(self, signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-        still, moved = poses(values, self.field.shift_of_tilt_mm)
+        still, moved = self.poses(values)
         if moved.centred:
             return signal
         x, y = signal[..., :1, :], signal[..., 1:, :]
@@ -38,7 +40,13 @@ class Misplaced:
         # Tilts alone turn no angle that offset, gain and phase do not: only what they do with a displacement counts.
         still = pose_of(self.field.assembly.placement) + still
         added = self.field.of(turn, still + moved) - self.field.of(turn, still)
+        if self.described:
+            added = added * self.field.assembly.warm(motion.temperature_c)
         return np.asarray(signal + channels_of(added.real, added.imag))
+
+    def poses(self, values: Parameters) -> tuple[Pose, Pose]:
+        """The tilts that stand beside the displacements, and what is added where sensor, or both, are off the axis."""
+        return _poses(values, self.field.shift_of_tilt_mm)
 
 
 def pose_of(placement: Placement) -> Pose:
@@ -51,7 +59,7 @@ def pose_of(placement: Placement) -> Pose:
     return Pose(sensor, complex(placement.magnet_x_mm, placement.magnet_y_mm), **tilts)
 
 
-def poses(values: Parameters, shift_of_tilt_mm: tuple[complex, complex]) -> tuple[Pose, Pose]:
+def _poses(values: Parameters, shift_of_tilt_mm: tuple[complex, complex]) -> tuple[Pose, Pose]:
     """The tilts that stand beside the displacements; and what is added where sensor, or both, are off the axis.
 
     The magnet's displacement is that of its field at the sensor, which a tilt displaces too: so a tilt leaves the
@@ -93,7 +101,7 @@ def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str,
 
 def at_magnet(assembly: Assembly) -> Effect:
     """The effect in the field of a described magnet."""
-    return replace(MAGNET_MISALIGNMENT, forward=Misplaced(UnevenField(assembly)))
+    return replace(MAGNET_MISALIGNMENT, forward=Misplaced(UnevenField(assembly), described=True))
 
 
 def _shape(unit: str, bound: float, doc: str, **about: Any) -> Param:

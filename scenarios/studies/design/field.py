@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -15,7 +15,9 @@ from twin.chain import Chain
 from twin.effect import BoolArray, Effect
 from twin.magnet.assembly import Assembly
 from twin.magnet.field import Series, basis, series_by_group
+from twin.magnet.magnet_misalignment import Misplaced
 from twin.magnet.placement import Placement, designs_of
+from twin.magnet.uneven_field import Pose
 from twin.mechanics.zero import ZERO
 from twin.motion import NOMINAL_C, Motion
 from twin.parts import Parts
@@ -95,6 +97,47 @@ class Designs(Assembly):
         return Designs(_each(self.magnet, count, self.count), change(_each(self.placement, count, self.count)))
 
 
+@dataclass(frozen=True, eq=False)
+class Misplacing(Designs):
+    """Designs in which sensor and magnet sit off their place by ``moved``, beside the tilts of ``still``.
+
+    The tilts by themselves act as the twin's own offset, gain and phase: see :class:`Misplaced`.
+    """
+
+    still: Pose = field(default_factory=Pose)
+    moved: Pose = field(default_factory=Pose)
+
+    def channels(self, angle_rad: Array, motion: Motion) -> Array:
+        """See :meth:`Designs.channels`."""
+        there, back = (
+            Designs(self.magnet, moved_by(self.placement, pose)) for pose in (self.still + self.moved, self.still)
+        )
+        added = there.channels(angle_rad, motion) - back.channels(angle_rad, motion)
+        return super().channels(angle_rad, motion) + added
+
+
+def moved_by(placement: Placement, pose: Pose) -> Placement:
+    """Placements with sensor and magnet off by a pose of single numbers."""
+    sensor, magnet, lean = (complex(part) for part in (pose.sensor, pose.magnet, pose.lean))
+    changes = {"sensor_x_mm": sensor.real, "sensor_y_mm": sensor.imag}
+    changes |= {"magnet_x_mm": magnet.real, "magnet_y_mm": magnet.imag}
+    # A normal leans towards x by a turn about y.
+    own = (pose.sensor_tilt[0] - lean.imag, pose.sensor_tilt[1] + lean.real)
+    for name, tilt in (("sensor_tilt", own), ("magnet_tilt", pose.magnet_tilt)):
+        changes |= {f"{name}_{axis}_deg": float(np.degrees(part)) for axis, part in zip("xy", tilt, strict=True)}
+    return replace(placement, **{name: getattr(placement, name) + change for name, change in changes.items()})
+
+
+def misplaced(chain: Chain, designs: Designs) -> tuple[Designs, frozenset[str]]:
+    """The designs with what the chain's effects displace, and the keys of these effects."""
+    for key, params in chain.values.items():
+        effect = find(key, chain.effects)
+        if isinstance(effect.forward, Misplaced) and not effect.is_null(params):
+            still, moved = effect.forward.poses({**effect.null(), **params})
+            return Misplacing(designs.magnet, designs.placement, still, moved), frozenset({key})
+    return designs, frozenset()
+
+
 def _along(terms: Array, angle: Array) -> Array:
     """One component (designs, n) of series (designs, 2 orders + 1) at each design's own angles (designs, n)."""
     # Horner's rule in exp(i theta), as Series.component has it for one design.
@@ -146,7 +189,8 @@ def errors_deg(chain: Chain, designs: Designs, motion: Motion) -> Array:
 
     ``chain`` has a magnet: its nominal field is what the chain's parameters are stated at.
     """
-    own = replace(chain, values=scaled_values(chain, designs), magnet=designs)
+    placed, keys = misplaced(chain, designs)
+    own = replace(chain, values=scaled_values(chain.without(*keys), designs), magnet=placed)
     return _zeroed(own.error(motion), motion)
 
 
@@ -157,7 +201,10 @@ def cause_errors(chain: Chain, designs: Designs, motion: Motion) -> Iterator[tup
     for name in [part.name for part in chain.described]:
         described = replace(chain, values={}, magnet=designs, parts=chain.parts.only(name))
         yield name, _zeroed(described.error(motion) - bare.error(motion), motion)
-    for key, params in scaled_values(chain, designs).items():
+    placed, keys = misplaced(chain, designs)
+    for key in keys:
+        yield key, _zeroed(replace(bare, magnet=placed).error(motion) - bare.error(motion), motion)
+    for key, params in scaled_values(chain.without(*keys), designs).items():
         effect = find(key, chain.effects)
         # Taken off like the zero, or no part of an expected reading.
         if effect is ZERO or effect.footprint == "spread":

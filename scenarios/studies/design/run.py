@@ -30,7 +30,6 @@ from twin.extensions import effects_with
 from twin.files import to_dict, twin_text
 from twin.limits import require_within
 from twin.magnet.magnet import LARGEST_MM, LARGEST_T
-from twin.magnet.magnet_misalignment import MAGNET_MISALIGNMENT
 from twin.presets import read_twin_or_preset
 
 Figures = dict[str, np.ndarray[Any, Any]]
@@ -47,11 +46,6 @@ def study_of(twin: str, space: Space, demand: Demand, *, seed: int) -> DesignStu
     chain = read_twin_or_preset(twin, effects=effects_with())
     if chain.magnet is None:
         raise UserError(f"{twin}: has no [magnet], so its figures are stated at no field; give a twin that has one")
-    if MAGNET_MISALIGNMENT.name in chain.values:
-        raise UserError(
-            f"{twin}: [effects.{MAGNET_MISALIGNMENT.name}] acts in the field of its own magnet; say where sensor and "
-            "magnet sit in [magnet.placement], or by --off-axis and --magnet-off-axis"
-        )
     require_within("designs", space.designs, 1, MOST_DESIGNS, whole=True)
     require_within("max-error", demand.max_error_deg, 1e-6, 180.0, "deg")
     require_within("mountings", demand.mountings, 1, 100_000, whole=True)

@@ -11,6 +11,7 @@ from functools import reduce
 
 from diagnosis.discovery.result import Discovery
 from diagnosis.discovery.stages.answer import answer
+from diagnosis.discovery.stages.changes import changes
 from diagnosis.discovery.stages.final_fit import final_fit
 from diagnosis.discovery.stages.flipped_bits import flipped_bits
 from diagnosis.discovery.stages.further_measurements import further_measurements
@@ -18,6 +19,8 @@ from diagnosis.discovery.stages.grid_cause import grid_cause
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit
 from diagnosis.discovery.stages.observe import observe
+from diagnosis.discovery.stages.own_parameters import own_parameters
+from diagnosis.discovery.stages.own_shapes import own_shapes
 from diagnosis.discovery.stages.predictive_check import predictive_check
 from diagnosis.discovery.stages.quantisation import quantisation
 from diagnosis.discovery.stages.repeated_frames import repeated_frames
@@ -35,16 +38,19 @@ PIPELINE: tuple[Stage, ...] = (
     initial_fit,  # the paper's error model, or a given twin with its zeros free
     row_masks,  # single readings that stand alone are kept out of the fits
     quantisation,  # stairs that the set of values shows
+    own_parameters,  # strengths of a given twin are free, so that a cause is only what none of them can do
     until_still(
         repeated_frames,  # readings that repeat the one before
         variance,  # rows that are beyond doubt louder weigh less
         stepwise,  # causes in the mean: add, exchange, remove
         sense_check,  # who counts which way, now that the causes are known
+        own_shapes,  # of a given twin's effects, which without the causes would go anywhere
         spread,  # causes in the scatter; the rows weigh by it
     ),
     held_out_selection,  # what gains on readings that no fit has seen, and is not chance
     flipped_bits,  # single readings told by the size of their errors
     grid_cause,  # the output's rounding, where it limits the readings
+    changes,  # which of a given twin's own parameters have moved; the others go back
     final_fit,  # the optimum itself, and the baseline on the same rows
     answer,  # one entry a cause, with its figures
     further_measurements,  # what would part each cause from its rivals

@@ -9,6 +9,7 @@ import numpy as np
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.observations import of_readings
+from diagnosis.discovery.proof.changes import Change
 from diagnosis.discovery.proof.cross_validation import rms_deg
 from diagnosis.discovery.proof.lack_of_fit import LackOfFit
 from diagnosis.discovery.proof.misfit import Misfit, misfits
@@ -30,7 +31,8 @@ class Discovery:
     ``baseline`` is the paper's error model alone, ``fit`` the extended one; ``masked`` the raw rows (n_raw,) that
     belong to single-reading causes; ``invisible`` the effects that this sweep cannot show, with what it lacks;
     ``cut_short`` the stage in which the search was stopped, where it was; ``misfits`` what the extended twin does not
-    predict although neither a cause nor structure tells of it.
+    predict although neither a cause nor structure tells of it. ``changed`` are the parameters of a given twin that have
+    moved, ``other_device`` whether so many have that it is another device's.
     """
 
     sweep: Sweep
@@ -45,6 +47,8 @@ class Discovery:
     noise_floor_from: str
     looked_at: int
     given: Chain | None = None
+    changed: tuple[Change, ...] = ()
+    other_device: bool = False
     invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
     likeness: PredictiveCheck | None = None
     lack: LackOfFit | None = None
@@ -78,6 +82,8 @@ class Discovery:
             noise_floor_from=REPEATED if observations.repeat_rms else HELD_OUT,
             looked_at=state.looked_at,
             given=state.given,
+            changed=state.changed,
+            other_device=state.other_device,
             invisible={
                 effect.name: effect.missing(provides)
                 for effect in state.effects
@@ -95,7 +101,7 @@ class Discovery:
 
         Explained is only what leaves no structure, is no misfit, and was searched to the end.
         """
-        named = any(cause.name != "unnamed" for cause in self.causes)
+        named = bool(self.changed) or any(cause.name != "unnamed" for cause in self.causes)
         without_name = any(cause.name == "unnamed" for cause in self.causes)
         open_still = without_name or bool(self.misfits)
         if named:

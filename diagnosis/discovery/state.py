@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from diagnosis.discovery.finding import Finding
-from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.joint_fit import Fit, Free
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.watch import Watch
 from twin.angles import TAU, Array, IntArray
+from twin.catalogue import base_name
 from twin.chain import Chain
 from twin.effect import BoolArray, Effect
 from twin.sweep import Sweep
 
 if TYPE_CHECKING:
+    from diagnosis.discovery.proof.changes import Change
     from diagnosis.discovery.proof.lack_of_fit import LackOfFit
     from diagnosis.discovery.proof.predictive_check import PredictiveCheck
 
@@ -27,7 +29,7 @@ class State:
     """A discovery between two stages.
 
     Given at the start: ``sweep``; ``start``, the chain that the fit sets out from, whose effects are what is known;
-    ``given``, the same where it is a known twin, of which only the zeros are fitted; ``settings``; ``rng``, which draws
+    ``given``, the same where it is a known twin, which is asked what has changed; ``settings``; ``rng``, which draws
     the simulated sweeps: a stage that draws hands on a generator that is further, and leaves its own as it is;
     ``suspects``, raw rows (n_raw,) that a robust fit of the start left out: the first least-squares fit is made without
     them, because a flipped top bit, half a turn off, would pull it to where nothing stands out any more; ``watch``,
@@ -39,7 +41,9 @@ class State:
     the raw rows (n_raw,) that single-reading causes have claimed; ``looked_at``, how many effects were searched for;
     ``fold`` (n,), the block in which each row was held out; ``held``, held-out residuals (n,) [rad] of the baseline and
     after each of ``keys``, and once there is an answer after each of ``causes``; ``causes``, the entries of
-    the answer; ``likeness``, the predictive check; ``lack``, what is left against repeated readings.
+    the answer; ``likeness``, the predictive check; ``lack``, what is left against repeated readings. Of a given twin also
+    ``own``, its parameters that are asked whether they have moved, ``changed``, those that have, and ``other_device``,
+    whether so many have that it is another's twin.
     """
 
     sweep: Sweep
@@ -60,6 +64,9 @@ class State:
     causes: tuple[Finding, ...] = ()
     likeness: PredictiveCheck | None = None
     lack: LackOfFit | None = None
+    own: tuple[Free, ...] = ()
+    changed: tuple[Change, ...] = ()
+    other_device: bool = False
     watch: Watch = field(default_factory=Watch)
 
     def __repr__(self) -> str:
@@ -87,7 +94,7 @@ class State:
             Where the fit sets out from: the fitted baseline, or a given twin. Its effects are those that are known:
             those of the baseline are fitted, the others searched for.
         given : Chain, optional
-            The twin, where one is held against the sweep: then only its zeros are fitted.
+            The twin, where one is held against the sweep: then it is asked what has changed since.
         settings : DiscoverySettings, optional
             Every threshold; the project's own if not given.
         rng : numpy.random.Generator, optional
@@ -128,8 +135,12 @@ class State:
 
     @property
     def searched(self) -> tuple[Effect, ...]:
-        """The effects that show in the mean: those that the stepwise search is for."""
-        return tuple(effect for effect in self.effects if effect.footprint == "mean")
+        """The effects that show in the mean: those that the stepwise search is for.
+
+        What a given twin has, and has free, is not searched for once more, unless there may be several of it.
+        """
+        own = {base_name(free.key) for free in self.own}
+        return tuple(e for e in self.effects if e.footprint == "mean" and (e.repeatable or e.name not in own))
 
     def family(self, footprint: str) -> int:
         """How many effects are searched for that show there, in a recording like this: what an improbable one pays."""

@@ -12,6 +12,7 @@ from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.marks.row_numbers import number_in_file
+from diagnosis.discovery.proof.changes import Change
 from diagnosis.discovery.proof.predictive_check import why_not_checked
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
@@ -21,7 +22,7 @@ from diagnosis.report.row_counts import MOST_LISTED
 from diagnosis.report.senses import senses
 from twin.angles import wrap_deg
 from twin.baseline import FACTORS
-from twin.catalogue import find
+from twin.catalogue import base_name, find
 from twin.files import to_dict
 from twin.param import Param
 
@@ -56,6 +57,8 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "noise": found.fit.weighting.family.labels[found.fit.weighting.member],
             "verdict": found.verdict,
             **_checked(found),
+            "changed": [_change(found, change) for change in found.changed],
+            "other_device": found.other_device,
             "causes": [_cause(found, cause) for cause in found.causes],
             "unexplained": {
                 "rms_deg": _rms(extended[kept]),
@@ -179,6 +182,28 @@ def standard_deviations(fit: Fit) -> Deviations:
         (free.key, free.name): float(np.sqrt(max(v, 0.0)))
         for free, v in zip(fit.free, variance, strict=True)
         if free.turn is None
+    }
+
+
+def _change(found: Discovery, change: Change) -> dict[str, Any]:
+    """One parameter of a given twin that has moved: what it was, and is with its 95 % interval."""
+    fit, free = found.fit, change.free
+    param = find(free.key, fit.chain.effects).params[free.name]
+    value = float(fit.chain.values[free.key][free.name])
+    half = _T95 * standard_deviations(fit).get((free.key, free.name), 0.0)
+    return {
+        "parameter": change.name,
+        "effect": base_name(free.key),
+        "owner": change.owner,
+        "was": change.was,
+        "is": value,
+        "low": value - half,
+        "high": value + half,
+        "unit": param.unit,
+        "p": change.false_alarm_probability,
+        "heldout_rms_deg_before": change.before_deg,
+        "heldout_rms_deg_after": change.after_deg,
+        "indistinguishable_from": list(change.rivals),
     }
 
 

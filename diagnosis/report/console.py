@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from rich.console import Console, Group, RenderableType
@@ -12,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from diagnosis.report import statements
+from diagnosis.report.change_words import change_line, change_name, change_rivals_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.statements import FactorRow
 from diagnosis.report.wording import chance
@@ -21,6 +23,7 @@ _ALL_SAID = ("adequate", "explained")
 _NARROW = 72
 """Characters from which on two factors stand beside each other."""
 _WRONG = "What the simulation gets wrong"
+_CHANGED = "What has changed since the twin"
 _HEADS = ("held-out RMS, deg", "false alarm")
 _PLACE = 3
 """Characters of a cause's number."""
@@ -36,6 +39,7 @@ def show(answer: Mapping[str, Any], console: Console | None = None) -> None:
     parts = [
         _sweep(answer["sweep"]),
         _baseline(answer, beside=3 if console.width >= _WIDE else 2 if console.width >= _NARROW else 1),
+        _changes(answer, width=min(console.width, _WIDE)),
         _causes(answer, width=min(console.width, _WIDE)),
         _verdict(answer),
         _invisible(answer),
@@ -60,7 +64,7 @@ def _sweep(sweep: Mapping[str, Any]) -> RenderableType:
 
 def _baseline(answer: Mapping[str, Any], *, beside: int) -> RenderableType:
     rows = statements.factor_rows(answer)
-    table = _extended(rows) if rows[0].after else _plain(rows, beside=beside)
+    table = _extended(rows, statements.after_head(answer)) if rows[0].after else _plain(rows, beside=beside)
     said = filter(None, (statements.moved_words(answer), statements.senses_words(answer)))
     return Group(
         Text(statements.baseline_words(answer), "bold"),
@@ -91,42 +95,82 @@ def _grid(columns: int) -> Table:
     return table
 
 
-def _extended(rows: Iterable[FactorRow]) -> Table:
-    """The factors before the causes and with them."""
+def _extended(rows: Iterable[FactorRow], after: str) -> Table:
+    """The factors before the causes and with them, or in the twin and in this sweep."""
     table = _grid(4)
-    table.add_row("", Text("before", "dim"), Text("with the causes", "dim"), "")
+    table.add_row("", Text("before", "dim"), Text(after, "dim"), "")
     for row in rows:
         table.add_row(row.label, row.before, row.after, row.flag)
     return table
 
 
+@dataclass(frozen=True)
+class _Entry:
+    """One row of a list with its figures, and the lines below it."""
+
+    name: str
+    figures: tuple[str, str]
+    lines: list[str]
+
+
 def _causes(answer: Mapping[str, Any], *, width: int) -> RenderableType | None:
-    if not answer["causes"]:
+    return _listed(
+        _WRONG,
+        [
+            _Entry(cause["name"], _figures(cause, cause["false_alarm_probability"]), _details(answer, cause))
+            for cause in answer["causes"]
+        ],
+        width=width,
+    )
+
+
+def _changes(answer: Mapping[str, Any], *, width: int) -> RenderableType | None:
+    """What of a given twin has changed."""
+    return _listed(
+        _CHANGED,
+        [
+            _Entry(
+                change_name(change),
+                _figures(change, change["p"]),
+                [change_line(change), change_rivals_words(change)],
+            )
+            for change in answer["changed"]
+        ],
+        width=width,
+    )
+
+
+def _figures(step: Mapping[str, Any], probability: float | None) -> tuple[str, str]:
+    return statements.held_words(step), chance(probability)
+
+
+def _listed(title: str, entries: Sequence[_Entry], *, width: int) -> RenderableType | None:
+    """Entries under a title, with their figures in columns where there is room; None where there are none."""
+    if not entries:
         return None
-    said = [(statements.held_words(cause), chance(cause["false_alarm_probability"])) for cause in answer["causes"]]
-    widths = [max(map(len, column)) for column in zip(_HEADS, *said, strict=True)]
-    unbroken = [*_WRONG.split(), *(cause["name"] for cause in answer["causes"])]
+    widths = [max(map(len, column)) for column in zip(_HEADS, *(entry.figures for entry in entries), strict=True)]
+    unbroken = [*title.split(), *(word for entry in entries for word in entry.name.split())]
     longest = max(map(len, unbroken))
     if width < _PLACE + sum(widths) + _GAPS + longest:
-        return _below_each_other(answer, said)
+        return _below_each_other(title, entries)
     head = _columns(width, widths)
-    head.add_row("", Text(_WRONG, "bold"), *_HEADS)
+    head.add_row("", Text(title, "bold"), *_HEADS)
     parts: list[RenderableType] = [head]
-    for number, cause in enumerate(answer["causes"], 1):
+    for number, entry in enumerate(entries, 1):
         row = _columns(width, widths)
-        row.add_row(str(number), Text(cause["name"], "bold"), *said[number - 1])
+        row.add_row(str(number), Text(entry.name, "bold"), *entry.figures)
         parts.append(row)
-        parts.extend(Padding(Text(line), (0, 0, 0, 5)) for line in _details(answer, cause))
+        parts.extend(Padding(Text(line), (0, 0, 0, 5)) for line in entry.lines)
     return Group(*parts)
 
 
-def _below_each_other(answer: Mapping[str, Any], said: Sequence[tuple[str, str]]) -> RenderableType:
-    """The causes on a terminal that is too narrow for columns: no name is cut, every figure on a line of its own."""
-    parts: list[RenderableType] = [Text(_WRONG, "bold")]
-    for number, (cause, figures) in enumerate(zip(answer["causes"], said, strict=True), 1):
-        parts.append(Text.assemble(f"{number:{_PLACE}}  ", (cause["name"], "bold")))
-        lines = [f"{head}: {figure}" for head, figure in zip(_HEADS, figures, strict=True)]
-        parts.extend(Padding(Text(line), (0, 0, 0, 5)) for line in (*lines, *_details(answer, cause)))
+def _below_each_other(title: str, entries: Sequence[_Entry]) -> RenderableType:
+    """Entries on a terminal that is too narrow for columns: no name is cut, every figure on a line of its own."""
+    parts: list[RenderableType] = [Text(title, "bold")]
+    for number, entry in enumerate(entries, 1):
+        parts.append(Text.assemble(f"{number:{_PLACE}}  ", (entry.name, "bold")))
+        lines = [f"{head}: {figure}" for head, figure in zip(_HEADS, entry.figures, strict=True)]
+        parts.extend(Padding(Text(line), (0, 0, 0, 5)) for line in (*lines, *entry.lines))
     return Group(*parts)
 
 

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from html import escape
 from typing import Any
 
-from diagnosis.report.statements import parameter_lines, verdict_words
+from diagnosis.report.change_words import change_line, change_name
+from diagnosis.report.statements import extends, parameter_lines, verdict_words
 from diagnosis.report.tables import number, table
 from diagnosis.report.wording import chance
 
@@ -17,9 +18,19 @@ def notebook_html(answer: Mapping[str, Any]) -> str:
     """A fragment of HTML that takes its looks from the notebook."""
     name, verdict = escape(answer["sweep"]["name"]), escape(answer["verdict"])
     said = f"<p><b>{name}: {verdict}.</b> {escape(verdict_words(answer))}</p>"
-    if not answer["causes"]:
+    if not extends(answer):
         return said
     rows = [
+        [
+            escape(change_name(change)),
+            escape(change_line(change)),
+            number(change["heldout_rms_deg_before"]),
+            number(change["heldout_rms_deg_after"]),
+            number(change["p"], chance(change["p"])),
+        ]
+        for change in answer["changed"]
+    ]
+    rows += [
         [
             escape(cause["name"]),
             "<br>".join(map(escape, parameter_lines(answer, cause))),

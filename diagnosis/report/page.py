@@ -12,6 +12,7 @@ from diagnosis.discovery.result import Discovery
 from diagnosis.report import causes as cause_pictures
 from diagnosis.report import pictures as drawn
 from diagnosis.report import statements, tables
+from diagnosis.report.change_words import change_name
 from diagnosis.report.data import Readings, readings, two_ways
 from diagnosis.report.facts import facts
 from diagnosis.report.row_counts import explained_rows
@@ -39,6 +40,7 @@ def page(found: Discovery, answer: Mapping[str, Any]) -> str:
             _headline(answer),
             _measured(answer, said, read),
             _baseline(answer, read, found),
+            _changes(answer),
             *_causes(answer, found, read),
             _chain(answer, found),
             _parameters(answer),
@@ -54,7 +56,8 @@ def page(found: Discovery, answer: Mapping[str, Any]) -> str:
 
 
 def _headline(answer: Mapping[str, Any]) -> str:
-    names = [cause["name"].replace("_", " ") for cause in answer["causes"] if cause["name"] != "unnamed"]
+    names = [change_name(change) for change in answer["changed"]]
+    names += [cause["name"].replace("_", " ") for cause in answer["causes"] if cause["name"] != "unnamed"]
     told = f" ({', '.join(names)})" if names else ""
     cards = [
         ("baseline, held-out RMS", number(answer["baseline"]["heldout_rms_deg"]), "deg"),
@@ -109,7 +112,7 @@ def _baseline(answer: Mapping[str, Any], read: Readings, found: Discovery) -> st
         ("The error, and the baseline's prediction", "The zero is removed.", drawn.error(read)),
         ("What the baseline leaves", "", drawn.residual(read, read.before_deg, limits=limits)),
     ]
-    if answer["causes"]:
+    if statements.extends(answer):
         left = drawn.residual(read, read.after_deg, limits=limits)
         pictures.append(("What the extended twin leaves", "On the scale of the picture before.", left))
     pictures.append(("In the order of the readings", "", drawn.over_clock(read)))
@@ -126,6 +129,15 @@ def _orders(found: Discovery) -> list[float]:
     values = found.fit.chain.values
     keys = [key for cause in found.causes for key in cause.keys]
     return [float(values[key]["order"]) for key in keys if "order" in values.get(key, {})]
+
+
+def _changes(answer: Mapping[str, Any]) -> str:
+    """What has changed of a given twin; nothing where none was given."""
+    if not statements.held_fixed(answer):
+        return ""
+    words = f"<p>{statements.sentence(_text(statements.moved_words(answer)))}</p>"
+    told = tables.changes(answer["changed"]) if answer["changed"] else ""
+    return f"<h2>What has changed since the twin</h2>{told}{words}"
 
 
 def _causes(answer: Mapping[str, Any], found: Discovery, read: Readings) -> Iterator[str]:

@@ -11,9 +11,18 @@ from typing import Any, NamedTuple
 from diagnosis.discovery.proof.misfit import LACK_OF_FIT, LIKENESS
 from diagnosis.discovery.result import REPEATED
 from diagnosis.discovery.settings import UNLIKE
+from diagnosis.report.change_words import other_device_words
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
 from diagnosis.report.row_counts import rows_listed
-from diagnosis.report.wording import around, figure, instances, parameter_line, plain, structure_words, with_unit
+from diagnosis.report.wording import (
+    around,
+    figure,
+    instances,
+    parameter_line,
+    plain,
+    structure_words,
+    with_unit,
+)
 
 _LACKS = {
     "both directions": ("one direction", "turn in both directions"),
@@ -36,11 +45,8 @@ _ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two spe
 """A want that goes without saying where the second one is wanted too."""
 
 _UNEXPLAINED = "Structure is there that no cause of the catalogue explains"
-HELD = "The given twin's factors were held as they are, its zero alone was fitted"
-_ORDERS_OF_FACTORS = ((1.0, "offset x or y"), (2.0, "gain ratio or phase"), (3.0, "quadratic term"))
-"""Orders of the turn that a change of each factor makes, to first order; the quadratic term makes order 1 as well."""
-_NEAR = 0.1
-"""Orders nearer to a whole one than this are taken for it: a record of a few turns tells them no better."""
+UNCHANGED = "Nothing of the given twin has changed beyond chance; its zero alone was fitted"
+OTHERS_HELD = "All else of the given twin has not changed beyond chance, and stays as it was"
 _SEARCHED = "of these {used} were searched, in stretches spread over the record"
 
 
@@ -138,7 +144,7 @@ def factor_rows(answer: Mapping[str, Any]) -> list[FactorRow]:
     before = _values(answer["baseline"]["parameters"])
     after = _values(answer["extended"]["parameters"])
     # What touches single readings or their scatter alone leaves every factor as it is.
-    changed = bool(answer["causes"]) and before != after
+    changed = extends(answer) and before != after
     return [
         FactorRow(key, label, before[key], after[key] if changed else "", UNITS[key], _flag(answer, key))
         for key, label in LABELS.items()
@@ -151,22 +157,31 @@ def _values(parameters: Mapping[str, Any]) -> dict[str, str]:
 
 def _flag(answer: Mapping[str, Any], key: str) -> str:
     """What else is to be said of a factor."""
-    last = answer["extended"] if answer["causes"] else answer["baseline"]
+    last = answer["extended"] if extends(answer) else answer["baseline"]
     if held_fixed(answer) and last["parameters"][key]["low"] == last["parameters"][key]["high"]:
         return "held"
     if last["parameters"][key]["at_bound"]:
         return "at its bound"
-    return "moved" if answer["causes"] and key in answer["extended"]["moved"] else ""
+    return "moved" if extends(answer) and key in answer["extended"]["moved"] else ""
+
+
+def extends(answer: Mapping[str, Any]) -> bool:
+    """Whether the extended twin is another than the one before: by a cause, or by what has changed of a given one."""
+    return bool(answer["causes"] or answer["changed"])
+
+
+def after_head(answer: Mapping[str, Any]) -> str:
+    """What stands above the factors of the extended twin."""
+    return "with the causes" if answer["causes"] else "in this sweep"
 
 
 def moved_words(answer: Mapping[str, Any]) -> str:
-    """Which factors stand elsewhere once the causes are known; empty where there is no cause."""
-    if not answer["causes"]:
-        return HELD if held_fixed(answer) else ""
-    names = [LABELS[key] for key in answer["extended"]["moved"]]
+    """Which factors stand elsewhere once the causes are known; of a given twin, that the others were held."""
     if held_fixed(answer):
-        moved = f"; with the causes known, {_and(names)} lies outside of the interval before" if names else ""
-        return f"{HELD}{moved}"
+        return OTHERS_HELD if answer["changed"] else UNCHANGED
+    if not answer["causes"]:
+        return ""
+    names = [LABELS[key] for key in answer["extended"]["moved"]]
     if not names and answer["extended"]["parameters"] == answer["baseline"]["parameters"]:
         return ""
     if not names:
@@ -216,23 +231,12 @@ def parameter_lines(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list
 
 
 def structure_lines(answer: Mapping[str, Any]) -> list[str]:
-    """Structure without a name in words, part by part; beside a given twin also which of its factors make such."""
-    return [
-        structure_words(structure) + _of_held_factors(answer, structure)
-        for structure in answer["unexplained"]["structure"]
-    ]
-
-
-def _of_held_factors(answer: Mapping[str, Any], structure: Mapping[str, Any]) -> str:
-    """Which factors of the given twin, that are held as they are, would make such an order if they were others."""
-    if not held_fixed(answer) or structure["kind"] != "order":
-        return ""
-    factors = next((names for order, names in _ORDERS_OF_FACTORS if abs(structure["order"] - order) < _NEAR), "")
-    return f"; another {factors} would make such, and the given twin's were held" if factors else ""
+    """Structure without a name in words, part by part."""
+    return [structure_words(structure) for structure in answer["unexplained"]["structure"]]
 
 
 def held_fixed(answer: Mapping[str, Any]) -> bool:
-    """Whether the factors are those of a given twin, which only its zero may leave."""
+    """Whether the factors are those of a given twin, which only the zero and what has changed may leave."""
     return bool(answer["sweep"].get("held_against") == "given twin")
 
 
@@ -266,7 +270,8 @@ def verdict_words(answer: Mapping[str, Any]) -> str:
     like = "; ".join(filter(None, (lack_words(answer), likeness_words(answer))))
     names = {cause["name"] for cause in answer["causes"]}
     rest = " Part of that is structure without a name." if len(names) > 1 and "unnamed" in names else ""
-    return f"{_gain_words(answer)}{f'; {like}' if like else ''}.{rest}{cut_words(answer)}"
+    said = f"{_gain_words(answer)}{f'; {like}' if like else ''}.{rest}{cut_words(answer)}"
+    return f"{other_device_words(answer)}{said}"
 
 
 def cut_words(answer: Mapping[str, Any]) -> str:
@@ -316,7 +321,7 @@ def likeness_words(answer: Mapping[str, Any]) -> str:
 def _gain_words(answer: Mapping[str, Any]) -> str:
     if answer["verdict"] == "adequate":
         return "The baseline is adequate: nothing else stands out of the noise"
-    if not answer["causes"]:
+    if not extends(answer):
         return "No cause was found" if answer["verdict"] == "stopped" else _UNEXPLAINED
     closer = closer_words(answer)
     if answer["verdict"] == "unnamed":
@@ -326,7 +331,8 @@ def _gain_words(answer: Mapping[str, Any]) -> str:
 
 def closer_words(answer: Mapping[str, Any]) -> str:
     """How much closer the extended twin is, or why that is no figure."""
-    if all(cause["heldout_rms_deg_before"] == cause["heldout_rms_deg_after"] for cause in answer["causes"]):
+    steps = (*answer["changed"], *answer["causes"])
+    if all(step["heldout_rms_deg_before"] == step["heldout_rms_deg_after"] for step in steps):
         # Single readings and scatter are no part of what a twin predicts for the mean.
         return "It lies in single readings or in their scatter, so that their mean is predicted no better"
     gain = answer["extended"]["gain"]

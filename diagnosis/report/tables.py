@@ -6,8 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from typing import Any
 
+from diagnosis.report.change_words import change_line, change_name, change_rivals_words
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
-from diagnosis.report.statements import factor_rows, not_visible
+from diagnosis.report.statements import after_head, factor_rows, held_words, not_visible
 from diagnosis.report.wording import (
     chance,
     figure,
@@ -73,13 +74,29 @@ def factors(answer: Mapping[str, Any]) -> str:
     for key, text in LABELS.items():
         cells = [cell for parameters in several for cell in _with_interval(parameters[key], SCALES[key])]
         rows.append([escape(text), *cells, escape(UNITS[key]), escape(flags[key])])
-    heads = ["factor", "before", "95 % interval", "with the causes", "95 % interval"][: 1 + 2 * len(several)]
+    heads = ["factor", "before", "95 % interval", after_head(answer), "95 % interval"][: 1 + 2 * len(several)]
     return table([*heads, "unit", ""], rows, numbers=range(1, len(heads)))
 
 
 def _with_interval(parameter: Mapping[str, Any], scale: float) -> tuple[str, str]:
     """The cells of a parameter's value and of its interval."""
     return number(parameter["value"], figure(parameter, scale)[0]), _interval(parameter, scale)
+
+
+def changes(changed: Sequence[Mapping[str, Any]]) -> str:
+    """What has changed of a given twin, with the gain of each change."""
+    rows = [
+        [
+            f'<span class="name">{escape(change_name(change))}</span>',
+            f"{number(change['was'])} → {number(change['is'])} {escape(unit_shown(change['unit']))}",
+            f"{escape(minus(change_line(change)))}; {escape(change_rivals_words(change))}",
+            escape(held_words(change).replace("->", "→")),
+            number(change["p"], chance(change["p"])),
+        ]
+        for change in changed
+    ]
+    heads = ("parameter", "was → is", "", "held-out RMS / deg", "chance of a false alarm")
+    return table(heads, rows, numbers=(1, 3, 4))
 
 
 def summary(causes: Sequence[Mapping[str, Any]]) -> str:

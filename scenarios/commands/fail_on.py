@@ -37,7 +37,7 @@ def raise_found(words: Iterable[str], found: Mapping[str, str]) -> None:
 
 # ---- what the answers hold --------------------------------------------------------------------------------------
 
-EXPLAIN = ("cause", "unexplained", "rejected")
+EXPLAIN = ("cause", "unexplained", "changed", "other-device", "rejected")
 """Beside these the name of any cause."""
 DIAGNOSE = ("undetermined", "gross-errors", "rejected")
 MONITOR = ("drift",)
@@ -59,6 +59,10 @@ def in_explanation(answer: Mapping[str, Any]) -> dict[str, str]:
         found["unexplained"] = "structure without a name"
     elif answer.get("misfits"):
         found["unexplained"] = f"held against {answer['misfits'][0]['against']}, {answer['misfits'][0]['what']}"
+    if answer["changed"]:
+        found["changed"] = ", ".join(change["parameter"] for change in answer["changed"])
+    if answer["other_device"]:
+        found["other-device"] = "the twin is another device's"
     return found | _rejected(answer["sweep"]["name"], answer["sweep"]["rejected"])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -53,6 +54,23 @@ def unfitted(observations: Observations, start: Chain, settings: DiscoverySettin
 def baseline_fit(fit: Fit) -> Fit:
     """The paper's error model, all six factors free."""
     return solve(evaluate(awake(fit.chain), BASELINE, fit.observations, fit.weighting))
+
+
+def senses_of_angles(observations: Observations) -> int:
+    """Whether the readings count with the reference (1) or against it (-1)."""
+    reference, measured = observations.motion.shaft_rad, observations.measured
+    same, other = (abs(np.mean(np.exp(1j * (measured - sign * reference)))) for sign in (1.0, -1.0))
+    return 1 if same >= other else -1
+
+
+def counted_alike(twin: Chain, observations: Observations, senses: tuple[int, int] | None) -> Chain:
+    """A given twin as the sweep counts: its output turned round where that alone agrees with the readings.
+
+    ``senses`` are (s, h) where the channels say them: a twin of angles alone may be the mirrored one of the pair.
+    """
+    slope = senses_of_angles(observations) if senses is None else senses[0] * senses[1]
+    turned = replace(twin, output_sense=slope * twin.sensor_sense)
+    return turned if senses is None or senses[0] == turned.sensor_sense else turned.mirrored()
 
 
 def fit_of_given(fit: Fit) -> Fit:

@@ -8,7 +8,6 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, evaluate, solve
 from twin.angles import TAU, Array, IntArray, wrap
-from twin.catalogue import base_name
 from twin.effect import BoolArray
 
 
@@ -41,7 +40,7 @@ def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray) -> list[Ar
 def held_out_residual(fit: Fit, keys: Sequence[str], present: Collection[str], fold: IntArray) -> Array:
     """Residual (n,) [rad] on held-out rows of the baseline with those of the causes ``keys`` that are present."""
     use = fit.observations.usable
-    base_free = [f for f in fit.free if base_name(f.key) not in {base_name(k) for k in keys}] or list(BASELINE)
+    base_free = [f for f in fit.free if f.key not in keys] or list(BASELINE)
     free = (*base_free, *(f for f in fit.free if f.key in present))
     chain = fit.chain.without(*(key for key in keys if key not in present))
     residual = np.full(len(fit.observations), np.nan)

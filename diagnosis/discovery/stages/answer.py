@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from diagnosis.discovery.finding import Finding, merge
 from diagnosis.discovery.fitting.observations import of_readings
+from diagnosis.discovery.fitting.own_parameters import set_back
 from diagnosis.discovery.proof.cross_validation import held_out_residual, rms_deg
 from diagnosis.discovery.state import State
 from twin.angles import Array
@@ -17,16 +18,33 @@ from twin.catalogue import find
 def answer(state: State) -> State:
     """Merge instances of one effect, and give every entry the held-out RMS before and after it.
 
-    The figures chain from the baseline to the extended twin, all on the same rows and of single readings: what is
-    before an entry is after the one above it. Causes of single readings and of the scatter change nothing there.
+    The figures chain from the baseline, over what has changed of a given twin, to the extended twin, all on the same
+    rows and of single readings: what is before an entry is after the one above it. Causes of single readings and of the
+    scatter change nothing there.
     """
     entries = merge(state.findings)
-    held = _chained(state, entries)
+    held = [*_before_changes(state), *_chained(state, entries)]
     observations = state.fit.observations
     figures = [of_readings(rms_deg(residual, observations.usable), observations) for residual in held]
-    pairs = itertools.pairwise(figures)
-    causes = [replace(e, before_deg=b, after_deg=a) for e, (b, a) in zip(entries, pairs, strict=True)]
-    return state.with_(causes=tuple(causes), held=tuple(held))
+    pairs = list(itertools.pairwise(figures))
+    count = len(state.changed)
+    changed = [replace(c, before_deg=b, after_deg=a) for c, (b, a) in zip(state.changed, pairs[:count], strict=True)]
+    causes = [replace(e, before_deg=b, after_deg=a) for e, (b, a) in zip(entries, pairs[count:], strict=True)]
+    return state.with_(causes=tuple(causes), changed=tuple(changed), held=tuple(held))
+
+
+def _before_changes(state: State) -> list[Array]:
+    """Held-out residuals (n,) [rad] of a given twin as it is, then with its changes but the last, one by one."""
+    if not state.changed or state.given is None:
+        return []
+    if state.fold is None:
+        return [state.held_out[0]] * len(state.changed)
+    held = []
+    for count in range(len(state.changed)):
+        later = [change.free for change in state.changed[count:]]
+        before = set_back(state.fit, later, state.given)
+        held.append(held_out_residual(before, state.keys, (), state.fold))
+    return held
 
 
 def _chained(state: State, entries: Sequence[Finding]) -> list[Array]:

@@ -16,7 +16,7 @@ def stepwise(state: State) -> State:
     """Search for causes in the mean, from those that the joint fit holds already."""
     kept_out = state.touched
     found = None
-    if not state.keys:
+    if not state.keys and state.given is None:
         state = state.with_(baseline=state.fit)
 
     def tell(so_far: Found) -> None:

@@ -1,0 +1,115 @@
+"""Changes: which of a given twin's own parameters have moved; all others go back to what they were."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from diagnosis.discovery.finding import Finding
+from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.own_parameters import set_back
+from diagnosis.discovery.proof.changes import TWIN_VARIANCE, Change, Differences, another_device
+from diagnosis.discovery.search.likelihood_ratio import add
+from diagnosis.discovery.search.rivals import judge
+from diagnosis.discovery.search.screening import Base, Candidate, screen
+from diagnosis.discovery.state import State
+from twin.catalogue import unnamed
+from twin.effect import Effect
+
+
+def changes(state: State) -> State:
+    """Hold what has not moved at the twin's values, and name what has, with all that would do as well.
+
+    A new cause takes the place of several parameters that have moved where it does the same with fewer.
+    """
+    if state.given is None or not state.own:
+        return state
+    twin, full = state.given, state.fit
+    offered = _named(state)
+    told = Differences.of(full, twin, state.own, effects=len(offered))
+    found = told.changes(full, twin)
+    other = another_device(full, told.free, found) or _counts_otherwise(state)
+    fit = _with(state, found)
+    if found and not other:
+        # Of another device everything is another value: no single cause would do the same.
+        cause = _instead(state, found, fit, told.price)
+        if cause is not None:
+            return cause
+        found = _with_rivals(state, found, fit, told.same)
+    return state.with_(fit, changed=found, other_device=other, held=())
+
+
+def _counts_otherwise(state: State) -> bool:
+    """Whether the readings count the other way than the twin that was handed in."""
+    start, given = state.start, state.given
+    return given is not None and start.sensor_sense * start.output_sense != given.sensor_sense * given.output_sense
+
+
+def _named(state: State) -> tuple[Effect, ...]:
+    """Effects with a name that may stand in the place of a change."""
+    provides = state.fit.observations.motion.provides
+    present = {*state.keys}
+    return tuple(
+        effect
+        for effect in state.searched
+        if effect.visible_in(provides) and not unnamed(effect.name) and effect.name not in present
+    )
+
+
+def _with(state: State, moved: Iterable[Change]) -> Fit:
+    """The fit in which these alone of the twin's parameters may be others than the twin's."""
+    assert state.given is not None
+    free = {change.free for change in moved}
+    return set_back(state.fit, [one for one in state.own if one not in free], state.given)
+
+
+def _squares(state: State, fit: Fit) -> float:
+    """Chi-squared of a fit by the noise of the one in which everything is free, as differences are counted."""
+    full, _ = state.fit.whitened()
+    left, _ = fit.whitened()
+    dof = max(state.fit.rows * state.fit.observations.observables - len(state.fit.free), 1)
+    return float(left @ left) / (float(full @ full) / dof) / TWIN_VARIANCE
+
+
+def _contenders(state: State, without: Fit, gain: float) -> list[Candidate]:
+    """Candidates that may do as well as changes that gain so much, from the fit without these."""
+    base = Base.of(without)
+    share = state.settings.rival_share
+    return [candidate for candidate in screen(base, _named(state)) if candidate.gain > share * min(gain, base.dof)]
+
+
+def _instead(state: State, found: Sequence[Change], fit: Fit, price: float) -> State | None:
+    """The state with a new cause in the place of several changes, where it does the same with fewer parameters."""
+    if len(found) < 2:
+        return None
+    without = _with(state, ())
+    with_changes = _squares(state, fit)
+    gain = _squares(state, without) - with_changes
+    for candidate in _contenders(state, without, gain):
+        trial, key = add(without, candidate)
+        worth = _squares(state, trial) + price * candidate.terms
+        if worth < with_changes + price * len(found) - 2.0 * state.settings.swap_log_odds:
+            judged = judge(trial, key, _named(state), [*state.keys, key])
+            family = judged.log_p + float(np.log(max(len(_named(state)), 1)))
+            finding = Finding((key,), judged.log_p, judged.gain, family, judged.rivals)
+            return state.with_(trial, keys=(*state.keys, key), findings=(finding, *state.findings), held=())
+    return None
+
+
+def _with_rivals(state: State, found: Sequence[Change], fit: Fit, same: float) -> tuple[Change, ...]:
+    """The changes with the new causes that would do as well: in the place of each, or of all together."""
+    with_changes = _squares(state, fit)
+    groups: list[tuple[Change, ...]] = [(change,) for change in found]
+    if len(found) > 1:
+        groups.append(tuple(found))
+    rivals: dict[str, list[str]] = {}
+    for group in groups:
+        without = _with(state, [change for change in found if change not in group])
+        gain = _squares(state, without) - with_changes
+        for candidate in _contenders(state, without, gain):
+            trial, _ = add(without, candidate)
+            if _squares(state, trial) < with_changes + same:
+                for change in group:
+                    rivals.setdefault(change.name, []).append(candidate.effect.name)
+    return tuple(change.with_rivals(rivals.get(change.name, ())) for change in found)

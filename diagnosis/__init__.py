@@ -13,6 +13,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from diagnosis.changed_parameter import ChangedParameter
 from diagnosis.diagnose import diagnose, diagnose_many
 from diagnosis.diagnosed import Diagnoses, Diagnosis
 from diagnosis.explain import OwnEffects, explain
@@ -39,6 +40,7 @@ _LOADED_WHEN_USED = {
 __all__ = [
     "BaselineFit",
     "Cause",
+    "ChangedParameter",
     "Columns",
     "Diagnoses",
     "Diagnosis",

@@ -49,9 +49,9 @@ def explain(
         ``reference_deg`` and ``measured_deg``, and where recorded ``time_s``, ``direction``, ``speed_rpm``, ``turn``,
         ``temperature_c``, ``vx`` and ``vy``; one value for each reading, in the order in which they were taken.
     twin : str, os.PathLike, or Chain, optional
-        Hold the sweep against this twin as it is, instead of the paper's error model: a twin file (TOML), the name of
-        a preset, or a :class:`twin.Chain` such as the ``extended`` one of another recording. Only its zeros are
-        fitted.
+        Hold the sweep against this twin of the device instead of the paper's error model: a twin file (TOML), the name
+        of a preset, or a :class:`twin.Chain` such as the ``extended`` one of another recording. Which of its own
+        parameters have moved is asked first, then which causes it lacks.
     mounting : Mounting, optional
         The magnet and its air gap in whose field a misplacement and a stray field are counted. If not given, a cylinder
         of 6 mm x 2.5 mm at 1.5 mm; a twin brings its own.

@@ -9,6 +9,8 @@ from functools import cached_property
 from math import isnan
 from typing import TYPE_CHECKING, Any
 
+from diagnosis.changed_parameter import ChangedParameter
+
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
@@ -133,7 +135,7 @@ class Explanation:
         from diagnosis.report.wording import plain
 
         before, extended = self._answer["baseline"]["heldout_rms_deg"], self._answer["extended"]
-        names = ", ".join(cause.name for cause in self.causes)
+        names = ", ".join([*(change.parameter for change in self.changed), *(cause.name for cause in self.causes)])
         held = "nothing held out" if before is None else f"held-out RMS {plain(before)} deg"
         if names and extended["gain"] is not None:
             gain = f"{plain(extended['gain'])} times closer"
@@ -165,6 +167,16 @@ class Explanation:
     def causes(self) -> tuple[Cause, ...]:
         """What the simulation gets wrong, strongest first; empty where nothing stands out of the noise."""
         return tuple(Cause.of(entry) for entry in self._answer["causes"])
+
+    @cached_property
+    def changed(self) -> tuple[ChangedParameter, ...]:
+        """What has changed of the given twin, strongest first; empty without one, and where nothing has."""
+        return tuple(ChangedParameter.of(entry) for entry in self._answer["changed"])
+
+    @property
+    def other_device(self) -> bool:
+        """Whether the given twin is another device's."""
+        return self.discovery.other_device
 
     @property
     def baseline(self) -> Chain:
@@ -213,7 +225,7 @@ class Explanation:
         return deepcopy(self._answer)
 
     def to_dataframe(self) -> pd.DataFrame:
-        """The causes as a table: one row each, and a column for every figure.
+        """The causes as a table: one row each, and a column for every figure; ahead of them what has changed of a twin.
 
         Returns
         -------
@@ -221,6 +233,7 @@ class Explanation:
             Columns ``sweep``, ``cause``, ``stage``, ``false_alarm_probability``, ``heldout_rms_deg_before``,
             ``heldout_rms_deg_after``, ``indistinguishable_from`` (names, parted by commas), ``to_tell_apart``; then
             each parameter with the ends of its 95 % interval, such as ``lag_deg``, ``lag_deg_low``, ``lag_deg_high``.
+            A change has its parameter as the ``cause``, such as ``offset.x_percent``, and its old value as ``was``.
             Tables of several sweeps can be put together by ``pandas.concat``.
 
         Raises
@@ -230,7 +243,8 @@ class Explanation:
         """
         from diagnosis.report.frames import data_frame
 
-        return data_frame([_row(self.sweep.name, cause) for cause in self.causes], columns=_COLUMNS)
+        changed = [_change_row(self.sweep.name, entry) for entry in self._answer["changed"]]
+        return data_frame([*changed, *(_row(self.sweep.name, cause) for cause in self.causes)], columns=_COLUMNS)
 
     def plot(self) -> Figure:
         """Draw the error over the reference angle: as measured, left by the baseline, left by the extended twin.
@@ -289,6 +303,15 @@ def _row(sweep: str, cause: Cause) -> dict[str, Any]:
     for name, estimate in cause.parameters.items():
         row |= {name: estimate.value, f"{name}_low": estimate.low, f"{name}_high": estimate.high}
     return row
+
+
+def _change_row(sweep: str, entry: Mapping[str, Any]) -> dict[str, Any]:
+    """The row of something that has changed of a given twin."""
+    change, name = ChangedParameter.of(entry), entry["parameter"].partition(".")[2]
+    row: dict[str, Any] = {"sweep": sweep, "cause": change.parameter, "stage": entry["stage"]}
+    row |= {key: getattr(change, key) for key in _COLUMNS[3:6]}
+    row |= {"indistinguishable_from": ", ".join(change.indistinguishable_from), "to_tell_apart": ""}
+    return row | {"was": change.was, name: change.value, f"{name}_low": change.low, f"{name}_high": change.high}
 
 
 def _number(value: float | None, where_none: float = float("nan")) -> float:

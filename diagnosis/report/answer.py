@@ -188,18 +188,19 @@ def standard_deviations(fit: Fit) -> Deviations:
 def _change(found: Discovery, change: Change) -> dict[str, Any]:
     """One parameter of a given twin that has moved: what it was, and is with its 95 % interval."""
     fit, free = found.fit, change.free
-    param = find(free.key, fit.chain.effects).params[free.name]
+    effect = find(free.key, fit.chain.effects)
     value = float(fit.chain.values[free.key][free.name])
     half = _T95 * standard_deviations(fit).get((free.key, free.name), 0.0)
     return {
         "parameter": change.name,
         "effect": base_name(free.key),
+        "stage": effect.stage,
         "owner": change.owner,
         "was": change.was,
         "is": value,
         "low": value - half,
         "high": value + half,
-        "unit": param.unit,
+        "unit": effect.params[free.name].unit,
         "p": change.false_alarm_probability,
         "heldout_rms_deg_before": change.before_deg,
         "heldout_rms_deg_after": change.after_deg,

@@ -28,9 +28,11 @@ def change_line(change: Mapping[str, Any]) -> str:
     return f"{figures}; it belongs to the {change['owner']}"
 
 
-def change_rivals_words(change: Mapping[str, Any]) -> str:
-    """What a change cannot be told from."""
+def change_rivals_words(answer: Mapping[str, Any], change: Mapping[str, Any]) -> str:
+    """What a change cannot be told from; of another device's twin nobody has looked for it."""
     rivals = change["indistinguishable_from"]
+    if not rivals and answer["other_device"]:
+        return ""
     return f"cannot be told from: {', '.join(rivals) if rivals else 'nothing else that was searched'}"
 
 

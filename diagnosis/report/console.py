@@ -132,7 +132,7 @@ def _changes(answer: Mapping[str, Any], *, width: int) -> RenderableType | None:
             _Entry(
                 change_name(change),
                 _figures(change, change["p"]),
-                [change_line(change), change_rivals_words(change)],
+                [*filter(None, (change_line(change), change_rivals_words(answer, change)))],
             )
             for change in answer["changed"]
         ],

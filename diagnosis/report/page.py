@@ -136,7 +136,7 @@ def _changes(answer: Mapping[str, Any]) -> str:
     if not statements.held_fixed(answer):
         return ""
     words = f"<p>{statements.sentence(_text(statements.moved_words(answer)))}</p>"
-    told = tables.changes(answer["changed"]) if answer["changed"] else ""
+    told = tables.changes(answer) if answer["changed"] else ""
     return f"<h2>What has changed since the twin</h2>{told}{words}"
 
 

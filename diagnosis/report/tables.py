@@ -83,17 +83,17 @@ def _with_interval(parameter: Mapping[str, Any], scale: float) -> tuple[str, str
     return number(parameter["value"], figure(parameter, scale)[0]), _interval(parameter, scale)
 
 
-def changes(changed: Sequence[Mapping[str, Any]]) -> str:
+def changes(answer: Mapping[str, Any]) -> str:
     """What has changed of a given twin, with the gain of each change."""
     rows = [
         [
             f'<span class="name">{escape(change_name(change))}</span>',
             f"{number(change['was'])} → {number(change['is'])} {escape(unit_shown(change['unit']))}",
-            f"{escape(minus(change_line(change)))}; {escape(change_rivals_words(change))}",
+            "; ".join(escape(minus(w)) for w in (change_line(change), change_rivals_words(answer, change)) if w),
             escape(held_words(change).replace("->", "→")),
             number(change["p"], chance(change["p"])),
         ]
-        for change in changed
+        for change in answer["changed"]
     ]
     heads = ("parameter", "was → is", "", "held-out RMS / deg", "chance of a false alarm")
     return table(heads, rows, numbers=(1, 3, 4))

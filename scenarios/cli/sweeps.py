@@ -26,7 +26,9 @@ def explain(
     sweep: Annotated[Path, typer.Argument(metavar="SWEEP", help="Measured sweep: .csv, .csv.gz or .parquet.")],
     twin: Annotated[
         str | None,
-        typer.Option(metavar="TWIN", help="Hold the sweep against this twin as it is: a TOML file or a preset."),
+        typer.Option(
+            metavar="TWIN", help="Ask what has changed since this twin of the device: a TOML file or a preset."
+        ),
     ] = None,
     magnet: MagnetText = None,
     air_gap: Annotated[str | None, typer.Option(metavar="mm", help="Air gap in mm.")] = None,

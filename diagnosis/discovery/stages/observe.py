@@ -28,7 +28,7 @@ def observe(state: State) -> State:
 
 def _check_enough(state: State, rows: int) -> None:
     """Raise SweepError where nothing could be seen in so few rows, so that finding nothing would say nothing."""
-    fitted = 1 if state.given is not None else len(BASELINE)
+    fitted = len(BASELINE)
     fewest = state.settings.fewest_rows(fitted, state.family("mean"))
     if rows < fewest:
         repeated = "" if rows == len(state.sweep) else f" at {rows} angles: what is repeated in place counts once"

@@ -13,6 +13,7 @@ from scipy.special import ndtri
 from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.answer import answer
+from diagnosis.discovery.stages.changes import changes
 from diagnosis.discovery.stages.final_fit import final_fit
 from diagnosis.discovery.stages.flipped_bits import flipped_bits
 from diagnosis.discovery.stages.further_measurements import further_measurements
@@ -20,6 +21,8 @@ from diagnosis.discovery.stages.grid_cause import grid_cause
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit
 from diagnosis.discovery.stages.observe import observe
+from diagnosis.discovery.stages.own_parameters import own_parameters
+from diagnosis.discovery.stages.own_shapes import own_shapes
 from diagnosis.discovery.stages.predictive_check import predictive_check
 from diagnosis.discovery.stages.quantisation import quantisation
 from diagnosis.discovery.stages.repeated_frames import repeated_frames
@@ -41,12 +44,13 @@ from twin.angles import Array
 from twin.chain import Chain
 from twin.sweep import Sweep
 
-LOOP: tuple[Stage, ...] = (repeated_frames, variance, stepwise, sense_check, spread)
+LOOP: tuple[Stage, ...] = (repeated_frames, variance, stepwise, sense_check, own_shapes, spread)
 """The stages that the pipeline repeats until none of them has anything more to say."""
 ONCE: tuple[Stage, ...] = (
-    *(observe, initial_fit, row_masks, quantisation),
+    *(observe, initial_fit, row_masks, quantisation, own_parameters),
     *LOOP,
-    *(held_out_selection, flipped_bits, grid_cause, final_fit, answer, further_measurements, predictive_check),
+    *(held_out_selection, flipped_bits, grid_cause, changes, final_fit, answer),
+    *(further_measurements, predictive_check),
 )
 """Every stage, each once."""
 

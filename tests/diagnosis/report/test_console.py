@@ -19,7 +19,6 @@ from diagnosis.report.statements import (
     percent_shown,
     senses_words,
     single_rows_words,
-    structure_lines,
     verdict_words,
 )
 from diagnosis.report.wording import chance, figure, instances, label, plain, structure_words
@@ -63,6 +62,8 @@ def an_answer(**changes: Any) -> dict[str, Any]:
         "to_tell_apart": "",
     }
     return {
+        "changed": [],
+        "other_device": False,
         "sweep": {
             "name": "bench.csv",
             "rows": 2880,
@@ -195,32 +196,37 @@ def test_a_predictive_check_that_was_not_made_is_said_not_to_be(why: dict[str, A
     assert f"whether simulated sweeps match was {said}" in " ".join(shown(answer, 100).split())
 
 
-def test_beside_a_given_twin_it_is_said_what_was_held_and_which_factors_would_make_such_an_order() -> None:
+def test_beside_a_given_twin_it_is_said_what_has_changed_and_what_was_held() -> None:
     answer = an_answer()
     answer["sweep"]["held_against"] = "given twin"
     for part in (answer["baseline"], answer["extended"]):
         exact = {key: {**told, "low": told["value"], "high": told["value"]} for key, told in part["parameters"].items()}
         part["parameters"] = {**exact, "zero_deg": part["parameters"]["zero_deg"]}
     answer["extended"]["moved"] = []
-    orders = (
-        (2.0, "gain ratio or phase"),
-        (0.9997, "offset x or y"),
-        (3.0, "quadratic term"),
-        (13.0, None),
-        (1.5, None),
-    )
-    answer["unexplained"]["structure"] = [
-        {"kind": "order", "order": order, "amplitude_deg": 0.05, "phase_deg": 1.0} for order, _ in orders
-    ]
     words = " ".join(shown(answer, 100).split())
-    assert "The given twin's factors were held as they are, its zero alone was fitted" in words
+    assert "Nothing of the given twin has changed beyond chance; its zero alone was fitted" in words
     assert "stays within its interval" not in words
     assert [row.flag for row in factor_rows(answer)] == ["held"] * 5 + [""]
-    lines = structure_lines(answer)
-    for line, (_, factor) in zip(lines, orders, strict=True):
-        assert (f"; another {factor} would make such" in line) == (factor is not None)
-    answer["sweep"]["held_against"] = "error model"
-    assert not any("would make such" in line for line in structure_lines(answer))
+    figures = {"is": 1.75, "low": 1.74, "high": 1.76, "unit": "%", "p": 1e-9}
+    change = {"parameter": "offset.x_percent", "effect": "offset", "owner": "device", "was": 0.7512, **figures}
+    change |= {"heldout_rms_deg_before": 0.45, "heldout_rms_deg_after": 0.0196, "indistinguishable_from": []}
+    lag = {**change, "parameter": "hysteresis.lag_deg", "effect": "hysteresis", "unit": "deg"}
+    answer["changed"] = [change, {**lag, "indistinguishable_from": ["backlash"]}]
+    for width in (100, 44):
+        words = " ".join(shown(answer, width).split())
+        assert "What has changed since the twin" in words
+        assert "was 0.751, is 1.750 ±0.010 %; it belongs to the device" in words
+        assert "hysteresis lag" in words
+        assert "cannot be told from: backlash" in words
+        assert "All else of the given twin has not changed beyond chance, and stays as it was" in words
+    assert "not that device" not in words
+    answer["other_device"] = True
+    words = " ".join(shown(answer, 100).split())
+    assert "This is not that device's twin: 2 parameters that belong to a device are others." in words
+    # Of another device all is other: nobody has looked for what else would do the same.
+    assert "cannot be told from: nothing" not in words.partition("What the simulation")[0]
+    answer["changed"] = []
+    assert "it counts the other way" in " ".join(shown(answer, 100).split())
 
 
 def test_a_pipe_gets_no_colour_codes() -> None:

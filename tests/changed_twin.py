@@ -86,6 +86,12 @@ def table(outcomes: Sequence[Outcome]) -> Table:
     return shown
 
 
+def _wrong(one: Outcome) -> bool:
+    """Whether anything was said that is not so, or left unsaid."""
+    missed = one.kind in KINDS and not one.named
+    return missed or bool(one.extra and one.kind != ANOTHER) or one.other_device != (one.kind == ANOTHER)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
     parser = argparse.ArgumentParser(prog="python -m tests.changed_twin", description=__doc__.splitlines()[0])
@@ -99,14 +105,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     kinds = [one.strip() for one in options.only.split(",") if one.strip()] or [*KINDS, NOTHING, ANOTHER]
     todo = [(kind, number) for kind in kinds for number in range(options.first, options.first + options.draws)]
+    console, outcomes = Console(width=120), []
     with ProcessPoolExecutor(options.jobs, mp_context=get_context("spawn")) as pool:
-        outcomes = list(pool.map(partial(outcome, seed=options.seed), *zip(*todo, strict=True)))
-    console = Console(width=120)
+        for one in pool.map(partial(outcome, seed=options.seed), *zip(*todo, strict=True)):
+            outcomes.append(one)
+            if _wrong(one):
+                console.print(f"{one.kind} {one.way} number {one.number}: {', '.join(one.said) or 'nothing'}")
     console.print(table(outcomes))
-    for one in outcomes:
-        wrong = (one.kind in KINDS and not one.named) or (one.extra and one.kind != ANOTHER)
-        if wrong or one.other_device != (one.kind == ANOTHER):
-            console.print(f"{one.kind} {one.way} number {one.number}: {', '.join(one.said) or 'nothing'}")
     if options.output is not None:
         options.output.write_text(json.dumps([asdict(one) for one in outcomes], indent=1) + "\n", encoding="utf-8")
     return 0

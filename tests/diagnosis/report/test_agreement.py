@@ -206,11 +206,11 @@ def check_counts(sweep: dict[str, Any]) -> None:
 
 
 def check_chain(answer: dict[str, Any]) -> None:
-    """The gains of the causes chain from the baseline to the extended twin."""
+    """The gains of what has changed and of the causes chain from the baseline to the extended twin."""
     rms = answer["baseline"]["heldout_rms_deg"]
-    for cause in answer["causes"]:
-        assert cause["heldout_rms_deg_before"] == rms
-        rms = cause["heldout_rms_deg_after"]
+    for step in (*answer["changed"], *answer["causes"]):
+        assert step["heldout_rms_deg_before"] == rms
+        rms = step["heldout_rms_deg_after"]
     assert answer["extended"]["heldout_rms_deg"] == rms
 
 

@@ -37,8 +37,8 @@ PIPELINE: tuple[Stage, ...] = (
     observe,  # rows that count as independent angles; the grid of the output
     initial_fit,  # the paper's error model, or a given twin with its zeros free
     row_masks,  # single readings that stand alone are kept out of the fits
-    quantisation,  # stairs that the set of values shows
     own_parameters,  # strengths of a given twin are free, so that a cause is only what none of them can do
+    quantisation,  # stairs that the set of values shows
     until_still(
         repeated_frames,  # readings that repeat the one before
         variance,  # rows that are beyond doubt louder weigh less

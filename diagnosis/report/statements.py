@@ -45,7 +45,7 @@ _ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two spe
 """A want that goes without saying where the second one is wanted too."""
 
 _UNEXPLAINED = "Structure is there that no cause of the catalogue explains"
-UNCHANGED = "Nothing of the given twin has changed beyond chance; its zero alone was fitted"
+UNCHANGED = "Nothing of the given twin has changed beyond chance, and all of it stays as it was"
 OTHERS_HELD = "All else of the given twin has not changed beyond chance, and stays as it was"
 _SEARCHED = "of these {used} were searched, in stretches spread over the record"
 

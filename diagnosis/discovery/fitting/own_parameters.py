@@ -70,9 +70,18 @@ def _told(fit: Fit, most: int) -> tuple[Free, ...]:
 
 
 def tested(fit: Fit, before: Fit) -> tuple[Free, ...]:
-    """The parameters free beyond those before that are asked whether they have moved: what is no recording's own."""
+    """The parameters free beyond those before that are asked whether they have moved."""
     added = (free for free in fit.free if free not in before.free)
-    return tuple(free for free in added if find(free.key, fit.chain.effects).owner(free.name) != "recording")
+    return tuple(free for free in added if not is_any(find(free.key, fit.chain.effects), free.name))
+
+
+def is_any(effect: Effect, name: str) -> bool:
+    """Whether another recording of the same device may have any value of a parameter, so that it is no change.
+
+    So what belongs to the recording, and where something sits that turns when sensor or magnet is put back.
+    """
+    owner = effect.owner(name)
+    return owner == "recording" or (owner == "mounting" and effect.params[name].role == "phase")
 
 
 def set_back(fit: Fit, free: Sequence[Free], twin: Chain) -> Fit:

@@ -14,7 +14,7 @@ from diagnosis.discovery.search.likelihood_ratio import add
 from diagnosis.discovery.search.rivals import judge
 from diagnosis.discovery.search.screening import Base, Candidate, screen
 from diagnosis.discovery.state import State
-from twin.catalogue import unnamed
+from twin.catalogue import base_name, unnamed
 from twin.effect import Effect
 
 
@@ -49,7 +49,7 @@ def _counts_otherwise(state: State) -> bool:
 def _named(state: State) -> tuple[Effect, ...]:
     """Effects with a name that may stand in the place of a change."""
     provides = state.fit.observations.motion.provides
-    present = {*state.keys}
+    present = {*state.keys, *(base_name(free.key) for free in state.own)}
     return tuple(
         effect
         for effect in state.searched

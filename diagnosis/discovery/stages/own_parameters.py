@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
-from diagnosis.discovery.fitting.own_parameters import own_free, tested
+from diagnosis.discovery.fitting.own_parameters import is_any, own_free, tested
 from diagnosis.discovery.search.likelihood_ratio import take_out
 from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import Base, screen_one
@@ -26,11 +26,12 @@ def own_parameters(state: State) -> State:
         return state
     held = state.fit
     fit = own_free(held, tuple(state.given.values), shapes=False)
-    for key in [key for key in fit.chain.values if any(free.key == key for free in fit.free)]:
-        owners = {find(key, fit.chain.effects).owner(free.name) for free in fit.free if free.key == key}
-        if "recording" in owners and not any(free.key == key for free in held.free):
+    begun_before = {free.key for free in held.free}
+    for key in dict.fromkeys(free.key for free in fit.free if free.key not in begun_before):
+        effect, names = find(key, fit.chain.effects), [free.name for free in fit.free if free.key == key]
+        if any(is_any(effect, name) for name in names):
             fit = _afresh(fit, key)
-            if owners == {"recording"}:
+            if all(effect.owner(name) == "recording" for name in names):
                 fit = _borne_out(fit, key)
     return state.with_(fit, baseline=held, own=tested(fit, held))
 
@@ -39,7 +40,10 @@ def _afresh(fit: Fit, key: str) -> Fit:
     """The fit with one effect begun where this recording shows it best: its phase, frequency or instant."""
     effect = find(key, fit.chain.effects)
     was = fit.chain.values[key]
-    candidate = screen_one(Base.of(take_out(fit, key)), effect)
+    shapes = {name: float(was[name]) for name in effect.roles("shape") if name in was}
+    # An order is the effect's own; a frequency or an instant that belongs to the recording is looked for too.
+    kept = None if any(is_any(effect, name) for name in shapes) else [shapes]
+    candidate = screen_one(Base.of(take_out(fit, key)), effect, shapes=kept)
     if candidate is None:
         return fit
     begun = {**was, **effect.begin(candidate.values)}

@@ -47,7 +47,7 @@ from twin.sweep import Sweep
 LOOP: tuple[Stage, ...] = (repeated_frames, variance, stepwise, sense_check, own_shapes, spread)
 """The stages that the pipeline repeats until none of them has anything more to say."""
 ONCE: tuple[Stage, ...] = (
-    *(observe, initial_fit, row_masks, quantisation, own_parameters),
+    *(observe, initial_fit, row_masks, own_parameters, quantisation),
     *LOOP,
     *(held_out_selection, flipped_bits, grid_cause, changes, final_fit, answer),
     *(further_measurements, predictive_check),

@@ -41,9 +41,9 @@ class State:
     the raw rows (n_raw,) that single-reading causes have claimed; ``looked_at``, how many effects were searched for;
     ``fold`` (n,), the block in which each row was held out; ``held``, held-out residuals (n,) [rad] of the baseline and
     after each of ``keys``, and once there is an answer after each of ``causes``; ``causes``, the entries of
-    the answer; ``likeness``, the predictive check; ``lack``, what is left against repeated readings. Of a given twin also
-    ``own``, its parameters that are asked whether they have moved, ``changed``, those that have, and ``other_device``,
-    whether so many have that it is another's twin.
+    the answer; ``likeness``, the predictive check; ``lack``, what is left against repeated readings. Of a given twin
+    also ``own``, its parameters that are asked whether they have moved, ``changed``, those that have, and
+    ``other_device``, whether so many have that it is another's twin.
     """
 
     sweep: Sweep

@@ -7,7 +7,7 @@ import pytest
 from tests.changed_twin import outcome
 from tests.hidden.changed import ANOTHER, NOTHING
 
-PAIRS = (("offset_y", 0), ("hysteresis", 1), ("latency", 0))
+PAIRS = (("offset_y", 0), ("hysteresis", 4), ("latency", 0))
 """A factor, a cause of the twin that grows, and one that appears."""
 
 

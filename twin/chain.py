@@ -119,8 +119,9 @@ class Chain:
                     f"{key}.{name} must lie between {param.lower:g} and {param.upper:g} {param.unit}; "
                     f"found {value if np.ndim(value) else shown(value)}"
                 )
-        # What is not given of an effect that counts in the magnet's field is that magnet's, also of one to come.
-        rest = {} if effect.at_magnet is not None else effect.null()
+        # A field that is not given, of an effect that counts in the magnet's, is that magnet's: also of one to come.
+        own = () if effect.at_magnet is None else effect.follow_field
+        rest = {name: value for name, value in effect.null().items() if name not in own}
         merged = {**rest, **self.values.get(key, {}), **params}
         return replace(self, values={**self.values, key: merged})
 

@@ -7,7 +7,7 @@ twin leaves ideal shows as such: without a word length there are no codes.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from twin.catalogue import STAGES, output_grid
 from twin.chain import Chain, Step
 from twin.cordic.bit_true import Codes
 from twin.effect import BoolArray
-from twin.hall.spinning_current import spin
+from twin.hall.plates import expected_mT
 from twin.link.frames import (
     SPI_WORD_BITS,
     Bits,
@@ -90,7 +90,8 @@ def run(chain: Chain, motion: Motion, rng: np.random.Generator | None = None) ->
     data, whole = can_data(can)
     received, sound, _ = spi_words(data, bits)
     unspun = [
-        spin(field, plate, temp_c=motion.temperature_c).unspun_mT for field, plate in zip(vertical, plates, strict=True)
+        expected_mT(field, replace(plate, spun=False), motion.temperature_c)
+        for field, plate in zip(vertical, plates, strict=True)
     ]
     return Run(
         in_plane_mT=in_plane,

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from scenarios.commands.protocol import Protocol
-from twin.angles import wrap
+from twin.angles import Array, wrap
 from twin.chain import Chain
 from twin.concentrator.disk import Disk, vertical_mT
 from twin.cordic.bit_true import Cordic
 from twin.files import SCHEMA, TwinError, from_dict, to_dict
+from twin.hall import plates
 from twin.hall.plates import expected_mT
-from twin.hall.spinning_current import TYPICAL, Plate, residual_offset_mT, spin
+from twin.hall.spinning_current import TYPICAL, Plate, Spinning, residual_offset_mT, spin
 from twin.hardware import run
 from twin.limits import OutOfRangeError
 from twin.magnet.assembly import Assembly
@@ -203,6 +205,27 @@ def test_offsets_that_cancel_are_no_ideal_plate() -> None:
     plate = Plate(offset_uV=1000.0, amplifier_offset_uV=-1000.0, asymmetry=0.1, spun=False)
     assert not plate.ideal
     assert Parts(plate=plate).plates[0].spun is False
+
+
+def test_a_long_record_of_noisy_plates_is_computed_stretch_by_stretch(monkeypatch: pytest.MonkeyPatch) -> None:
+    chain, whole = described(disk=Disk(), plate=TYPICAL), len(TURN)
+    sizes: list[int] = []
+
+    def told(field_mT: Array, *args: Any, **more: Any) -> Spinning:
+        sizes.append(field_mT.size)
+        return spin(field_mT, *args, **more)
+
+    monkeypatch.setattr(plates, "spin", told)
+    together = chain.channels(TURN, np.random.default_rng(1))
+    assert sizes == [whole, whole]
+    sizes.clear()
+    monkeypatch.setattr(plates, "STRETCH", 4 * TYPICAL.samples * 100)
+    apart = chain.channels(TURN, np.random.default_rng(1))
+    assert max(sizes) == 100
+    assert sum(sizes) == 2 * whole
+    # The same plates, other noise: that of a reading is independent of its neighbours'.
+    steady = chain.channels(TURN)
+    assert np.std(apart - steady) == pytest.approx(np.std(together - steady), rel=5.0 / np.sqrt(4 * whole))
 
 
 def test_a_plate_without_a_disk_sees_the_field_as_it_is() -> None:

@@ -9,9 +9,12 @@ import numpy as np
 
 from twin.angles import Array
 from twin.effect import Effect, Parameters
-from twin.hall.spinning_current import Plate, Spinning, spin
+from twin.hall.spinning_current import PHASES, Plate, Spinning, spin
 from twin.motion import NOMINAL_C, Motion
 from twin.part import part, per_design
+
+STRETCH = 1 << 21
+"""Samples of the amplifier that are computed together: some 130 MB, and 65,536 readings of the usual plate."""
 
 
 @lru_cache(maxsize=64)
@@ -49,9 +52,14 @@ def _seen_mT(field_mT: Array, plate: Plate, temp_c: Array, rng: np.random.Genera
     """The output [mT] of one plate; only its noise needs the cycle phase by phase."""
     if rng is None or plate.white_nV == 0.0:
         return expected_mT(field_mT, plate, temp_c)
-    temps = np.broadcast_to(temp_c, field_mT.shape)
-    cycle = spin(field_mT.ravel(), plate, rng, temp_c=temps.ravel())
-    return plate_output_mT(cycle, plate).reshape(field_mT.shape)
+    temps = np.broadcast_to(temp_c, field_mT.shape).ravel()
+    flat, seen = field_mT.ravel(), np.empty(field_mT.size)
+    # Stretch by stretch, so that a long record asks for no more memory; the noise of each is drawn by itself.
+    together = max(STRETCH // (PHASES * plate.samples), 1)
+    for start in range(0, flat.size, together):
+        part = slice(start, start + together)
+        seen[part] = plate_output_mT(spin(flat[part], plate, rng, temp_c=temps[part]), plate)
+    return seen.reshape(field_mT.shape)
 
 
 def plate_output_mT(cycle: Spinning, plate: Plate) -> Array:

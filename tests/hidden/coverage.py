@@ -49,21 +49,24 @@ ANGLE_ONLY = frozenset(f"reference_ripple.{name}" for name in ("amplitude_percen
 
 
 def common(name: str, given: Mapping[str, Any], truth: Mapping[str, Any]) -> dict[str, float]:
-    """The true parameters of a cause in the answer's conventions; `given` are the answer's parameters of it."""
+    """The true parameters of a cause in the answer's conventions; `given` are the answer's parameters of it.
+
+    Not every parameter has a truth: physics that is no formula defines some of them alone.
+    """
     actual = {key: float(value) for key, value in truth["parameters"].get(name, {}).items()}
     frame = truth["frame"]
-    for key in IN_AMPLITUDES.get(name, ()):
+    for key in actual.keys() & IN_AMPLITUDES.get(name, ()):
         actual[key] /= frame["amplitude_x"]
-    if name == "offset_drift":
+    if "y_percent_per_K" in actual:
         actual["y_percent_per_K"] /= truth["baseline"]["gain_ratio"]
-    if name == "mains_pickup":
+    if "x_percent" in actual and name == "mains_pickup":
         along = sum(actual[key] * float(given[key]["value"]) for key in ("x_percent", "y_percent"))
         if along < 0.0:
             actual |= {"x_percent": -actual["x_percent"], "y_percent": -actual["y_percent"]}
             actual["phase_deg"] += 180.0
-    if name in ("mains_pickup", "reference_ripple"):
+    if "phase_deg" in actual and name in ("mains_pickup", "reference_ripple"):
         actual["phase_deg"] += 360.0 * actual["frequency_Hz"] * frame["first_time_s"]
-    if name == "bearing_wobble":
+    if "phase_deg" in actual and name == "bearing_wobble":
         actual["phase_deg"] -= actual["order"] * frame["first_reference_deg"]
     if name == "zero_drift" and "time_constant_s" in actual:
         actual["amplitude_deg"] *= -math.expm1(-frame["duration_s"] / actual["time_constant_s"])

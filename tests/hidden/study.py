@@ -30,6 +30,7 @@ from .coverage import held
 from .coverage import table as coverage_table
 from .generator import Hidden, draw
 from .physics.generator import draw as draw_physics
+from .physics.kind import Kind
 from .physics.kinds import KINDS
 from .physics.sets import PHYSICS, PhysicsJob, physics_jobs
 from .scoring import verdict
@@ -115,6 +116,11 @@ def noise_ratio(answer: Mapping[str, Any], truth: Mapping[str, Any]) -> float | 
     return None if rms is None else float(rms) / float(truth["floor_deg"])
 
 
+def foretold(kind: Kind) -> bool:
+    """Another recording has the same in it, and its mean shows it."""
+    return kind.outcome_repeats and not GRAINY & set(kind.answers[0])
+
+
 @dataclass(frozen=True)
 class Asked:
     """Who answers: "module:function" each."""
@@ -125,7 +131,7 @@ class Asked:
 
     def answer(self, job: Job | PhysicsJob, path: Path) -> tuple[Mapping[str, Any], float | None]:
         """The answer to the sweep at `path` and, where there is another recording, how well it is predicted."""
-        if not (self.predictor and isinstance(job, PhysicsJob) and KINDS[job.label].outcome_repeats):
+        if not (self.predictor and isinstance(job, PhysicsJob) and foretold(KINDS[job.label])):
             return load(self.answerer)(str(path)), None
         further, other = job.again().draw(), path.with_suffix(".further.csv")
         further.write_csv(other)

@@ -59,7 +59,7 @@ def stuck_in_sar(rng: np.random.Generator, setting: Setting) -> Planned:
     return Planned(
         Mechanism(convert=_sar(bits, weights, (bits - 1 - bit, level))),
         float(np.degrees(2**bit * 2 * FULL_SCALE / 2**bits)),
-        {"adc_stuck_bit": {"level": float(level)}},
+        {"adc_stuck_bit": {"level": float(level), "step_percent": 100.0 * 2**bit * 2 * FULL_SCALE / 2**bits}},
     )
 
 

@@ -77,7 +77,7 @@ NAMED: dict[str, Kind] = {
     "eccentric_disc": Kind(references.eccentric_disc, (("reference_eccentricity",),), channels=True),
     "two_heads": Kind(references.two_heads, (("reference_eccentricity",),), channels=True),
     "sine_interpolation": Kind(
-        references.sine_interpolation, (("drive_ripple",),), ("drive_ripple",), demands=Demands(points=200)
+        references.sine_interpolation, (("drive_ripple",),), ("drive_ripple",), demands=Demands(points=240)
     ),
     "lost_once": Kind(
         references.lost_once,

@@ -54,19 +54,18 @@ def opposite_heads(rng: np.random.Generator, setting: Setting) -> Planned:
 
 
 def sine_interpolation(rng: np.random.Generator, setting: Setting) -> Planned:
-    """Sine and cosine of 32 to 72 lines a turn with offset and gain errors, interpolated: once and twice a line."""
-    most = setting.motion.points_per_turn / 2.3
-    lines = int(rng.choice([one for one in (32, 36, 40, 45, 50, 60, 64, 72) if one < most]))
-    error = float(rng.uniform(0.1, 0.25)) * lines
-    phase = float(rng.uniform(0.0, 2 * np.pi))
-    offset, gain = np.radians(error), 1.0 + np.radians(error) * float(rng.uniform(0.3, 0.8))
+    """Sine and cosine of 32 to 50 lines a turn with offset and gain errors, interpolated: once and twice a line."""
+    lines = int(rng.choice((32, 36, 40, 45, 50)))
+    offset, phase = float(np.radians(rng.uniform(4.0, 7.0))), float(rng.uniform(0.0, 2 * np.pi))
+    gain = 1.0 + offset * float(rng.uniform(0.3, 0.8))
 
     def reference(motion: Motion, one: np.random.Generator) -> Array:
         within = lines * np.radians(motion.shaft_deg) + phase
         read = np.arctan2(gain * np.sin(within), np.cos(within) + offset)
         return np.degrees(np.angle(np.exp(1j * (read - within)))) / lines
 
-    return Planned(Mechanism(reference=reference), error / lines, {"drive_ripple": {"order": float(lines)}})
+    amplitude = float(np.degrees(offset)) / lines
+    return Planned(Mechanism(reference=reference), amplitude, {"drive_ripple": {"order": float(lines)}})
 
 
 def _lost(rng: np.random.Generator, times: int) -> Planned:

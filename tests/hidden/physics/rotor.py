@@ -130,11 +130,7 @@ def ball_bearing(rng: np.random.Generator, setting: Setting) -> Planned:
     def shaft(at: Array, motion: Motion) -> Array:
         return at + size * np.sin(np.radians(order * at + phase))
 
-    return Planned(
-        Mechanism(shaft=shaft),
-        size,
-        {"bearing_wobble": {"order": order, "amplitude_deg": size, "phase_deg": phase + 90.0}},
-    )
+    return Planned(Mechanism(shaft=shaft), size, {"bearing_wobble": {"order": order, "amplitude_deg": size}})
 
 
 def head_vibration(rng: np.random.Generator, setting: Setting) -> Planned:

@@ -158,10 +158,6 @@ def _warm(motion: Motion) -> Array:
     return motion.temperature_c - 25.0
 
 
-def _share(values: Array) -> Array:
-    return np.asarray(values / np.max(np.abs(values)))
-
-
 def _tone(motion: Motion, p: Params) -> Array:
     """A vector that turns f times a second, carried on from reading to reading; mid-record it stands at the phase."""
     on = np.exp(1j * TAU * p["frequency_Hz"] * np.diff(motion.time_s))
@@ -331,18 +327,18 @@ EXAMPLES: dict[str, Example] = {
     ),
     "unnamed_temperature_order": Example(
         strengths=_LINE,
-        shapes={**_PHASE, "order": 9.0},
-        signature=lambda m, p: line(m, p, p["order"], weight=_share(_warm(m))),
+        shapes={**_PHASE, "order": 9.0, "at_K": 60.0},
+        signature=lambda m, p: line(m, p, p["order"], weight=_warm(m) / 60.0),
     ),
     "unnamed_temperature": Example(
         strengths={"cos0_deg": 0.1, "sin4_deg": 0.05},
-        shapes={},
-        signature=lambda m, p: _share(_warm(m)) * (_rad(p["cos0_deg"]) + _rad(p["sin4_deg"]) * np.sin(4 * m.shaft_rad)),
+        shapes={"at_K": 60.0},
+        signature=lambda m, p: _warm(m) / 60.0 * (_rad(p["cos0_deg"]) + _rad(p["sin4_deg"]) * np.sin(4 * m.shaft_rad)),
     ),
     "unnamed_speed": Example(
         strengths=_LINE,
-        shapes={**_PHASE, "order": 2.0, "power": 1.0},
-        signature=lambda m, p: line(m, p, p["order"], weight=_share(m.speed_rad_s)),
+        shapes={**_PHASE, "order": 2.0, "power": 1.0, "at_rpm": 600.0},
+        signature=lambda m, p: line(m, p, p["order"], weight=m.speed_rad_s / (20.0 * np.pi)),
     ),
     "unnamed_tone": Example(strengths=_LINE, shapes={**_PHASE, "frequency_Hz": 3.0}, signature=_tone),
     "unnamed_drift": Example(

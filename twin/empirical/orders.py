@@ -12,6 +12,13 @@ from twin.motion import Motion
 
 Weight = Callable[[Motion, Parameters], Array]
 
+NEUTRAL_C = 25.0
+RAD_S_PER_RPM = np.pi / 30.0
+_AT_K = Param(
+    unit="K", null=100.0, lower=1e-9, upper=1e4, role="shape", doc="distance from 25 C at which the size is stated"
+)
+_AT_RPM = Param(unit="rpm", null=1000.0, lower=1e-9, upper=1e7, role="shape", doc="speed at which the size is stated")
+
 _LINE_WORDS = "order {order:4} in the shaft angle (cycles per turn), amplitude {amplitude_deg} deg"
 _DIRECTION_WORDS = "order {order:4} whose sign turns with the direction, amplitude {amplitude_deg} deg"
 _TEMPERATURE_WORDS = (
@@ -45,12 +52,11 @@ def _direction(motion: Motion, values: Parameters) -> Array:
 
 
 def _temperature(motion: Motion, values: Parameters) -> Array:
-    warm = motion.temperature_c - 25.0
-    return np.asarray(warm / max(float(np.max(np.abs(warm))), 1e-9))
+    return np.asarray((motion.temperature_c - NEUTRAL_C) / np.asarray(values["at_K"]))
 
 
 def _speed(motion: Motion, values: Parameters) -> Array:
-    pace = motion.speed_rad_s / max(float(np.max(np.abs(motion.speed_rad_s))), 1e-9)
+    pace = motion.speed_rad_s / (RAD_S_PER_RPM * np.asarray(values["at_rpm"]))
     power = np.asarray(values["power"])
     return np.asarray(
         np.where(
@@ -59,6 +65,16 @@ def _speed(motion: Motion, values: Parameters) -> Array:
             np.where(power == -2.0, pace**2, np.where(power == -1.0, np.abs(pace), pace)),
         )
     )
+
+
+def _farthest(motion: Motion) -> float:
+    """Largest distance of a record's temperatures from that at which there is no drift, kelvin."""
+    return max(float(np.max(np.abs(motion.temperature_c - NEUTRAL_C))), 1e-9)
+
+
+def _fastest(motion: Motion) -> float:
+    """Highest speed of a record, rpm."""
+    return max(float(np.max(np.abs(motion.speed_rad_s))) / RAD_S_PER_RPM, 1e-9)
 
 
 def _free_limits(motion: Motion) -> tuple[float, float]:
@@ -82,9 +98,18 @@ def _low_orders(
 
 def _speed_shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     # Orders 0 and 2 times the signed speed are latency and xy_skew.
-    plain = _low_orders((1, 3, 4), [{"power": 1.0}])(motion)
-    bent = _low_orders((0, 1, 2, 3, 4), [{"power": -1.0}, {"power": 2.0}, {"power": -2.0}])(motion)
+    fast = {"at_rpm": _fastest(motion)}
+    plain = _low_orders((1, 3, 4), [{"power": 1.0, **fast}])(motion)
+    bent = _low_orders((0, 1, 2, 3, 4), [{"power": power, **fast} for power in (-1.0, 2.0, -2.0)])(motion)
     return [*plain, *bent]
+
+
+def _one_pattern(motion: Motion) -> Sequence[Mapping[str, float]]:
+    return [{"at_K": _farthest(motion)}]
+
+
+def _orders_of_temperature(motion: Motion) -> Sequence[Mapping[str, float]]:
+    return _low_orders((0, *range(3, HIGHEST_SINGLE_ORDER + 1)), [{"at_K": _farthest(motion)}])(motion)
 
 
 UNNAMED_ORDER = Effect(
@@ -162,11 +187,11 @@ UNNAMED_TEMPERATURE = Effect(
     name="unnamed_temperature",
     stage="empirical",
     acts_on="angle",
-    params=_pattern_params(TEMPERATURE_ORDERS, "(T - 25 C) over its largest value"),
+    params={**_pattern_params(TEMPERATURE_ORDERS, "(T - 25 C) / at_K"), "at_K": _AT_K},
     forward=_pattern(TEMPERATURE_ORDERS, _temperature),
+    shapes=_one_pattern,
     needs=frozenset({"temperature_c", "two temperatures"}),
     repeatable=True,
-    record_wide=True,
     kind="temperature",
     words=_TEMPERATURE_WORDS,
     figures=_strongest(TEMPERATURE_ORDERS),
@@ -175,17 +200,13 @@ UNNAMED_TEMPERATURE = Effect(
 )
 
 
-def _single_orders(first: int) -> Callable[[Motion], Sequence[Mapping[str, float]]]:
-    return _low_orders(range(first, HIGHEST_SINGLE_ORDER + 1))
-
-
 UNNAMED_DIRECTION_ORDER = Effect(
     name="unnamed_direction_order",
     stage="empirical",
     acts_on="angle",
     params=_order_params(HIGHEST_SINGLE_ORDER),
     forward=_weighted(_direction),
-    shapes=_single_orders(1),
+    shapes=_low_orders(range(1, HIGHEST_SINGLE_ORDER + 1)),
     needs=frozenset({"both directions"}),
     repeatable=True,
     kind="direction",
@@ -198,12 +219,11 @@ UNNAMED_TEMPERATURE_ORDER = Effect(
     name="unnamed_temperature_order",
     stage="empirical",
     acts_on="angle",
-    params=_order_params(HIGHEST_SINGLE_ORDER),
+    params={**_order_params(HIGHEST_SINGLE_ORDER), "at_K": _AT_K},
     forward=_weighted(_temperature),
-    shapes=_single_orders(3),
+    shapes=_orders_of_temperature,
     needs=frozenset({"temperature_c", "two temperatures"}),
     repeatable=True,
-    record_wide=True,
     kind="temperature",
     words=_TEMPERATURE_WORDS,
     source="Fourier component times (T - 25 C)",
@@ -216,13 +236,13 @@ UNNAMED_SPEED = Effect(
     acts_on="angle",
     params={
         **_order_params(64.0),
+        "at_rpm": _AT_RPM,
         "power": Param(unit="1", null=1.0, lower=-2.0, upper=2.0, role="shape", doc="1: w, -1: |w|, 2: w|w|, -2: w^2"),
     },
     forward=_weighted(_speed),
     shapes=_speed_shapes,
     needs=frozenset({"moving shaft", "two speeds"}),
     repeatable=True,
-    record_wide=True,
     kind="speed",
     words=_SPEED_WORDS,
     source="Fourier component times a power of the speed",

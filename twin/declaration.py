@@ -17,7 +17,7 @@ NEEDS = frozenset(
     {
         *("time_s", "direction", "speed_rpm", "turn", "temperature_c", "vx"),
         *("both directions", "two speeds", "moving shaft", "one turn", "several turns", "two temperatures"),
-        *("two turns", "two air gaps"),
+        *("two turns", "two air gaps", "varying speed"),
     }
 )
 """What :attr:`twin.motion.Motion.provides` may hold, and two air gaps, which no single sweep provides."""

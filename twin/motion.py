@@ -143,6 +143,19 @@ class Motion:
         return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(self.shaft_rad)))]) if len(self) else np.zeros(0)
 
     @cached_property
+    def acceleration_rad_s2(self) -> Array:
+        """Angular acceleration (n,) [rad/s^2], from the speed over time; zero where the clock stands still."""
+        if len(self) < 2:
+            return np.zeros(len(self))
+        step = np.diff(self.time_s)
+        rate = np.divide(np.diff(self.speed_rad_s), step, out=np.zeros_like(step), where=step > 0.0)
+        # Each reading lies between two steps, each of which tells the more the shorter it is, as in a parabola.
+        before, after = np.concatenate([rate[:1], rate]), np.concatenate([rate, rate[-1:]])
+        left, right = np.concatenate([step[:1], step]), np.concatenate([step, step[-1:]])
+        both = left + right
+        return np.divide(before * right + after * left, both, out=np.zeros_like(both), where=both > 0.0)
+
+    @cached_property
     def turns(self) -> float:
         """How many turns the shaft has travelled, both directions counted."""
         return float(self.travel_rad[-1] / TAU) if len(self) else 0.0
@@ -165,6 +178,9 @@ class Motion:
             found.add("two speeds")
         if np.any(self.speed_rad_s != 0.0):
             found.add("moving shaft")
+        # Where the bench goes from one steady speed to the next, a few rows alone are accelerated.
+        if {"time_s", "speed_rpm"} <= self.columns and _mostly_there(np.abs(self.acceleration_rad_s2)):
+            found.add("varying speed")
         if np.ptp(self.shaft_rad) > 0.95 * TAU * (1 - 1 / max(self.points_per_turn, 2)):
             found.add("one turn")
         if np.ptp(self.shaft_rad) > 1.8 * TAU:
@@ -174,6 +190,11 @@ class Motion:
         if self.turn.max(initial=0) > 0:
             found.add("two turns")
         return frozenset(found)
+
+
+def _mostly_there(size: Array) -> bool:
+    """Whether half of all rows have a fair share (1/50) of the largest."""
+    return bool(size.size and float(np.median(size)) > 0.02 * float(np.max(size)))
 
 
 def _way(shaft_rad: Array, direction: Array | None, speed_rad_s: Array | None) -> Array:

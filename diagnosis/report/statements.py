@@ -37,6 +37,7 @@ _LACKS = {
     "two speeds|both directions": ("one speed, one direction", "measure at a second speed or in both directions"),
     "two temperatures": ("one temperature", "measure at a second temperature"),
     "two turns": ("one turn in the turn column", "record several turns"),
+    "varying speed": ("steady speeds", "record speed_rpm and time_s while the shaft speeds up and slows down"),
     "vx": ("no vx, vy", "record vx and vy"),
 }
 """What a sweep lacks for a cause to be visible: in words, and what to do about it."""

@@ -189,6 +189,12 @@ EXAMPLES: dict[str, Example] = {
     "bearing_wobble": Example(
         strengths=_LINE, shapes={**_PHASE, "order": 0.41}, signature=lambda m, p: line(m, p, p["order"])
     ),
+    "load_torsion": Example(
+        strengths={"deg_per_krpm_per_s": 0.2},
+        shapes={},
+        memory=True,
+        signature=lambda m, p: -_rad(p["deg_per_krpm_per_s"]) * m.acceleration_rad_s2 * 30.0 / (1000.0 * np.pi),
+    ),
     "zero_drift": Example(strengths={"amplitude_deg": 0.5}, shapes={"time_constant_s": 5.0}, signature=_drift),
     # magnet
     "magnet_harmonic": Example(

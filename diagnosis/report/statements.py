@@ -42,7 +42,12 @@ _LACKS = {
 }
 """What a sweep lacks for a cause to be visible: in words, and what to do about it."""
 
-_ALSO_SAYS = {"two temperatures": "temperature_c", "two turns": "turn", "two speeds|both directions": "moving shaft"}
+_ALSO_SAYS = {
+    "two temperatures": "temperature_c",
+    "two turns": "turn",
+    "two speeds|both directions": "moving shaft",
+    "varying speed": "moving shaft",
+}
 """A want that goes without saying where the second one is wanted too."""
 
 _UNEXPLAINED = "Structure is there that no cause of the catalogue explains"

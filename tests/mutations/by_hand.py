@@ -234,6 +234,20 @@ TWIN: tuple[Mutation, ...] = (
         short=True,
     ),
     Mutation(
+        "motion.steps_between_steady_speeds_are_no_varying_speed",
+        "twin/motion.py",
+        "float(np.median(size)) > 0.02 * float(np.max(size))",
+        "float(np.max(size)) > 0.0",
+        ("tests/twin/test_acceleration.py::test_steady_speeds_with_steps_between_them_are_no_varying_speed",),
+    ),
+    Mutation(
+        "motion.acceleration_weighs_its_steps",
+        "twin/motion.py",
+        "before * right + after * left, both",
+        "before * left + after * right, both",
+        ("tests/twin/test_acceleration.py::test_acceleration_of_a_parabola_is_exact_between_uneven_readings",),
+    ),
+    Mutation(
         "design.quadratic_term_keeps_its_share",
         "twin/hall/quadratic_nonlinearity.py",
         "field_power=1.0",

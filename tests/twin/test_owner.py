@@ -18,7 +18,7 @@ OTHERS = {
 WHOLE = {
     "mounting": {"zero", "magnet_harmonic", "magnet_misalignment"},
     "bench": {
-        *("backlash", "cardan_coupling", "bearing_wobble", "drive_ripple", "reference_eccentricity"),
+        *("backlash", "cardan_coupling", "bearing_wobble", "load_torsion", "drive_ripple", "reference_eccentricity"),
         *("stray_field", "mains_pickup"),
     },
     "recording": {

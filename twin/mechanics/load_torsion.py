@@ -31,7 +31,7 @@ LOAD_TORSION = Effect(
         ),
     },
     forward=forward,
-    needs=frozenset({"varying speed"}),
+    needs=frozenset({"moving shaft", "varying speed"}),
     record_wide=True,
     source="torsion of a shaft of stiffness c under the torque J dw/dt of the inertia J beyond it: J/c dw/dt",
     signature="order 0, minus the angular acceleration",

@@ -153,7 +153,8 @@ class Motion:
         before, after = np.concatenate([rate[:1], rate]), np.concatenate([rate, rate[-1:]])
         left, right = np.concatenate([step[:1], step]), np.concatenate([step, step[-1:]])
         both = left + right
-        return np.divide(before * right + after * left, both, out=np.zeros_like(both), where=both > 0.0)
+        found: Array = np.divide(before * right + after * left, both, out=np.zeros_like(both), where=both > 0.0)
+        return found
 
     @cached_property
     def turns(self) -> float:

@@ -147,7 +147,11 @@ def test_the_optimum_is_that_of_least_squares(case: Case) -> None:
 
 def test_what_is_likely_beforehand_pulls_as_one_more_reading_would() -> None:
     """A tilt of twice its standard deviation is two RMS of the residual off; a direction may be any."""
-    tilted = find("magnet_misalignment").null() | {"product_mm2": 0.05, "sensor_tilt_x_deg": 2.0 * TOLERANCE_DEG, "direction_deg": 40.0}
+    tilted = find("magnet_misalignment").null() | {
+        "product_mm2": 0.05,
+        "sensor_tilt_x_deg": 2.0 * TOLERANCE_DEG,
+        "direction_deg": 40.0,
+    }
     fit, _ = started(Case(causes={"magnet_misalignment": tilted}, channels=True))
     fit = evaluate(fit.chain.with_effect("magnet_misalignment", **tilted), fit.free, fit.observations, fit.weighting)
     held = [free.name for free, strength in zip(fit.free, fit.strengths, strict=True) if strength > 0.0]

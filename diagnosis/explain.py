@@ -13,8 +13,8 @@ from diagnosis.progress import Listener
 if TYPE_CHECKING:
     import numpy as np
 
-    from diagnosis.discovery.result import Discovery
     from diagnosis.discovery.settings import DiscoverySettings
+    from diagnosis.discovery.state import State
     from diagnosis.discovery.watch import Watch
     from diagnosis.factors.mounting import Mounting
     from twin.chain import Chain
@@ -26,7 +26,7 @@ OwnEffects: TypeAlias = "str | os.PathLike[str] | Effect | Sequence[str | os.Pat
 
 
 def explain(
-    sweep: SweepLike,
+    sweep: SweepLike | Sequence[SweepLike],
     *,
     twin: TwinLike | None = None,
     mounting: Mounting | None = None,
@@ -48,13 +48,16 @@ def explain(
         arrays, or an xarray Dataset. Columns bear the names of the file format, with their units:
         ``reference_deg`` and ``measured_deg``, and where recorded ``time_s``, ``direction``, ``speed_rpm``, ``turn``,
         ``temperature_c``, ``vx`` and ``vy``; one value for each reading, in the order in which they were taken.
+        A list or tuple of several: recordings of one device, explained together. The device's parameters are common to
+        them; each has its own zero and its own noise, and a cause is held out by whole recordings.
     twin : str, os.PathLike, or Chain, optional
         Hold the sweep against this twin of the device instead of the paper's error model: a twin file (TOML), the name
         of a preset, or a :class:`twin.Chain` such as the ``extended`` one of another recording. Which of its own
         parameters have moved is asked first, then which causes it lacks.
     mounting : Mounting, optional
         The magnet and its air gap in whose field a misplacement and a stray field are counted. If not given, a cylinder
-        of 6 mm x 2.5 mm at 1.5 mm; a twin brings its own.
+        of 6 mm x 2.5 mm at 1.5 mm; a twin brings its own. Of several recordings ``air_gap_mm`` may hold one gap for
+        each, in place of the column of that name, and ``turned_deg`` say how the sensor was turned about the shaft.
     effects : str, os.PathLike, Effect, or a sequence of these, optional
         Causes of your own, which are searched beside the catalogue and the installed ones: Python files that
         declare them, or :class:`twin.Effect` objects.
@@ -114,6 +117,7 @@ def explain(
     import numpy as np
 
     from diagnosis.blas_threads import one_blas_thread
+    from diagnosis.discovery.pipeline import discover
     from diagnosis.discovery.settings import DiscoverySettings
     from diagnosis.discovery.watch import Watch, stopped_by_interrupt
     from diagnosis.report.provenance import Provenance
@@ -126,38 +130,66 @@ def explain(
     searched = _searched(effects, twin)
     given = as_twin(twin, effects=searched)
     start = _start(searched, mounting, given)
-    read = as_sweep(sweep)
+    read = _read(sweep, mounting)
     used = vars(settings or DiscoverySettings()).items()
     LOG.info("seed %d; settings: %s", seed, ", ".join(f"{name} {value}" for name, value in used))
     watch = Watch(progress)
     listening = stopped_by_interrupt(watch) if on_interrupt == "answer" else nullcontext()
     with one_blas_thread(), listening:
-        found = _discovery(read, given=given, start=start, settings=settings, rng=rng, watch=watch)
+        state = _begun(read, given=given, start=start, mounting=mounting, settings=settings, rng=rng, watch=watch)
+        found = discover(state)
     return Explanation(found, made)
 
 
-def _discovery(
-    sweep: Sweep,
+def _read(sweep: SweepLike | Sequence[SweepLike], mounting: Mounting | None) -> list[Sweep]:
+    """The sweeps that are meant. Raises UserError for a list of none, or where more or fewer are mounted."""
+    from typing import cast
+
+    from twin.errors import UserError
+
+    several = isinstance(sweep, list | tuple)
+    sweeps = [as_sweep(one) for one in (cast("Sequence[SweepLike]", sweep) if several else [cast("SweepLike", sweep)])]
+    if not sweeps:
+        raise UserError("found a list of no sweep; give one sweep, or several recordings of one device")
+    gaps, angles = (1, 0) if mounting is None else (len(mounting.air_gap_mm), len(mounting.turned_deg))
+    if gaps not in (1, len(sweeps)):
+        expected = "one, that of the sweep" if len(sweeps) == 1 else "one, or one for each sweep in their order"
+        raise UserError(f"found {gaps} air gaps; expected {expected}")
+    if angles not in (0, len(sweeps)):
+        raise UserError(f"found {angles} angles of the sensor for {len(sweeps)} sweeps; expected one for each")
+    return sweeps
+
+
+def _begun(
+    sweeps: list[Sweep],
     *,
+    mounting: Mounting | None,
     given: Chain | None,
     start: Chain,
     settings: DiscoverySettings | None,
     rng: np.random.Generator,
     watch: Watch,
-) -> Discovery:
-    """The search, from the fitted error model or from a given twin."""
+) -> State:
+    """Where the search sets out from: the fitted error model, or a given twin."""
     from dataclasses import replace
 
     import numpy as np
 
     from diagnosis.discovery.fitting.initial_fit import senses_of_channels
     from diagnosis.discovery.fitting.subsample import searched_part
-    from diagnosis.discovery.pipeline import State, discover
+    from diagnosis.discovery.state import State
     from diagnosis.error_model.fit import fit_baseline
+    from diagnosis.joining import joined
 
-    sweep = searched_part(sweep)
+    if len(sweeps) > 1:
+        watch.told("error_model", ())
+        together = joined(sweeps, (given or start).effects, mounting=mounting, given=given, rng=rng)
+        chain = together.start if given is not None else replace(together.start, magnet=start.magnet)
+        state = State.of(together.sweep, chain, given=None if given is None else chain, settings=settings, rng=rng)
+        return state.with_(suspects=together.suspects, watch=watch)
+    sweep = searched_part(sweeps[0])
     if given is not None:
-        return discover(State.of(sweep, given, given=given, settings=settings, rng=rng).with_(watch=watch))
+        return State.of(sweep, given, given=given, settings=settings, rng=rng).with_(watch=watch)
     watch.told("error_model", ())
     fit = fit_baseline(
         np.radians(sweep.reference_deg),
@@ -168,7 +200,7 @@ def _discovery(
     )
     model = replace(fit.chain(), effects=start.effects, magnet=start.magnet)
     state = State.of(sweep, model, settings=settings, rng=rng)
-    return discover(state.with_(suspects=fit.outliers, watch=watch))
+    return state.with_(suspects=fit.outliers, watch=watch)
 
 
 def _start(effects: tuple[Effect, ...], mounting: Mounting | None, given: Chain | None) -> Chain:
@@ -179,12 +211,10 @@ def _start(effects: tuple[Effect, ...], mounting: Mounting | None, given: Chain 
     from twin.magnet.placement import Placement
 
     start = Chain(effects=effects)
-    if mounting is None:
+    if mounting is None or mounting.assumed:
         return start
     if given is not None:
         raise UserError("found a twin and a mounting; give one of them: a twin brings its own magnet")
-    if len(mounting.air_gap_mm) > 1:
-        raise UserError(f"found {len(mounting.air_gap_mm)} air gaps; expected one, that of the sweep")
     return start.with_magnet(Assembly(mounting.magnet, Placement(air_gap_mm=mounting.air_gap_mm[0])))
 
 

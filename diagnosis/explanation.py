@@ -185,8 +185,11 @@ class Explanation:
 
     @property
     def extended(self) -> Chain:
-        """The twin after: the causes and the noise included, to simulate with."""
-        return self.discovery.fit.chain
+        """The twin after: the causes and the noise included, to simulate with.
+
+        Of several recordings the device's, mounted as in the first of them.
+        """
+        return self.discovery.device
 
     @cached_property
     def _answer(self) -> dict[str, Any]:

@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from twin.angles import TAU, Array, IntArray, wrap
+from twin.recordings import Recordings, Setup
 
 STOP_AND_MEASURE_S = 0.02
 """Readings farther apart than this, with no speed recorded, were taken at standstill."""
 
+
+LEAST_FIELD_RATIO = 1.1
+"""Between two recordings, from which on what follows the field is told from what does not."""
+LEAST_TURN_RAD = 0.17
+"""Turn of the sensor between two recordings, about 10 deg, from which on its errors are told from the reference's."""
 
 NOMINAL_C = 25.0
 """Temperature [C] at which figures are stated, from which drifts count, and of readings that record none."""
@@ -34,6 +41,8 @@ class Motion:
         What the bench recorded itself: ``time_s``, ``direction``, ``speed_rpm``, ``turn``, ``temperature_c``, ``vx``.
         What was not recorded is inferred where the rows allow it (direction from their order, speed from dense time
         stamps), else zero, and 25 C.
+    recordings : Recordings or None
+        Of several recordings one behind the other: which one each reading belongs to. None: all are of one.
     """
 
     shaft_rad: Array
@@ -43,6 +52,7 @@ class Motion:
     turn: IntArray
     temperature_c: Array
     columns: frozenset[str] = frozenset()
+    recordings: Recordings | None = None
 
     def __post_init__(self) -> None:
         # Views that cannot be written to: an effect that changed its motion would change it for all that come after.
@@ -129,6 +139,53 @@ class Motion:
             speed_rad_s=self.speed_rad_s[rows],
             turn=np.unique(self.turn[rows], return_inverse=True)[1].astype(np.int64),
             temperature_c=self.temperature_c[rows],
+            recordings=None if self.recordings is None else self.recordings.part(rows),
+        )
+
+    @classmethod
+    def joined(cls, parts: Sequence[Motion], setups: Sequence[Setup]) -> Motion:
+        """Recordings of one device as one motion: angles, times and turns go on from one to the next.
+
+        Parameters
+        ----------
+        parts : sequence of Motion
+            The motion of each recording.
+        setups : sequence of Setup
+            How the bench was set up in each.
+
+        Returns
+        -------
+        Motion
+            With the columns that all recordings have.
+        """
+        shaft, time, turn = [parts[0].shaft_rad], [parts[0].time_s], [parts[0].turn]
+        for part in parts[1:]:
+            before = float(shaft[-1][-1])
+            shaft.append(part.shaft_rad + TAU * np.round((before - part.shaft_rad[0]) / TAU))
+            step = float(np.median(np.diff(part.time_s))) if len(part) > 1 else 1.0
+            time.append(part.time_s + (float(np.max(time[-1])) + step - float(np.min(part.time_s))))
+            turn.append(part.turn + (int(turn[-1].max()) + 1))
+        number = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+        return cls(
+            shaft_rad=np.concatenate(shaft),
+            time_s=np.concatenate(time),
+            direction=np.concatenate([part.direction for part in parts]),
+            speed_rad_s=np.concatenate([part.speed_rad_s for part in parts]),
+            turn=np.concatenate(turn),
+            temperature_c=np.concatenate([part.temperature_c for part in parts]),
+            columns=frozenset.intersection(*(part.columns for part in parts)),
+            recordings=Recordings(number, tuple(setups)),
+        )
+
+    @cached_property
+    def parts(self) -> tuple[Motion, ...]:
+        """The motion of each recording by itself; of a single one this very motion."""
+        recordings, rows = self.recordings, np.arange(len(self))
+        if recordings is None or len(recordings) == 1:
+            return (self,)
+        each = [(rows[one], setup) for one, setup in zip(recordings.slices, recordings.setups, strict=True)]
+        return tuple(
+            replace(self.part(own), recordings=Recordings(np.zeros_like(own), (setup,))) for own, setup in each
         )
 
     @cached_property
@@ -171,6 +228,8 @@ class Motion:
     def provides(self) -> frozenset[str]:
         """What effects may need of a motion and this one has: recorded columns, and properties of the protocol."""
         found = set(self.columns)
+        if self.recordings is not None and len(self.recordings) > 1:
+            return frozenset(found.union(*(part.provides for part in self.parts)) | self._by_recordings())
         if len({way for _, _, way in self.segments}) == 2:
             found.add("both directions")
         # A few rows about a reversal or a stop are no second speed.
@@ -191,6 +250,22 @@ class Motion:
         if self.turn.max(initial=0) > 0:
             found.add("two turns")
         return frozenset(found)
+
+    def _by_recordings(self) -> set[str]:
+        """What the recordings provide together, and none of them alone."""
+        assert self.recordings is not None
+        setups = self.recordings.setups
+        pace = np.abs(self.speed_rad_s)
+        slow, fast = np.quantile(pace, [0.02, 0.98])
+        turned = np.radians([setup.turned_deg for setup in setups])
+        shown = {
+            "both directions": np.ptp(self.direction) > 0.0,
+            "two speeds": fast - slow > 0.2 * fast,
+            "two temperatures": np.ptp(self.temperature_c) > 5.0,
+            "two air gaps": max(setup.field for setup in setups) > LEAST_FIELD_RATIO * min(one.field for one in setups),
+            "two mountings": float(np.max(np.abs(np.exp(1j * turned) - 1.0))) > LEAST_TURN_RAD,
+        }
+        return {name for name, has in shown.items() if has}
 
 
 def _mostly_there(size: Array) -> bool:

@@ -14,8 +14,9 @@ from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
 from twin.log import LOG
 from twin.motion import Motion
+from twin.recordings import Recordings
 from twin.shown_name import shown_name
-from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, PLAUSIBLE, REQUIRED, SMALLEST_AMPLITUDE
+from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, OF_SETUP, PLAUSIBLE, REQUIRED, SMALLEST_AMPLITUDE
 from twin.sweep_file import write_columns
 from twin.sweep_reader import read_columns
 
@@ -39,9 +40,10 @@ class Sweep:
     ----------
     reference_deg, measured_deg : ndarray
         What the reference and the sensor read [deg], (n,); any range, wrapped or not.
-    time_s, direction, speed_rpm, turn, temperature_c, vx, vy : ndarray or None
+    time_s, direction, speed_rpm, turn, temperature_c, air_gap_mm, mounting_deg, vx, vy : ndarray or None
         Further columns (n,), None where not recorded: time [s], +1 or -1, speed, number of the turn or sweep,
-        temperature [C] (NaN where missing), and the two channels in any unit.
+        temperature [C] (NaN where missing), air gap [mm], by how much the sensor is turned about the shaft [deg], and
+        the two channels in any unit.
     rejected : mapping of int to str
         Numbers of the rows that cannot be used (first reading = 1), and why.
     name : str
@@ -50,6 +52,8 @@ class Sweep:
         Numbers (n,) of the used rows; None: they follow one another.
     set_aside : int
         Usable rows of the recording that this part of it does not hold.
+    recordings : Recordings or None
+        Of several recordings of one device, joined: which one each row belongs to. None: all are of one.
     """
 
     reference_deg: Array
@@ -59,12 +63,15 @@ class Sweep:
     speed_rpm: Array | None = None
     turn: Array | None = None
     temperature_c: Array | None = None
+    air_gap_mm: Array | None = None
+    mounting_deg: Array | None = None
     vx: Array | None = None
     vy: Array | None = None
     rejected: Mapping[int, str] = field(default_factory=dict)
     name: str = "sweep"
     row_numbers: IntArray | None = None
     set_aside: int = 0
+    recordings: Recordings | None = None
 
     def __repr__(self) -> str:
         left = "" if self.rows == len(self) else f" of {self.rows}"
@@ -98,7 +105,8 @@ class Sweep:
         """
         columns: dict[str, Any] = {name: values[rows] for name, values in self.columns.items()}
         aside = self.set_aside + len(self) - rows.size
-        return replace(self, **columns, row_numbers=self.numbers[rows], set_aside=aside)
+        recordings = None if self.recordings is None else self.recordings.part(rows)
+        return replace(self, **columns, row_numbers=self.numbers[rows], set_aside=aside, recordings=recordings)
 
     @property
     def columns(self) -> dict[str, Array]:
@@ -229,6 +237,10 @@ class Sweep:
         Motion
             What was not recorded is inferred where the rows allow it, see :meth:`Motion.from_angle`.
         """
+        if self.recordings is not None:
+            rows, alone = np.arange(len(self)), replace(self, recordings=None)
+            parts = [alone.part(rows[one]).motion() for one in self.recordings.slices]
+            return Motion.joined(parts, self.recordings.setups)
         return Motion.from_angle(
             radians(self.reference_deg),
             time_s=self.time_s,
@@ -250,6 +262,9 @@ def _check_plausible(key: str, values: Array, *, name: str) -> None:
         low, high = PLAUSIBLE[key]
         wrong = known & ((values < low) | (values > high))
         expected = f"{low:g} to {high:g}; leave the cell empty where there is no reading"
+        if key in OF_SETUP and not wrong.any():
+            first = values[np.argmax(known)]
+            wrong, expected = known & (values != first), f"{first:g} as before: one number for the whole recording"
         if key == "turn" and not wrong.any():
             wrong = known & (values != np.round(values))
             expected = "a whole number: which sweep or revolution the reading belongs to"

@@ -10,12 +10,16 @@ COLUMNS = (
     "speed_rpm",
     "turn",
     "temperature_c",
+    "air_gap_mm",
+    "mounting_deg",
     "vx",
     "vy",
 )
 """Every column that the project knows, in the order of the file format."""
 REQUIRED = ("reference_deg", "measured_deg")
-MAY_BE_MISSING = frozenset({"temperature_c"})
+OF_SETUP = ("air_gap_mm", "mounting_deg")
+"""Columns that hold one number for a whole recording: how the bench was set up for it."""
+MAY_BE_MISSING = frozenset({"temperature_c", *OF_SETUP})
 """Columns whose single cells may be empty: the row is used all the same."""
 PLAUSIBLE = {
     "time_s": (-1e12, 1e12),
@@ -24,6 +28,8 @@ PLAUSIBLE = {
     "speed_rpm": (-1e7, 1e7),
     "turn": (-1e9, 1e9),
     "temperature_c": (-273.15, 1e4),
+    "air_gap_mm": (1e-3, 200.0),
+    "mounting_deg": (-1e9, 1e9),
     "vx": (-1e12, 1e12),
     "vy": (-1e12, 1e12),
 }

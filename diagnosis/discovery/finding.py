@@ -11,6 +11,7 @@ import numpy as np
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.settings import FOOTPRINTS
 from twin.catalogue import base_name, unnamed
+from twin.each_recording import everywhere
 
 if TYPE_CHECKING:
     from diagnosis.discovery.further.power import Option
@@ -57,7 +58,7 @@ class Finding:
     @property
     def name(self) -> str:
         """The catalogue's name, or ``unnamed``."""
-        name = base_name(self.keys[0])
+        name = everywhere(base_name(self.keys[0]))
         return "unnamed" if unnamed(name) else name
 
 

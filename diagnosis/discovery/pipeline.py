@@ -23,6 +23,8 @@ from diagnosis.discovery.stages.own_parameters import own_parameters
 from diagnosis.discovery.stages.own_shapes import own_shapes
 from diagnosis.discovery.stages.predictive_check import predictive_check
 from diagnosis.discovery.stages.quantisation import quantisation
+from diagnosis.discovery.stages.recording_levels import recording_levels
+from diagnosis.discovery.stages.recordings_alone import recordings_alone
 from diagnosis.discovery.stages.repeated_frames import repeated_frames
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.stages.sense_check import sense_check
@@ -36,6 +38,7 @@ __all__ = ["PIPELINE", "Discovery", "State", "discover"]
 PIPELINE: tuple[Stage, ...] = (
     observe,  # rows that count as independent angles; the grid of the output
     initial_fit,  # the paper's error model, or a given twin with its zeros free
+    recording_levels,  # of several recordings, the noise of each
     row_masks,  # single readings that stand alone are kept out of the fits
     own_parameters,  # strengths of a given twin are free, so that a cause is only what none of them can do
     quantisation,  # stairs that the set of values shows
@@ -43,6 +46,7 @@ PIPELINE: tuple[Stage, ...] = (
         repeated_frames,  # readings that repeat the one before
         variance,  # rows that are beyond doubt louder weigh less
         stepwise,  # causes in the mean: add, exchange, remove
+        recording_levels,  # now that structure is out of the noise
         sense_check,  # who counts which way, now that the causes are known
         own_shapes,  # of a given twin's effects, which without the causes would go anywhere
         spread,  # causes in the scatter; the rows weigh by it
@@ -52,6 +56,7 @@ PIPELINE: tuple[Stage, ...] = (
     grid_cause,  # the output's rounding, where it limits the readings
     changes,  # which of a given twin's own parameters have moved; the others go back
     final_fit,  # the optimum itself, and the baseline on the same rows
+    recordings_alone,  # of several recordings, whether they share one device
     answer,  # one entry a cause, with its figures
     further_measurements,  # what would part each cause from its rivals
     predictive_check,  # would sweeps simulated from the extended twin look alike

@@ -9,14 +9,17 @@ import numpy as np
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.observations import of_readings
+from diagnosis.discovery.proof.alone import Alone
 from diagnosis.discovery.proof.changes import Change
 from diagnosis.discovery.proof.cross_validation import rms_deg
 from diagnosis.discovery.proof.lack_of_fit import LackOfFit
 from diagnosis.discovery.proof.misfit import Misfit, misfits
 from diagnosis.discovery.proof.predictive_check import PredictiveCheck
+from diagnosis.discovery.proof.whole_recordings import are_halves
 from diagnosis.discovery.state import State
 from twin.catalogue import unnamed
 from twin.chain import Chain
+from twin.each_recording import device_of, everywhere
 from twin.effect import BoolArray
 from twin.sweep import Sweep
 
@@ -32,7 +35,8 @@ class Discovery:
     belong to single-reading causes; ``invisible`` the effects that this sweep cannot show, with what it lacks;
     ``cut_short`` the stage in which the search was stopped, where it was; ``misfits`` what the extended twin does not
     predict although neither a cause nor structure tells of it. ``changed`` are the parameters of a given twin that have
-    moved, ``other_device`` whether so many have that it is another device's.
+    moved, ``other_device`` whether so many have that it is another device's. ``alone`` is each of several recordings
+    fitted by itself, and ``whole_recordings`` whether these were held out as a whole.
     """
 
     sweep: Sweep
@@ -54,6 +58,8 @@ class Discovery:
     lack: LackOfFit | None = None
     misfits: tuple[Misfit, ...] = ()
     cut_short: str | None = None
+    alone: tuple[Alone, ...] = ()
+    whole_recordings: bool = False
 
     def __repr__(self) -> str:
         names = ", ".join(cause.name for cause in self.causes) or "no cause"
@@ -85,7 +91,7 @@ class Discovery:
             changed=state.changed,
             other_device=state.other_device,
             invisible={
-                effect.name: effect.missing(provides)
+                everywhere(effect.name): effect.missing(provides)
                 for effect in state.effects
                 if not unnamed(effect.name) and not effect.visible_in(provides)
             },
@@ -93,7 +99,14 @@ class Discovery:
             lack=state.lack,
             misfits=misfits(fit, state.likeness, state.lack),
             cut_short=state.watch.stopped_in,
+            alone=state.alone,
+            whole_recordings=state.fold is not None and are_halves(fit, state.fold),
         )
+
+    @property
+    def device(self) -> Chain:
+        """The extended twin as it is in a single recording: of several, in the first one's."""
+        return device_of(self.fit.chain)
 
     @property
     def verdict(self) -> str:

@@ -202,6 +202,9 @@ class DiscoverySettings:
     heldout_slack: float = _ratio(1.004)
     """Limit. Growth of the held-out RMS that is forgiven a cause that stands beyond doubt: the RMS counts correlated
     noise in full, which such a cause leaves as it is."""
+    shared_ratio: float = _ratio(1.1)
+    """Limit. RMS of a recording with the parameters common to all, against that with its own, above which it does not
+    share them."""
     heldout_seen: float = _within(0.1, 0.0, 0.5)
     """Limit. Share of what a cause does that the rows of each held-out fit must hold, as squares; by design it is three
     quarters. From a tenth its strength has ten times the variance that all rows would give it."""

@@ -19,6 +19,7 @@ from twin.effect import BoolArray, Effect
 from twin.sweep import Sweep
 
 if TYPE_CHECKING:
+    from diagnosis.discovery.proof.alone import Alone
     from diagnosis.discovery.proof.changes import Change
     from diagnosis.discovery.proof.lack_of_fit import LackOfFit
     from diagnosis.discovery.proof.predictive_check import PredictiveCheck
@@ -43,7 +44,8 @@ class State:
     after each of ``keys``, and once there is an answer after each of ``causes``; ``causes``, the entries of
     the answer; ``likeness``, the predictive check; ``lack``, what is left against repeated readings. Of a given twin
     also ``own``, its parameters that are asked whether they have moved, ``changed``, those that have, and
-    ``other_device``, whether so many have that it is another's twin.
+    ``other_device``, whether so many have that it is another's twin. Of several recordings
+    ``alone``, each of them fitted by itself.
     """
 
     sweep: Sweep
@@ -63,6 +65,7 @@ class State:
     held: tuple[Array, ...] = ()
     causes: tuple[Finding, ...] = ()
     likeness: PredictiveCheck | None = None
+    alone: tuple[Alone, ...] = ()
     lack: LackOfFit | None = None
     own: tuple[Free, ...] = ()
     changed: tuple[Change, ...] = ()

@@ -34,6 +34,8 @@ class Mounting:
         channels tell the others.
     gap_error_mm : float
         Standard uncertainty of an air gap [mm].
+    turned_deg : tuple of float
+        By how much the sensor was turned about the shaft for each sweep [deg]; empty: not at all, as far as is known.
     assumed : bool
         Nobody has named a magnet: millimetres and millitesla are those of an assumed one.
 
@@ -46,6 +48,7 @@ class Mounting:
     magnet: Magnet = field(default_factory=Magnet)
     air_gap_mm: tuple[float, ...] = (float(Placement().air_gap_mm),)
     gap_error_mm: float = GAP_ERROR_MM
+    turned_deg: tuple[float, ...] = ()
     assumed: bool = False
 
     def __post_init__(self) -> None:

@@ -18,6 +18,7 @@ from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
 from diagnosis.report.provenance import Provenance
+from diagnosis.report.recordings import recordings_answer
 from diagnosis.report.row_counts import MOST_LISTED
 from diagnosis.report.senses import senses
 from twin.angles import wrap_deg
@@ -79,7 +80,8 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "senses": senses(found),
             "searched": found.looked_at,
             "cut_short": _cut_short(found),
-            "twin": to_dict(found.fit.chain),
+            "twin": to_dict(found.device),
+            **recordings_answer(found),
         }
     )
     return answer

@@ -14,6 +14,7 @@ from rich.text import Text
 
 from diagnosis.report import statements
 from diagnosis.report.change_words import change_line, change_name, change_rivals_words
+from diagnosis.report.recordings import HEADS, recordings_notes, recordings_rows
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.statements import FactorRow
 from diagnosis.report.wording import chance
@@ -42,6 +43,7 @@ def show(answer: Mapping[str, Any], console: Console | None = None) -> None:
         _changes(answer, width=min(console.width, _WIDE)),
         _causes(answer, width=min(console.width, _WIDE)),
         _verdict(answer),
+        _recordings(answer),
         _invisible(answer),
     ]
     for number, part in enumerate(part for part in parts if part is not None):
@@ -196,6 +198,18 @@ def _verdict(answer: Mapping[str, Any]) -> RenderableType:
     said = f". {statements.verdict_words(answer)}"
     style = "green" if verdict in _ALL_SAID else "yellow"
     return Text.assemble(("Verdict: ", "bold"), (verdict, f"bold {style}"), said)
+
+
+def _recordings(answer: Mapping[str, Any]) -> RenderableType | None:
+    """Several recordings side by side; None for a single one."""
+    rows = recordings_rows(answer)
+    if not rows:
+        return None
+    table = _grid(len(HEADS))
+    table.add_row(*(Text(head, "dim") for head in HEADS))
+    for row in rows:
+        table.add_row(*row)
+    return Group(Text("The recordings, RMS error in deg", "bold"), table, *map(_indented, recordings_notes(answer)))
 
 
 def _invisible(answer: Mapping[str, Any]) -> RenderableType | None:

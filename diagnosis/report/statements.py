@@ -39,6 +39,16 @@ _LACKS = {
     "two turns": ("one turn in the turn column", "record several turns"),
     "varying speed": ("steady speeds", "record speed_rpm and time_s while the shaft speeds up and slows down"),
     "vx": ("no vx, vy", "record vx and vy"),
+    "two mountings": ("one mounting", "turn the sensor about the shaft and explain both recordings together"),
+    "vx|two air gaps": ("no vx, vy", "record vx and vy, or explain recordings at two air gaps together"),
+    "vx|two mountings": (
+        "no vx, vy",
+        "record vx and vy, or turn the sensor about the shaft and explain both recordings together",
+    ),
+    "vx|two mountings|two air gaps": (
+        "no vx, vy",
+        "record vx and vy, or explain recordings of two mountings or air gaps together",
+    ),
 }
 """What a sweep lacks for a cause to be visible: in words, and what to do about it."""
 

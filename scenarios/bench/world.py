@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -94,7 +95,7 @@ class World:
         with self._lock:
             block = pose // BLOCK
             rows = np.minimum(np.arange((block + 1) * BLOCK), pose)
-            path = {name: values[rows] for name, values in self._path.items()}
+            path: dict[str, Any] = {name: values[rows] for name, values in self._path.items()}
         return (
             Motion(
                 **path,

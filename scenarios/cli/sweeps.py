@@ -23,7 +23,15 @@ MagnetText = Annotated[
 
 def explain(
     context: typer.Context,
-    sweep: Annotated[Path, typer.Argument(metavar="SWEEP", help="Measured sweep: .csv, .csv.gz or .parquet.")],
+    sweeps: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="SWEEP...",
+            help="Measured sweep: .csv, .csv.gz or .parquet. Several, globs or folders: recordings of one device, "
+            "explained together.",
+        ),
+    ],
+    each: Annotated[bool, typer.Option("--each", help="Explain several sweeps one by one instead.")] = False,
     twin: Annotated[
         str | None,
         typer.Option(
@@ -31,7 +39,15 @@ def explain(
         ),
     ] = None,
     magnet: MagnetText = None,
-    air_gap: Annotated[str | None, typer.Option(metavar="mm", help="Air gap in mm.")] = None,
+    air_gap: Annotated[
+        str | None, typer.Option(metavar="mm,...", help="Air gap in mm; of several recordings one for each.")
+    ] = None,
+    mounting: Annotated[
+        str | None,
+        typer.Option(
+            metavar="deg,...", help="By how much the sensor was turned about the shaft, in deg: one for each recording."
+        ),
+    ] = None,
     json: Json = None,
     report: Annotated[
         Path | None,
@@ -49,13 +65,14 @@ def explain(
 ) -> None:
     """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""
     from scenarios.commands.explain import Outputs, run
+    from scenarios.commands.inputs import SweepFiles
     from scenarios.commands.known import Known
     from twin.bounded_input import bytes_of
 
     run(
-        sweep,
-        max_bytes=bytes_of(max_size),
-        known=Known(twin=twin, magnet=magnet, air_gap=air_gap),
+        SweepFiles(sweeps, bytes_of(max_size)),
+        each=each,
+        known=Known(twin=twin, magnet=magnet, air_gap=air_gap, turned=mounting),
         outputs=Outputs(json=json, report=report, extended=extended, plot=plot, force=force),
         effect_files=effects or (),
         seed=seed,

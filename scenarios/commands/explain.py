@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,17 +11,21 @@ from diagnosis import Explanation, explain
 from diagnosis.report.console import show
 from diagnosis.report.page import page
 from scenarios.commands.fail_on import EXPLAIN, asked, in_explanation, raise_found
+from scenarios.commands.inputs import SweepFiles, the_same
 from scenarios.commands.interrupt import INTERRUPTED
 from scenarios.commands.known import Known
 from scenarios.commands.outputs import HTML, JSON, PICTURE, TOML, OutputFiles, json_text
 from scenarios.commands.progress import progress_line
-from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.catalogue import unnamed
 from twin.effect import Effect
+from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.files import twin_text
 from twin.presets import read_twin_or_preset
 from twin.sweep import Sweep
+
+EACH = "halltwin.explain_each/1"
+"""Schema of the JSON of several sweeps one by one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,28 +40,37 @@ class Outputs:
 
 
 def run(
-    path: Path,
+    sweeps: SweepFiles,
     *,
+    each: bool = False,
     known: Known,
     outputs: Outputs,
     effect_files: Sequence[Path] = (),
     seed: int,
     fail_on: Sequence[str] = (),
     command: str | None = None,
-    max_bytes: int = LARGEST_SWEEP_BYTES,
 ) -> None:
     """The command: print the answer, write what was asked for. Raises UserError before anything is written."""
     effects = effects_with(effect_files)
     words = _asked(fail_on, effects)
+    paths = sweeps.paths() if sweeps.one is None else [sweeps.one]
+    one_by_one = each and len(paths) > 1
+    if one_by_one:
+        _check_one_by_one(outputs, known)
     files = OutputFiles.checked(
         [(outputs.json, JSON), (outputs.report, HTML), (outputs.extended, TOML), (outputs.plot, PICTURE)],
-        inputs=[path, known.twin, *effect_files],
+        inputs=[*paths, known.twin, *effect_files],
         force=outputs.force,
     )
     # Before a long recording is read: a name that is none needs no waiting for.
     held = None if known.twin is None else read_twin_or_preset(known.twin, effects=effects)
-    given = {"twin": held, "mounting": known.mounting(), "effects": effect_files}
-    found = _explained(Sweep.read(path, max_bytes=max_bytes), **given, seed=seed)
+    given = {"twin": held, "mounting": known.mounting(), "effects": effect_files, "seed": seed}
+    read = [Sweep.read(path, max_bytes=sweeps.max_bytes) for path in paths]
+    if one_by_one:
+        _one_by_one(read, given, files=files, json=outputs.json, command=command, words=words)
+        return
+    _check_different(read)
+    found = _explained(read[0] if len(read) == 1 else read, **given)
     found = replace(found, made=replace(found.made, command=command))
     answer = found.to_dict()
     try:
@@ -78,13 +91,56 @@ def run(
     raise_found(words, in_explanation(answer))
 
 
+def _check_one_by_one(outputs: Outputs, known: Known) -> None:
+    """Refuse files that hold one answer where there are several. Raises UserError."""
+    for path in (outputs.report, outputs.extended, outputs.plot):
+        if path is not None:
+            raise UserError(f"{path.name}: holds one sweep's answer; with --each give --json alone, or one sweep")
+    if known.turned is not None:
+        raise UserError("mounting: says how recordings that are explained together differ; leave it out with --each")
+
+
+def _check_different(sweeps: Sequence[Sweep]) -> None:
+    """Refuse the very same readings given twice: they would count as evidence twice. Raises UserError."""
+    for names in the_same(sweeps):
+        raise UserError(f"{', '.join(names)}: the same readings; expected several recordings: give each once")
+
+
+def _one_by_one(
+    sweeps: Sequence[Sweep],
+    given: Mapping[str, Any],
+    *,
+    files: OutputFiles,
+    json: Path | None,
+    command: str | None,
+    words: Sequence[str],
+) -> None:
+    """Explain each sweep by itself; the JSON holds all answers."""
+    answers: list[dict[str, Any]] = []
+    try:
+        for sweep in sweeps:
+            found = _explained(sweep, **given)
+            answers.append(replace(found, made=replace(found.made, command=command)).to_dict())
+            if len(answers) > 1:
+                print()
+            show(answers[-1])
+            if answers[-1]["cut_short"] is not None:
+                break
+    finally:
+        files.write({json: lambda: json_text({"schema": EACH, "answers": answers})})
+    files.tell_written()
+    if answers[-1]["cut_short"] is not None:
+        raise SystemExit(INTERRUPTED)
+    raise_found(words, {kind: count for answer in answers for kind, count in in_explanation(answer).items()})
+
+
 def _asked(given: Sequence[str], effects: Sequence[Effect]) -> tuple[str, ...]:
     """What is to be failed on: kinds of findings, and causes by name, one's own among them."""
     causes = [effect.name for effect in effects if not effect.baseline and not unnamed(effect.name)]
     return asked(given, (*EXPLAIN, *causes))
 
 
-def _explained(sweep: Sweep, **given: Any) -> Explanation:
+def _explained(sweep: Sweep | Sequence[Sweep], **given: Any) -> Explanation:
     """The answer, with a line that says where the search stands; Ctrl-C gives the answer so far, twice none."""
     with progress_line("Ctrl-C: the answer so far") as listener:
         return explain(sweep, **given, progress=listener, on_interrupt="answer")

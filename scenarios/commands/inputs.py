@@ -60,6 +60,8 @@ class Unusable:
     reason: str
 
 
+_PATTERN = frozenset("*?[")
+"""Characters that make a name a pattern."""
 _NAMED = 3
 """Files that the last line names; what is printed before it lists all, with the reasons."""
 
@@ -108,6 +110,14 @@ class SweepFiles:
     def paths(self) -> list[Path]:
         """See :func:`sweep_paths`."""
         return sweep_paths(self.names)
+
+    @property
+    def one(self) -> Path | None:
+        """The file, where a single one is named; None where there may be several."""
+        path = Path(self.names[0])
+        if len(self.names) > 1 or path.is_dir() or (_PATTERN & set(self.names[0]) and not path.exists()):
+            return None
+        return path
 
     def read(self, paths: Sequence[Path]) -> SweepsRead:
         """See :func:`read_sweeps`."""

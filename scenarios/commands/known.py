@@ -22,6 +22,7 @@ class Known:
     magnet: str | None = None
     air_gap: str | None = None
     air_gap_error_mm: float | None = None
+    turned: str | None = None
 
     def arguments(self) -> dict[str, Any]:
         """The arguments of :func:`diagnosis.diagnose_many`. Raises UserError for what cannot be meant."""
@@ -31,8 +32,11 @@ class Known:
         return {"twin": twin, "output_sense": self.output_sense, "mounting": self._mounting(twin)}
 
     def mounting(self) -> Mounting | None:
-        """The magnet and air gap that are given; None: neither is. Raises UserError for what cannot be meant."""
-        return None if self.magnet is None and self.air_gap is None else self._mounting(None)
+        """The magnet, air gaps and turns of the sensor that are given; None: none is.
+
+        Raises UserError for what cannot be meant.
+        """
+        return None if self.magnet is None and self.air_gap is None and self.turned is None else self._mounting(None)
 
     def _mounting(self, twin: Chain | None) -> Mounting:
         """The magnet and the air gaps: those given, else the twin's, else assumed ones."""
@@ -44,6 +48,8 @@ class Known:
             given = Mounting.unstated(magnet_of(self.magnet))
         if self.air_gap is not None:
             given = replace(given, air_gap_mm=tuple(numbers("air_gap", self.air_gap)), gap_error_mm=GAP_ERROR_MM)
+        if self.turned is not None:
+            given = replace(given, turned_deg=tuple(numbers("mounting", self.turned)))
         return given if self.air_gap_error_mm is None else replace(given, gap_error_mm=self.air_gap_error_mm)
 
 

@@ -172,7 +172,7 @@ MAGNET_MISALIGNMENT = Effect(
     },
     forward=Misplaced(USUAL),
     # In an angle alone its order 1 is an offset's, and of its higher orders so little is left that they fit anything.
-    needs=frozenset({"vx", "one turn"}),
+    needs=frozenset({"vx|two air gaps", "one turn"}),
     shapes=shapes,
     fitted_shapes=(
         *("direction_deg", "log_ratio"),

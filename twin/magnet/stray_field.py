@@ -18,7 +18,12 @@ FIELD_MT = 50.0
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     scale = 1.0 / values.get("field_mT", FIELD_MT)
-    return add(signal, values["bx_mT"] * scale, values["by_mT"] * scale)
+    bx, by = values["bx_mT"] * scale, values["by_mT"] * scale
+    if motion.recordings is not None:
+        # A sensor that was turned sees a field that stays turn back.
+        c, s = np.cos(motion.recordings.turned_rad), np.sin(motion.recordings.turned_rad)
+        bx, by = c * bx + s * by, c * by - s * bx
+    return add(signal, bx, by)
 
 
 def at_magnet(assembly: Any) -> Effect:
@@ -58,7 +63,7 @@ STRAY_FIELD = Effect(
     },
     forward=forward,
     at_magnet=at_magnet,
-    needs=frozenset({"two air gaps"}),
+    needs=frozenset({"two mountings"}),
     source="superposition of fields; a constant added to both channels ahead of the gains",
     signature="order 1: the same as offset",
 )

@@ -7,6 +7,8 @@ variance given by its spectrum: the basis is the limit of the Karhunen-Loeve bas
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from twin.angles import Array
@@ -38,15 +40,28 @@ def spectrum(n: int, *, correlation: float = 0.0, flicker_exponent: float = 0.0,
     return np.asarray((1.0 - white_share) * coloured / np.mean(coloured) + white_share)
 
 
-def to_cosine(values: Array) -> Array:
-    """Values (..., n) of a sequence as coefficients (..., n) of its orthonormal cosine basis."""
+def to_cosine(values: Array, lengths: Sequence[int] = ()) -> Array:
+    """Values (..., n) of a sequence as coefficients (..., n) of its orthonormal cosine basis.
+
+    With ``lengths`` the values are those of several sequences of these lengths, one behind the other, each with a basis
+    of its own.
+    """
     from scipy.fft import dct
 
+    if len(lengths) > 1:
+        return np.concatenate([to_cosine(part) for part in _split(values, lengths)], axis=-1)
     return np.asarray(dct(values, type=2, norm="ortho", axis=-1))
 
 
-def to_rows(coefficients: Array) -> Array:
-    """Back from cosine coefficients (..., n) to the sequence (..., n)."""
+def to_rows(coefficients: Array, lengths: Sequence[int] = ()) -> Array:
+    """Back from cosine coefficients (..., n) to the sequence (..., n), or to several of these ``lengths``."""
     from scipy.fft import idct
 
+    if len(lengths) > 1:
+        return np.concatenate([to_rows(part) for part in _split(coefficients, lengths)], axis=-1)
     return np.asarray(idct(coefficients, type=2, norm="ortho", axis=-1))
+
+
+def _split(values: Array, lengths: Sequence[int]) -> list[Array]:
+    """The values (..., n) of each sequence."""
+    return np.split(values, np.cumsum(lengths)[:-1], axis=-1)

@@ -15,6 +15,7 @@ from diagnosis.discovery.fitting.joint_fit import (
     Weighting,
     evaluate,
     free_of,
+    own_zeros,
     solve,
     tidy,
 )
@@ -46,14 +47,14 @@ def unfitted(observations: Observations, start: Chain, settings: DiscoverySettin
     """A chain held against the observations as it is, nothing fitted."""
     weight = 1.0 if observations.observables == 2 else 0.0
     weighting = Weighting(
-        noise_family(len(observations), settings.colour_log_odds), radius_weight=weight, settings=settings
+        noise_family(observations.lengths, settings.colour_log_odds), radius_weight=weight, settings=settings
     )
     return evaluate(start, (), observations, weighting)
 
 
 def baseline_fit(fit: Fit) -> Fit:
     """The paper's error model, all six factors free."""
-    return solve(evaluate(awake(fit.chain), BASELINE, fit.observations, fit.weighting))
+    return solve(evaluate(awake(fit.chain), (*BASELINE, *own_zeros(fit.chain)), fit.observations, fit.weighting))
 
 
 def senses_of_angles(observations: Observations) -> int:
@@ -82,7 +83,7 @@ def fit_of_given(fit: Fit) -> Fit:
     chain = start.without(*each_turn)
     chain = chain.with_values({ZERO_ANGLE.key: {ZERO_ANGLE.name: 0.0, **chain.values.get(ZERO_ANGLE.key, {})}})
     chain = aligned(chain, observations.motion, observations.measured)
-    free: list[Free] = [ZERO_ANGLE]
+    free: list[Free] = [ZERO_ANGLE, *own_zeros(chain)]
     if each_turn and turns > 1:
         # Each turn's zero from its own readings: zeros that all begin alike would be held there by their own scatter.
         motion = chain.shaft(observations.motion)

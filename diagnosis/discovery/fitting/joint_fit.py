@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from diagnosis.discovery.fitting.coefficients import observables_to_cosine
+from diagnosis.discovery.fitting.coefficients import observables_to_cosine, to_rows
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import NoiseFamily
 from diagnosis.discovery.fitting.observations import Observations
@@ -15,9 +15,9 @@ from twin.angles import Array, wrap
 from twin.baseline import FACTORS
 from twin.catalogue import find
 from twin.chain import Chain
+from twin.each_recording import MARK, acts_in
 from twin.effect import Effect
 from twin.mechanics.zero import ZERO
-from twin.noise.spectrum import to_rows
 from twin.param import Param
 
 
@@ -33,6 +33,16 @@ class Free:
 ZERO_ANGLE = Free(ZERO.name, "zero_deg")
 BASELINE = (ZERO_ANGLE, *(Free(f.key, f.param) for f in FACTORS if f.effect is not ZERO))
 """The paper's error model, always fitted."""
+
+
+def own_zeros(chain: Chain) -> tuple[Free, ...]:
+    """The zeros of further recordings of the device, each beside that of the first one."""
+    return tuple(Free(effect.name, ZERO_ANGLE.name) for effect in chain.effects if zero_of(effect.name) is not None)
+
+
+def zero_of(key: str) -> int | None:
+    """The further recording (counted from 0) whose own zero a key is; None: it is something else."""
+    return acts_in(key) if key.startswith(f"{ZERO.name}{MARK}") else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +148,7 @@ class Fit:
         """Whitened coefficients (..., N) of the observables back over the rows; the priors' stay as they are."""
         size = self.observations.observables * len(self.observations)
         shape = (*whitened.shape[:-1], self.observations.observables, len(self.observations))
-        rows = to_rows(whitened[..., :size].reshape(shape)).reshape(*whitened.shape[:-1], size)
+        rows = to_rows(self.observations, whitened[..., :size].reshape(shape)).reshape(*whitened.shape[:-1], size)
         return np.concatenate([rows, whitened[..., size:]], axis=-1)
 
 
@@ -203,7 +213,8 @@ def evaluate(
 def radius_nuisance(observations: Observations) -> list[Array]:
     """What the radius may do for reasons of its own: a scale, and a quadratic in temperature. Masked rows are zero."""
     usable = observations.usable.astype(np.float64)
-    columns = [usable]
+    recordings = observations.motion.recordings
+    columns = [usable] if recordings is None else [usable * (recordings.number == k) for k in range(len(recordings))]
     if "two temperatures" in observations.motion.provides:
         warm = (observations.motion.temperature_c - 25.0) / 50.0
         columns += [usable * warm, usable * warm**2]

@@ -5,6 +5,7 @@ Whitening is a weight on each cosine coefficient, so that every spectrum of the 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -70,6 +71,7 @@ def log_determinant(spectrum: Array, rows: int) -> float:
     return float(np.sum(np.log(spectrum))) * (rows / spectrum.size)
 
 
-def noise_family(n: int, colour_log_odds: float) -> NoiseFamily:
-    """The family for a sequence of n readings."""
-    return NoiseFamily(MEMBERS, np.stack([noise.spectrum(n) for noise in MEMBERS]), colour_log_odds)
+def noise_family(lengths: Sequence[int], colour_log_odds: float) -> NoiseFamily:
+    """The family for sequences of so many readings, one behind the other and independent of each other."""
+    spectra = [np.concatenate([noise.spectrum(n) for n in lengths]) for noise in MEMBERS]
+    return NoiseFamily(MEMBERS, np.stack(spectra), colour_log_odds)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from diagnosis.discovery.fitting.repeats import Repeats
 from twin.angles import Array, IntArray, wrap
 from twin.effect import BoolArray
 from twin.motion import Motion
+from twin.noise.description import Noise
 from twin.sweep import Sweep
 
 MOST_ROWS = 12_000
@@ -24,11 +26,11 @@ class Observations:
     ``motion`` holds the reference's readings as shaft angles. ``log_radius`` is log |(vx, vy)| where the channels
     were recorded. ``usable`` masks rows out of the fits of the mean (outliers, repeats of stale frames, held-out
     blocks); rows that are not ``sure`` are out for good, their direction being in doubt. ``scale`` is the noise of a
-    row against the usual one. ``group`` maps each raw row to its row here, and ``ahead`` (n_raw,) [rad] is how much
-    further the reading of a raw row is expected to be than that of its row, the shaft having moved meanwhile.
-    ``repeat_rms`` [rad] is the scatter of readings that became one row, ``within`` the mean square [rad^2] over all
-    readings that averaging them has taken away. ``repeats`` are the readings repeated at one angle, where the bench
-    stood still for some.
+    row against the usual one, and ``level`` the part of it that its whole recording has. ``group`` maps each raw row to
+    its row here, and ``ahead`` (n_raw,) [rad] is how much further the reading of a raw row is expected to be than that
+    of its row, the shaft having moved meanwhile. ``repeat_rms`` [rad] is the scatter of readings that became one row,
+    ``within`` the mean square [rad^2] over all readings that averaging them has taken away. ``repeats`` are the
+    readings repeated at one angle, where the bench stood still for some.
     """
 
     motion: Motion
@@ -41,6 +43,7 @@ class Observations:
     ahead: Array
     repeat_rms: float | None
     within: float
+    level: Array
     repeats: Repeats | None = None
 
     def __len__(self) -> int:
@@ -50,6 +53,16 @@ class Observations:
     def observables(self) -> int:
         """1 for the angle alone, 2 with the radius."""
         return 1 if self.log_radius is None else 2
+
+    @cached_property
+    def lengths(self) -> tuple[int, ...]:
+        """Rows of each recording: noise is not correlated from one to the next."""
+        recordings = self.motion.recordings
+        return (len(self),) if recordings is None else recordings.lengths
+
+    def spectrum(self, noise: Noise) -> Array:
+        """Spectrum (n,) of a noise over the cosine coefficients of the rows, recording by recording."""
+        return np.concatenate([noise.spectrum(length) for length in self.lengths])
 
     def masked(self, usable: BoolArray) -> Observations:
         """The same rows with another mask."""
@@ -97,6 +110,7 @@ def collect(sweep: Sweep) -> Observations:
         ahead=ahead,
         repeat_rms=repeat_rms,
         within=within,
+        level=np.ones(n),
         repeats=repeats,
     )
 
@@ -167,4 +181,5 @@ def _averaged(motion: Motion, group: IntArray, count: IntArray, first: IntArray)
         speed_rad_s=mean(motion.speed_rad_s),
         turn=motion.turn[first],
         temperature_c=mean(motion.temperature_c),
+        recordings=None if motion.recordings is None else motion.recordings.part(first),
     )

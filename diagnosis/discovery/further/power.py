@@ -172,13 +172,14 @@ def expected(fit: Fit, rival: Fit, recording: Recording) -> Fit:
         usable=np.ones(n, dtype=bool),
         sure=np.ones(n, dtype=bool),
         scale=np.ones(n),
+        level=np.ones(n),
         group=np.arange(n),
         ahead=np.zeros(n),
     )
     weight = fit.weighting.radius_weight if fit.observations.observables == 2 else 1.0
     weighting = replace(
         fit.weighting,
-        family=_family(n, fit.settings.colour_log_odds),
+        family=_family((n,), fit.settings.colour_log_odds),
         radius_member=fit.weighting.radius_member if fit.observations.observables == 2 else fit.weighting.member,
         radius_weight=weight if recording.channels else 0.0,
     )

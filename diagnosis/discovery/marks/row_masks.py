@@ -58,7 +58,7 @@ def without_rows(fit: Fit, raw: BoolArray) -> Fit:
 
 def scaled(fit: Fit, variance: Array) -> Fit:
     """The fit with its rows weighed by a variance (n,)."""
-    observations = replace(fit.observations, scale=row_scale(fit.observations, variance))
+    observations = replace(fit.observations, scale=row_scale(fit.observations, variance) * fit.observations.level)
     return solve(evaluate(fit.chain, fit.free, observations, fit.weighting))
 
 

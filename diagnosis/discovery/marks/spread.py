@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.discovery.fitting.coefficients import to_rows
 from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
 from diagnosis.discovery.fitting.noise.rounding import stairs_rule
 from diagnosis.discovery.fitting.observations import Observations
 from twin.angles import Array
 from twin.effect import BoolArray, Effect
 from twin.empirical.spread import UNNAMED_BURST
-from twin.noise.spectrum import to_rows
 
 _T95 = 1.959964
 
@@ -36,7 +36,7 @@ def white_rows(fit: Fit) -> Array:
     What the rows' scale has taken out of them is put back: this is what the spread is judged on.
     """
     root = root_weights(fit.weighting, fit.observations.observables)[0]
-    rows = to_rows(fit.cosine_residual[0] * root) * fit.observations.scale
+    rows = to_rows(fit.observations, fit.cosine_residual[0] * root) * (fit.observations.scale / fit.observations.level)
     sigma = float(np.sqrt(np.mean(rows[fit.observations.usable] ** 2)))
     return np.where(fit.observations.usable, rows / max(sigma, 1e-300), 0.0)
 

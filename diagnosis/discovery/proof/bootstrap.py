@@ -31,7 +31,7 @@ def twin_parameters(fit: Fit, noise: Noise) -> dict[str, float]:
     """The parameters with which the twin's own noise simulates that of a fit, beside the fit's stairs and spreads."""
     ahead = ahead_of_stairs(fit, noise)
     # What causes in the spread add is white, and nothing in the quietest rows.
-    variance = fit.observations.scale[fit.observations.usable] ** 2
+    variance = (fit.observations.scale / fit.observations.level)[fit.observations.usable] ** 2
     quietest = float(np.min(variance))
     coloured = min((1.0 - ahead.white_share) / (quietest * float(np.mean(1.0 / variance))), 1.0)
     return parameters(replace(ahead, rms_rad=ahead.rms_rad * np.sqrt(quietest), white_share=1.0 - coloured))
@@ -42,8 +42,8 @@ def simulated(fit: Fit, noise: Noise, *, count: int, rng: np.random.Generator) -
 
     ``noise`` is that ahead of the stairs.
     """
-    n = len(fit.observations)
-    unit = draw(rng, (count, n), noise.spectrum(n), dof=noise.dof)
+    drawn = [draw(rng, (count, length), noise.spectrum(length), dof=noise.dof) for length in fit.observations.lengths]
+    unit = np.concatenate(drawn, axis=-1)
     return _behind_stairs(fit, noise.rms_rad * unit * (fit.observations.scale * row_scale(fit, noise)))
 
 

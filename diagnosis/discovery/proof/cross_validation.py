@@ -7,25 +7,31 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, evaluate, solve
+from diagnosis.discovery.proof.whole_recordings import are_halves, by_recordings, halves, held_out_rows
 from twin.angles import TAU, Array, IntArray, wrap
 from twin.effect import BoolArray
 
 
-def folds(fit: Fit) -> IntArray:
+def folds(fit: Fit, keys: Sequence[str] = ()) -> IntArray:
     """Fold (n,) of each row: blocks of a part of a turn of travel, dealt out so that every part is held out in
     some turn.
 
-    A block is shorter than a turn, so that each turn's own zero can be fitted from the rest of it.
+    A block is shorter than a turn, so that each turn's own zero can be fitted from the rest of it. Of several
+    recordings each is held out as a whole, see :mod:`~diagnosis.discovery.proof.whole_recordings`.
     """
     motion, count = fit.observations.motion, fit.settings.folds
     block = np.floor(motion.travel_rad / TAU * fit.settings.blocks_a_turn + 1e-9).astype(np.int64)
     if block.max(initial=0) < 2 * count:
         block = np.floor(np.arange(len(motion)) * (3 * count) / max(len(motion), 1)).astype(np.int64)
+    if by_recordings(fit, keys):
+        return halves(fit, block)
     return np.asarray(block % count, dtype=np.int64)
 
 
-def scattered(fit: Fit) -> IntArray:
+def scattered(fit: Fit, keys: Sequence[str] = ()) -> IntArray:
     """Fold (n,) of each row where neighbours share none: for what is narrower than a block, in white noise."""
+    if by_recordings(fit, keys):
+        return halves(fit, np.arange(len(fit.observations), dtype=np.int64))
     return np.arange(len(fit.observations), dtype=np.int64) % fit.settings.folds
 
 
@@ -43,6 +49,8 @@ def held_out_residual(fit: Fit, keys: Sequence[str], present: Collection[str], f
     base_free = [f for f in fit.free if f.key not in keys] or list(BASELINE)
     free = (*base_free, *(f for f in fit.free if f.key in present))
     chain = fit.chain.without(*(key for key in keys if key not in present))
+    if are_halves(fit, fold):
+        return held_out_rows(fit, chain, free, fold)
     residual = np.full(len(fit.observations), np.nan)
     for number in range(fit.settings.folds):
         held = fold == number

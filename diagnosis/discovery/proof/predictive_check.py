@@ -15,13 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from diagnosis.discovery.fitting.coefficients import to_cosine
+from diagnosis.discovery.fitting.coefficients import to_cosine, to_rows
 from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
 from diagnosis.discovery.fitting.noise.rounding import ahead_of_stairs
 from diagnosis.discovery.proof.bootstrap import noise_of, row_scale, simulated
 from twin.angles import TAU, Array, IntArray
 from twin.noise.description import Noise
-from twin.noise.spectrum import to_rows
 
 _BINS = 360
 _COARSE = 12
@@ -56,11 +55,11 @@ def likeness(fit: Fit, *, rng: np.random.Generator, noise: Noise | None = None) 
     use = fit.observations.usable
     noise = noise or noise_of(fit)
     plan = _Plan.of(fit)
-    weight = 1.0 / np.sqrt(noise.spectrum(len(use)))
+    weight = 1.0 / np.sqrt(fit.observations.spectrum(noise))
     scale = row_scale(fit, noise)
 
     def whitened(coefficients: Array) -> Array:
-        return to_rows(coefficients * weight) / scale
+        return to_rows(fit.observations, coefficients * weight) / scale
 
     refit = _Refit.of(fit)
     names, measured = plan.statistics(whitened(refit.settled(fit.cosine_residual[0])[None]))

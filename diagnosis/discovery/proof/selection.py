@@ -87,10 +87,10 @@ def prove(fit: Fit, effects: tuple[Effect, ...], keys: Sequence[str], *, rng: np
     views = _views(fit, effects) if keys else []
     causes = sorted((_judged(views, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
     ordered = [cause.key for cause in causes]
-    fold = folds(fit)
+    fold = folds(fit, ordered)
     if fit.weighting.member == 0 and least_seen(fit, ordered, fold) < fit.settings.heldout_seen:
         # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere.
-        fold = scattered(fit)
+        fold = scattered(fit, ordered)
     held, weighed = _held_out(fit, ordered, fold)
     family = _calibrated(fit, effects, causes, rng)
     return Proof(fit, effects, tuple(causes), fold, tuple(held), tuple(weighed), family)

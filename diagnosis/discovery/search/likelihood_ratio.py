@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
-from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, tidy
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, free_of, solve, tidy
 from diagnosis.discovery.fitting.noise.plausible import plausible_members, radius_noise
 from diagnosis.discovery.search.screening import Base, Candidate
-from twin.catalogue import unnamed
+from twin.catalogue import find, unnamed
 from twin.chain import Chain
 from twin.effect import Effect
 
@@ -28,7 +28,7 @@ def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
     distribution with the scatter that they show: a common cause of many turns' zeros gains by making them scatter less.
     """
     family = fit.weighting.family
-    base = [k for k, free in enumerate(fit.free) if free in BASELINE]
+    base = [k for k, free in enumerate(fit.free) if find(free.key, fit.chain.effects).baseline]
     turns = [k for k, free in enumerate(fit.free) if free.turn is not None]
     integrated = [*base, *turns]
     dof = fit.rows * fit.observations.observables - len(base)

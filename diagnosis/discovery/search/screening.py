@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.discovery.fitting.coefficients import observables_to_cosine
+from diagnosis.discovery.fitting.coefficients import observables_to_cosine, to_rows
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, radius_nuisance, root_weights
 from diagnosis.discovery.fitting.linearised_chain import Term
@@ -21,7 +21,6 @@ from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.search.periodogram import line_shapes
 from twin.angles import Array, IntArray
 from twin.effect import Effect
-from twin.noise.spectrum import to_rows
 
 _CHUNK = 4_000_000
 _ZOOMS = 3
@@ -173,7 +172,7 @@ def matched_to(base: Base, cosine_residual: Array, best: int) -> list[Array]:
     rows = []
     for member in dict.fromkeys((0, best)):
         weighted = cosine_residual * fit.weighting.family.weights[member]
-        rows.append(to_rows(weighted) * (fit.observations.usable / fit.observations.scale))
+        rows.append(to_rows(fit.observations, weighted) * (fit.observations.usable / fit.observations.scale))
     return rows
 
 

@@ -32,7 +32,7 @@ def spread(state: State) -> State:
     judged = [(shape.log_p + (odds if unnamed(shape.name) else 0.0), shape) for shape in shapes]
     score, best = min(judged, key=lambda item: item[0], default=(0.0, None))
     if best is None or score > limit:
-        if np.all(fit.observations.scale == 1.0):
+        if np.all(fit.observations.scale == fit.observations.level):
             return state
         # What looked like uneven noise before the search was structure: a scale that no cause carries goes.
         return state.with_(scaled(fit, np.ones(len(fit.observations))))

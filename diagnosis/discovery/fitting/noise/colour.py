@@ -106,7 +106,7 @@ class _Restricted:
     """Restricted likelihood of the angle's residual, as a function of the noise's spectrum.
 
     The residual's coefficients (n,), columns (P, n) of the free parameters and of the priors on them (P, M), the
-    priors' own residual (M,), and the rows in use.
+    priors' own residual (M,), the rows in use, and the spectrum of a noise over the coefficients.
     """
 
     coefficients: Array
@@ -114,6 +114,7 @@ class _Restricted:
     priors: Array
     prior_residual: Array
     rows: int
+    spectrum: Callable[[Noise], Array]
 
     @classmethod
     def of(cls, fit: Fit) -> _Restricted:
@@ -122,18 +123,19 @@ class _Restricted:
         length = np.linalg.norm(columns, axis=1, keepdims=True)
         columns = columns[length[:, 0] > 0.0] / length[length[:, 0] > 0.0]
         c = fit.cosine_residual[0]
-        return cls(c, columns[:, : c.size], columns[:, c.size :], fit.prior_residual, fit.rows)
+        own, priors = columns[:, : c.size], columns[:, c.size :]
+        return cls(c, own, priors, fit.prior_residual, fit.rows, fit.observations.spectrum)
 
     def cost(self, noise: Noise) -> float:
         """Minus the log likelihood of the spectrum, the noise's variance at its best."""
-        shape = noise.spectrum(self.coefficients.size)
+        shape = self.spectrum(noise)
         left, log_det = self._left(shape)
         dof = self.rows - len(self.columns)
         return 0.5 * (dof * float(np.log(max(left, 1e-300))) + log_determinant(shape, self.rows) + log_det)
 
     def rms(self, noise: Noise) -> float:
         """The RMS at its best: what the free parameters have taken out of the residual is put back."""
-        left, _ = self._left(noise.spectrum(self.coefficients.size))
+        left, _ = self._left(self.spectrum(noise))
         return float(np.sqrt(max(left, 0.0) / (self.rows + self.prior_residual.size - len(self.columns))))
 
     def _left(self, shape: Array) -> tuple[float, float]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.discovery.fitting.coefficients import to_rows
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.noise.colour import coloured
 from diagnosis.discovery.fitting.noise.distribution import distribution
@@ -13,7 +14,6 @@ from diagnosis.discovery.fitting.noise.rounding import stairs_rule
 from twin.angles import Array
 from twin.noise.description import Noise
 from twin.noise.row_scale import RowScale, conditions
-from twin.noise.spectrum import to_rows
 
 _NEEDS = {
     "backward_percent": "both directions",
@@ -65,7 +65,7 @@ def estimated(fit: Fit, *, limit_rad: float) -> Noise:
 
 def whitened_rows(fit: Fit, noise: Noise) -> Array:
     """Residual (n,) [rad] of the angle over the rows, without the noise's colour and the rows' own scale."""
-    return to_rows(fit.cosine_residual[0] / np.sqrt(noise.spectrum(len(fit.observations))))
+    return to_rows(fit.observations, fit.cosine_residual[0] / np.sqrt(fit.observations.spectrum(noise)))
 
 
 def peak(noise: Noise, n: int) -> float:

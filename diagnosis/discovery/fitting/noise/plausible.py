@@ -94,6 +94,10 @@ def locked_shapes(motion: Motion) -> Array:
                 shapes.append(weight * np.sin(k * motion.shaft_rad))
 
     series(range(3, highest + 1), ones)
+    if motion.recordings is not None:
+        # What one recording's factors do not take up of the low orders is no noise in another either.
+        for number in range(len(motion.recordings)):
+            series(range(0, min(3, highest + 1)), (motion.recordings.number == number).astype(np.float64))
     low = range(0, min(8, highest) + 1)
     # A slow drift of the zero is no noise either: the noise's colour is told by what is faster.
     share = np.linspace(0.0, 1.0, len(motion))

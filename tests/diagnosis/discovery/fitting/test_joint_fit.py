@@ -87,7 +87,7 @@ def started(case: Case) -> tuple[Fit, Array]:
     for key in case.causes:
         free += free_of(find(key), key, turns=1, channels=case.channels)
     weighting = Weighting(
-        noise_family(len(observations), DiscoverySettings().colour_log_odds),
+        noise_family(observations.lengths, DiscoverySettings().colour_log_odds),
         member=case.member,
         radius_member=case.member,
         radius_weight=1.0 if case.channels else 0.0,

@@ -24,7 +24,7 @@ def test_the_noise_that_made_a_sequence_is_chosen_whatever_is_masked(label: str,
 
     Over 200 draws it was 0.7 or more of them for each; fewer than 10 of 20 then has a chance of 2 %, seeds fixed.
     """
-    family = noise_family(ROWS, DiscoverySettings().colour_log_odds)
+    family = noise_family((ROWS,), DiscoverySettings().colour_log_odds)
     member = family.labels.index(label)
     rng = np.random.default_rng([member, int(10 * masked)])
     chosen = 0

@@ -1,0 +1,44 @@
+"""Recording levels: each recording of a device is weighed by the noise of its own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import evaluate, solve
+from diagnosis.discovery.fitting.observations import Observations
+from diagnosis.discovery.marks.outliers import local_residual, robust_rms
+from diagnosis.discovery.state import State
+from twin.angles import Array
+
+_CHANGED = 0.05
+"""Change of a level that is worth another fit: the weights of two recordings then differ by a tenth."""
+_SMALLEST = 0.02
+"""Level of a recording against the others at which it stops: digits alone are no noise to weigh by."""
+
+
+def recording_levels(state: State) -> State:
+    """Give the rows of each recording the scale that its readings have about their neighbours."""
+    fit = state.fit
+    if fit.observations.motion.recordings is None:
+        return state
+    level = _levels(fit.observations, fit.residual[0])
+    if np.max(np.abs(np.log(level / fit.observations.level))) < _CHANGED:
+        return state
+    scale = fit.observations.scale / fit.observations.level * level
+    observations = replace(fit.observations, level=level, scale=scale)
+    return state.with_(solve(evaluate(fit.chain, fit.free, observations, fit.weighting)))
+
+
+def _levels(observations: Observations, residual: Array) -> Array:
+    """Noise of each row's recording (n,) against the usual one, from the residual (n,) [rad] of rows in use."""
+    recordings = observations.motion.recordings
+    assert recordings is not None
+    own = np.array(
+        [robust_rms(local_residual(residual[rows][observations.usable[rows]])) for rows in recordings.slices]
+    )
+    usual = float(np.median(own[recordings.number]))
+    if usual == 0.0:
+        return np.ones(len(observations))
+    return np.asarray(np.clip(own / usual, _SMALLEST, 1.0 / _SMALLEST)[recordings.number])

@@ -1,0 +1,195 @@
+"""Several recordings of one device as one sweep, and the chain that the search sets out from.
+
+The device's parameters are common to all. A recording has its own zero, its own noise, and what happens in time within
+it; what follows the magnet's field or distance is that of its air gap.
+
+The reference may have found its zero anew between two recordings, and the sensor may have been turned about the shaft:
+both move the zero between them. What was stated of the sensor's turn is taken for that; the rest is the reference's,
+and its angles are counted back, so that one place of the shaft bears one angle in all recordings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from diagnosis.discovery.fitting.initial_fit import senses_of_channels
+from diagnosis.error_model.fit import fit_baseline
+from diagnosis.error_model.result import BaselineFit
+from diagnosis.factors.mounting import Mounting
+from twin.angles import Array, wrap_deg
+from twin.chain import Chain
+from twin.each_recording import MARK, in_each, in_one
+from twin.effect import BoolArray, Effect
+from twin.errors import SweepError
+from twin.magnet.magnet import Magnet
+from twin.mechanics.zero import ZERO
+from twin.recordings import Recordings, Setup
+from twin.sweep import Sweep
+from twin.sweep_columns import OF_SETUP
+
+SAME_PLACE_DEG = 15.0
+"""The zeros of two recordings that are nearer than this belong to a reference that was not moved."""
+
+
+@dataclass(frozen=True, eq=False)
+class Joined:
+    """The sweep, the chain to set out from, and the rows (n,) that the fits of single recordings left out."""
+
+    sweep: Sweep
+    start: Chain
+    suspects: BoolArray
+
+
+def joined(
+    sweeps: Sequence[Sweep],
+    effects: Sequence[Effect],
+    *,
+    mounting: Mounting | None,
+    given: Chain | None,
+    rng: np.random.Generator,
+) -> Joined:
+    """Join two or more recordings of one device.
+
+    Parameters
+    ----------
+    sweeps : sequence of Sweep
+        The recordings.
+    effects : sequence of Effect
+        What may act on each of them.
+    mounting : Mounting or None
+        The magnet, and where stated the air gap and the sensor's turn of each recording; these go before the columns
+        ``air_gap_mm`` and ``mounting_deg``.
+    given : Chain or None
+        The device's twin, where they are held against one.
+    rng : numpy.random.Generator
+        Draws the swarms of the fits.
+
+    Raises
+    ------
+    SweepError
+        Where they cannot belong together.
+    """
+    fits = _baselines(sweeps, rng)
+    magnet = mounting.magnet if mounting is not None else Magnet()
+    stated = mounting.air_gap_mm if mounting is not None and len(mounting.air_gap_mm) == len(sweeps) else None
+    gaps = list(stated) if stated is not None else _stated(sweeps, "air_gap_mm")
+    turned = list(mounting.turned_deg) if mounting is not None and mounting.turned_deg else []
+    setups = _with_references(_at_gaps(sweeps, gaps, magnet), turned or _stated(sweeps, "mounting_deg"), fits)
+    chain = fits[0].chain() if given is None else given
+    own = {f"{ZERO.name}{MARK}{k + 1}": {"zero_deg": _own_zero(fits, setups, k)} for k in range(1, len(sweeps))}
+    start = replace(chain.with_values(own), effects=_effects(effects, setups, magnet))
+    return Joined(_one_sweep(sweeps, setups), start, np.concatenate([fit.outliers for fit in fits]))
+
+
+def _baselines(sweeps: Sequence[Sweep], rng: np.random.Generator) -> list[BaselineFit]:
+    """The paper's error model of each recording, in the senses that the first one shows."""
+    fits: list[BaselineFit] = []
+    senses = next((told for told in map(senses_of_channels, sweeps) if told is not None), None)
+    for sweep in sweeps:
+        angles = np.radians(sweep.reference_deg), np.radians(sweep.measured_deg)
+        fits.append(fit_baseline(*angles, rng=rng, senses=senses, robust=True))
+        senses = senses or (fits[0].senses.sensor, fits[0].senses.output)
+        if sweep is not sweeps[0] and fits[-1].rms_rad > np.radians(45.0):
+            raise SweepError(
+                f"{sweep.name}: counts the other way round than {sweeps[0].name}; expected recordings of one device on "
+                "one bench; give them one by one (--each)"
+            )
+    return fits
+
+
+def _stated(sweeps: Sequence[Sweep], column: str) -> list[float | None]:
+    """What a column states for each recording. Raises SweepError where only some do."""
+    found: list[float | None] = []
+    for sweep in sweeps:
+        values = getattr(sweep, column)
+        found.append(None if values is None else float(values[np.isfinite(values)][0]))
+    if None in found and any(value is not None for value in found):
+        lacking = sweeps[found.index(None)].name
+        raise SweepError(f"{lacking}: no column {column}, which another recording has; state it for all or for none")
+    return found
+
+
+def _at_gaps(sweeps: Sequence[Sweep], gaps: Sequence[float | None], magnet: Magnet) -> list[Setup]:
+    """How each recording was set up: its air gap, and the field there as the channels or the magnet tell it."""
+    if any(gap is None for gap in gaps):
+        return [Setup(name=sweep.name) for sweep in sweeps]
+    known = np.array(gaps, dtype=np.float64)
+    field = Mounting(magnet=magnet, air_gap_mm=tuple(known)).field_mT(known)
+    if all(sweep.vx is not None for sweep in sweeps) and np.ptp(known) > 0.0:
+        # A gap set by hand is off by more than an amplitude that was read.
+        field = np.array([np.median(np.hypot(sweep.vx, sweep.vy)) for sweep in sweeps])  # type: ignore[arg-type]
+    distance = known + 0.5 * float(magnet.height_mm)
+    return [
+        Setup(
+            name=sweep.name, air_gap_mm=float(gap), field=float(strength / field[0]), distance=float(far / distance[0])
+        )
+        for sweep, gap, strength, far in zip(sweeps, known, field, distance, strict=True)
+    ]
+
+
+def _zeros(fits: Sequence[BaselineFit]) -> Array:
+    """The zero of each recording against the first one's [deg]."""
+    zeros = np.array([fit.chain().values[ZERO.name]["zero_deg"] for fit in fits], dtype=np.float64)
+    return np.asarray(wrap_deg(zeros - zeros[0]))
+
+
+def _with_references(
+    setups: Sequence[Setup], turned: Sequence[float | None], fits: Sequence[BaselineFit]
+) -> list[Setup]:
+    """The setups with the sensor's turn, and how far the reference has counted on."""
+    sense = fits[0].senses.sensor
+    found = []
+    for setup, zero_deg, value in zip(setups, _zeros(fits), turned, strict=True):
+        by = 0.0 if value is None or turned[0] is None else float(value) - float(turned[0])
+        # A sensor that is turned with the angles it counts sees the field stand back by as much. Which way a stage
+        # counts is often not written down: the zero tells.
+        by = min((-by, by), key=lambda moved: abs(float(wrap_deg(zero_deg - moved))))
+        moved = float(wrap_deg(zero_deg - by))
+        counted_on = -sense * moved if abs(moved) > SAME_PLACE_DEG else 0.0
+        found.append(replace(setup, turned_deg=-by, reference_deg=counted_on))
+    return found
+
+
+def _own_zero(fits: Sequence[BaselineFit], setups: Sequence[Setup], place: int) -> float:
+    """The zero [deg] of a recording beside the first one's, once its reference is counted back."""
+    sense = fits[0].senses.sensor
+    return float(wrap_deg(_zeros(fits)[place] + sense * setups[place].reference_deg))
+
+
+def _effects(effects: Sequence[Effect], setups: Sequence[Setup], magnet: Magnet) -> tuple[Effect, ...]:
+    """The effects common to all recordings, and those that each has by itself: its zero, and what happens in time."""
+    found: list[Effect] = []
+    for effect in effects:
+        if effect.name == ZERO.name:
+            found += [effect, *(in_one(effect, number) for number in range(1, len(setups)))]
+        elif "time_s" in effect.needs:
+            found += [in_one(effect, number) for number in range(len(setups))]
+        else:
+            found.append(in_each(effect, setups, magnet))
+    return tuple(found)
+
+
+def _one_sweep(sweeps: Sequence[Sweep], setups: Sequence[Setup]) -> Sweep:
+    """All rows one behind the other, in the columns that all recordings have, numbered through."""
+    names = [name for name in sweeps[0].columns if all(name in sweep.columns for sweep in sweeps)]
+    columns: dict[str, Any] = {
+        name: np.concatenate([sweep.columns[name] for sweep in sweeps]) for name in names if name not in OF_SETUP
+    }
+    back = [setup.reference_deg for setup in setups]
+    columns["reference_deg"] = np.concatenate([s.reference_deg - b for s, b in zip(sweeps, back, strict=True)])
+    before = np.cumsum([0, *(sweep.rows for sweep in sweeps[:-1])])
+    placed = list(zip(sweeps, before.tolist(), strict=True))
+    rejected = {row + first: why for sweep, first in placed for row, why in sweep.rejected.items()}
+    number = np.repeat(np.arange(len(sweeps)), [len(sweep) for sweep in sweeps])
+    return Sweep(
+        **columns,
+        rejected=rejected,
+        name=", ".join(sweep.name for sweep in sweeps),
+        row_numbers=np.concatenate([s.numbers + first for s, first in placed]),
+        set_aside=sum(sweep.set_aside for sweep in sweeps),
+        recordings=Recordings(number, tuple(setups)),
+    )

@@ -1,0 +1,107 @@
+"""Recordings of one device side by side: how each was set up, and what is left of its error."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from diagnosis.discovery.proof.cross_validation import rms_deg
+from diagnosis.discovery.result import Discovery
+from diagnosis.report.factor_names import LABELS, UNITS
+from diagnosis.report.wording import plain
+
+HEADS = (
+    *("recording", "readings", "air gap, mm", "turned, deg", "temperature, C", "zero, deg"),
+    *("baseline", "extended", "own"),
+)
+"""Columns of the table; the last three are RMS errors in deg."""
+
+
+def recordings_answer(found: Discovery) -> dict[str, Any]:
+    """What the JSON says of several recordings; nothing of a single one."""
+    recordings = found.sweep.recordings
+    if recordings is None:
+        return {}
+    return {
+        "recordings": [_recording(found, number) for number in range(len(recordings))],
+        "held_out_by": "recordings" if found.whole_recordings else "blocks",
+    }
+
+
+def _recording(found: Discovery, number: int) -> dict[str, Any]:
+    recordings, motion = found.fit.observations.motion.recordings, found.fit.observations.motion
+    assert recordings is not None
+    setup, part = recordings.setups[number], motion.parts[number]
+    rows = found.fit.observations.usable & (recordings.number == number)
+    told: dict[str, Any] = {
+        "name": setup.name,
+        "rows": int(np.count_nonzero(found.sweep.recordings.number == number)) if found.sweep.recordings else 0,
+        "turns": part.turns,
+        "air_gap_mm": setup.air_gap_mm,
+        "field": setup.field,
+        "turned_deg": setup.turned_deg,
+        "reference_counted_on_deg": setup.reference_deg,
+        "temperature_c": float(np.median(part.temperature_c)) if "temperature_c" in motion.columns else None,
+        "baseline_rms_deg": rms_deg(found.baseline.residual[0], rows),
+        "extended_rms_deg": rms_deg(found.fit.residual[0], rows),
+    }
+    if found.alone:
+        alone = found.alone[number]
+        differ = {name: {"own": own, "common": common} for name, (own, common) in alone.differ.items()}
+        told |= {"zero_deg": alone.zero_deg, "own_rms_deg": alone.own_deg, "ratio": alone.ratio, "differ": differ}
+    return told
+
+
+def recordings_rows(answer: Mapping[str, Any]) -> list[list[str]]:
+    """The table of the recordings, a row each, under :data:`HEADS`; empty for a single one."""
+    return [
+        [
+            one["name"],
+            str(one["rows"]),
+            _shown(one["air_gap_mm"]),
+            plain(one["turned_deg"]),
+            _shown(one["temperature_c"]),
+            _shown(one.get("zero_deg"), 5),
+            plain(one["baseline_rms_deg"]),
+            plain(one["extended_rms_deg"]),
+            _shown(one.get("own_rms_deg")),
+        ]
+        for one in answer.get("recordings", ())
+    ]
+
+
+def recordings_notes(answer: Mapping[str, Any]) -> list[str]:
+    """What is to be said of recordings that stand apart, and how they were held out; empty for a single one."""
+    several = answer.get("recordings", ())
+    if not several:
+        return []
+    said = []
+    if answer["held_out_by"] == "recordings":
+        said.append("held out by whole recordings: each is predicted by what the others tell of the device")
+    else:
+        said.append("held out by blocks of each recording: one alone could not show the causes found")
+    said += [
+        f"the reference of {one['name']} counts from {plain(one['reference_counted_on_deg'])} deg elsewhere than "
+        f"that of {several[0]['name']}"
+        for one in several
+        if one["reference_counted_on_deg"]
+    ]
+    return said + [_not_shared(one) for one in several if one.get("differ")]
+
+
+def _not_shared(one: Mapping[str, Any]) -> str:
+    """That a recording does not share the device's parameters, and in which factors it differs."""
+    differ = ", ".join(
+        f"{LABELS[name]} {plain(values['own'])} instead of {plain(values['common'])} {UNITS[name]}".rstrip()
+        for name, values in one["differ"].items()
+    )
+    return (
+        f"{one['name']} does not share one device's parameters with the others: {plain(one['ratio'])} times closer "
+        f"with its own ({differ}); if it is of another device, explain it by itself (--each)"
+    )
+
+
+def _shown(value: float | None, digits: int = 3) -> str:
+    return "" if value is None else plain(value, digits)

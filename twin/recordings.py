@@ -1,0 +1,80 @@
+"""Several recordings of one device: which one each reading belongs to, and how the bench was set up in each."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from twin.angles import Array, IntArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setup:
+    """How the bench was set up for one recording.
+
+    Attributes
+    ----------
+    name : str
+        What messages call the recording: the name of its file.
+    air_gap_mm : float or None
+        From the magnet's face to the sensing plane [mm]; None where nobody has stated it.
+    turned_deg : float
+        By how much the sensor was turned about the shaft since the first recording [deg], counted as the sensor's
+        axes count angles.
+    reference_deg : float
+        By how much the reference has counted on from where it stood in the first recording [deg]: its zero was found
+        anew meanwhile.
+    field, distance : float
+        The magnet's field at the sensor, and the distance from its centre, against those of the first recording.
+    """
+
+    name: str = ""
+    air_gap_mm: float | None = None
+    turned_deg: float = 0.0
+    reference_deg: float = 0.0
+    field: float = 1.0
+    distance: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Recordings:
+    """Recordings of one device, one behind the other.
+
+    Attributes
+    ----------
+    number : ndarray
+        Number of the recording of each reading (n,), from 0, never falling.
+    setups : tuple of Setup
+        How the bench was set up in each.
+    """
+
+    number: IntArray
+    setups: tuple[Setup, ...]
+
+    def __len__(self) -> int:
+        return len(self.setups)
+
+    @cached_property
+    def slices(self) -> tuple[slice, ...]:
+        """The rows of each recording."""
+        edges = np.searchsorted(self.number, np.arange(len(self.setups) + 1)).tolist()
+        return tuple(slice(first, last) for first, last in itertools.pairwise(edges))
+
+    @cached_property
+    def lengths(self) -> tuple[int, ...]:
+        """How many readings each recording has."""
+        return tuple(rows.stop - rows.start for rows in self.slices)
+
+    @cached_property
+    def turned_rad(self) -> Array:
+        """By how much the sensor was turned about the shaft [rad], for each reading (n,)."""
+        turned_deg: Array = np.array([setup.turned_deg for setup in self.setups], dtype=np.float64)
+        return np.asarray(np.radians(turned_deg)[self.number])
+
+    def part(self, rows: IntArray) -> Recordings:
+        """The recordings of these rows (m,), in rising order; those without a row are left out."""
+        left, number = np.unique(self.number[rows], return_inverse=True)
+        return Recordings(number.astype(np.int64), tuple(self.setups[k] for k in left))

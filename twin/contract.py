@@ -23,7 +23,7 @@ from twin.surroundings import StreamTakenError, streams_kept
 ROUNDING_RAD = 1e-12
 """Rounding that is allowed: a double near 4 pi carries about 1e-15, a few operations and the arctangent add to it."""
 _OFF_AXIS_RAD = 0.01234
-_TWO = frozenset({"two air gaps"})
+_TWO = frozenset({"two mountings"})
 _SMOOTH: tuple[Role, ...] = ("strength", "level")
 
 

@@ -17,10 +17,10 @@ NEEDS = frozenset(
     {
         *("time_s", "direction", "speed_rpm", "turn", "temperature_c", "vx"),
         *("both directions", "two speeds", "moving shaft", "one turn", "several turns", "two temperatures"),
-        *("two turns", "two air gaps", "varying speed"),
+        *("two turns", "two air gaps", "two mountings", "varying speed"),
     }
 )
-"""What :attr:`twin.motion.Motion.provides` may hold, and two air gaps, which no single sweep provides."""
+"""What :attr:`twin.motion.Motion.provides` may hold, two air gaps and mountings by several recordings only."""
 NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 """Names of effects: lower-case words joined by underscores."""
 _ACTING: tuple[Role, ...] = ("strength", "level", "per turn", "random")

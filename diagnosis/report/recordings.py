@@ -40,7 +40,7 @@ def _recording(found: Discovery, number: int) -> dict[str, Any]:
         "rows": int(np.count_nonzero(found.sweep.recordings.number == number)) if found.sweep.recordings else 0,
         "turns": part.turns,
         "air_gap_mm": setup.air_gap_mm,
-        "field": setup.field,
+        "field_ratio": setup.field,
         "turned_deg": setup.turned_deg,
         "reference_counted_on_deg": setup.reference_deg,
         "temperature_c": float(np.median(part.temperature_c)) if "temperature_c" in motion.columns else None,
@@ -50,7 +50,7 @@ def _recording(found: Discovery, number: int) -> dict[str, Any]:
     if found.alone:
         alone = found.alone[number]
         differ = {name: {"own": own, "common": common} for name, (own, common) in alone.differ.items()}
-        told |= {"zero_deg": alone.zero_deg, "own_rms_deg": alone.own_deg, "ratio": alone.ratio, "differ": differ}
+        told |= {"zero_deg": alone.zero_deg, "own_rms_deg": alone.own_deg, "rms_ratio": alone.ratio, "differ": differ}
     return told
 
 
@@ -98,7 +98,7 @@ def _not_shared(one: Mapping[str, Any]) -> str:
         for name, values in one["differ"].items()
     )
     return (
-        f"{one['name']} does not share one device's parameters with the others: {plain(one['ratio'])} times closer "
+        f"{one['name']} does not share one device's parameters with the others: {plain(one['rms_ratio'])} times closer "
         f"with its own ({differ}); if it is of another device, explain it by itself (--each)"
     )
 

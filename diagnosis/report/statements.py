@@ -370,17 +370,12 @@ def invisible_words(answer: Mapping[str, Any]) -> str:
 
 def not_visible(missing: Mapping[str, Iterable[str]]) -> list[tuple[list[str], str, str]]:
     """Causes that a sweep cannot show, grouped: (names, what is missing, what to do); the largest group first."""
-    groups: dict[tuple[str, ...], list[str]] = {}
+    groups: dict[str, tuple[list[str], str]] = {}
     for name, needs in missing.items():
         wanted = set(needs)
-        told = tuple(sorted(need for need in wanted if _ALSO_SAYS.get(need) not in wanted))
-        groups.setdefault(told, []).append(name)
-    ranked = sorted(groups.items(), key=lambda item: (-len(item[1]), item[1]))
-    return [
-        (
-            names,
-            "; ".join(_LACKS.get(need, (f"no {need}", ""))[0] for need in needs),
-            "; ".join(_LACKS.get(need, ("", f"provide {need}"))[1] for need in needs),
-        )
-        for needs, names in ranked
-    ]
+        told = sorted(need for need in wanted if _ALSO_SAYS.get(need) not in wanted)
+        lacks = "; ".join(_LACKS.get(need, (f"no {need}", ""))[0] for need in told)
+        todo = "; ".join(_LACKS.get(need, ("", f"provide {need}"))[1] for need in told)
+        groups.setdefault(lacks, ([], todo))[0].append(name)
+    ranked = sorted(groups.items(), key=lambda item: (-len(item[1][0]), item[1][0]))
+    return [(names, lacks, todo) for lacks, (names, todo) in ranked]

@@ -1,0 +1,115 @@
+"""Recordings of one device explained together: what is common, what is each one's own, and what they part."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diagnosis import explain
+from diagnosis.explanation import Explanation
+from tests.command_line import halltwin
+from twin.angles import Array
+from twin.chain import Chain
+from twin.errors import UserError
+from twin.files import read_twin
+from twin.motion import Motion
+from twin.sweep import Sweep
+
+THERE = np.radians(np.arange(0.0, 720.0, 4.0))
+DEVICE = Chain().with_effect("offset", x_percent=0.8, y_percent=-0.5)
+
+
+def recorded(device: Chain, name: str, *, zero_deg: float, noise_deg: float = 0.02, **stated: float) -> Sweep:
+    """One recording there and back, with its own zero, noise and conditions."""
+    motion = Motion.from_angle(np.concatenate([THERE, THERE[::-1]]))
+    chain = device.with_effect("zero", zero_deg=zero_deg).with_effect("noise", rms_deg=noise_deg)
+    columns: dict[str, Array] = {column: np.full(len(motion), value) for column, value in stated.items()}
+    sweep = chain.simulate(motion, seed=sum(map(ord, name)))
+    return replace(sweep, name=name, **columns)  # type: ignore[arg-type]
+
+
+@cache
+def lagging() -> Explanation:
+    """Two recordings of a lagging device, the second louder, its zero found anew."""
+    device = DEVICE.with_effect("hysteresis", lag_deg=0.1, memory_deg=8.0)
+    quiet = recorded(device, "quiet.csv", zero_deg=20.0)
+    return explain([quiet, recorded(device, "loud.csv", zero_deg=20.4, noise_deg=0.06)])
+
+
+def test_one_set_of_parameters_explains_both() -> None:
+    found = lagging()
+    assert [cause.name for cause in found.causes] == ["hysteresis"]
+    lag = found.causes[0].parameters["lag_deg"]
+    assert lag.low <= 0.1 <= lag.high
+    answer = found.to_dict()
+    assert answer["held_out_by"] == "recordings"
+    quiet, loud = answer["recordings"]
+    # Noise that is left is that of each, known to 5 % from 360 readings at two standard deviations.
+    assert quiet["extended_rms_deg"] == pytest.approx(0.02, rel=0.1)
+    assert loud["extended_rms_deg"] == pytest.approx(0.06, rel=0.1)
+    assert abs(abs(loud["zero_deg"]) - abs(quiet["zero_deg"])) == pytest.approx(0.4, abs=0.02)
+    assert quiet["rms_ratio"] < 1.1 > loud["rms_ratio"]
+    assert "loud.csv" in found.summary()
+
+
+def test_the_extended_twin_is_the_devices(tmp_path: Path) -> None:
+    """A twin file of its own: no zero of a further recording, and it reads as the device does in the first one."""
+    twin = lagging().extended
+    assert not any("@" in key for key in twin.values)
+    motion = Motion.from_angle(np.concatenate([THERE, THERE[::-1]]))
+    device = DEVICE.with_effect("hysteresis", lag_deg=0.1, memory_deg=8.0).with_effect("zero", zero_deg=20.0)
+    apart = np.degrees(np.angle(np.exp(1j * (twin.readings(motion) - device.readings(motion)))))
+    assert np.sqrt(np.mean(apart**2)) < 0.01
+
+
+def test_a_turned_sensor_parts_the_reference_from_the_sensor() -> None:
+    """In one sweep of angles an eccentric reference is an offset; turned by a quarter, only the offset goes along."""
+    device = DEVICE.with_effect("reference_eccentricity", amplitude_deg=0.3, phase_deg=40.0)
+    upright = recorded(device, "upright.csv", zero_deg=20.0, mounting_deg=0.0)
+    turned = recorded(device, "turned.csv", zero_deg=-70.0, mounting_deg=90.0)
+    found = explain([upright, turned])
+    (cause,) = found.causes
+    # A stray field stays with the bench as the reference does.
+    assert {cause.name, *cause.indistinguishable_from} == {"reference_eccentricity", "stray_field"}
+    offset = found.to_dict()["extended"]["parameters"]["Vx_over_Ax"]
+    assert offset["low"] <= 0.008 <= offset["high"]
+    assert found.to_dict()["held_out_by"] == "blocks"
+    # With no word of the sensor's turn, the reference has found another zero, and nothing is parted.
+    alike = explain([replace(upright, mounting_deg=None), replace(turned, mounting_deg=None)])
+    assert abs(alike.to_dict()["recordings"][1]["reference_counted_on_deg"]) == pytest.approx(90.0, abs=1.0)
+    assert "reference_eccentricity" in alike.to_dict()["not_visible"]
+
+
+def test_recordings_of_two_devices_are_told() -> None:
+    other = Chain().with_effect("offset", x_percent=-1.5, y_percent=1.0)
+    found = explain([recorded(DEVICE, "one.csv", zero_deg=5.0), recorded(other, "other.csv", zero_deg=5.0)])
+    one, two = found.to_dict()["recordings"]
+    assert {"Vx_over_Ax", "Vy_over_Ay"} <= set(one["differ"]) & set(two["differ"])
+    assert "does not share one device's parameters" in " ".join(found.summary().split())
+
+
+def test_what_cannot_belong_together_is_refused() -> None:
+    sweep = recorded(DEVICE, "a.csv", zero_deg=0.0)
+    gapped = recorded(DEVICE, "b.csv", zero_deg=1.0, air_gap_mm=2.0)
+    with pytest.raises(UserError, match=r"a\.csv: no column air_gap_mm"):
+        explain([sweep, gapped])
+    with pytest.raises(UserError, match="list of no sweep"):
+        explain([])
+
+
+def test_commands_line_of_several(tmp_path: Path) -> None:
+    for k in range(2):
+        recorded(DEVICE, f"s{k}.csv", zero_deg=float(k)).write(tmp_path / f"s{k}.csv")
+    one, two = tmp_path / "s0.csv", tmp_path / "s1.csv"
+    together = halltwin("explain", tmp_path, "--json", tmp_path / "t.json", "--extended", tmp_path / "t.toml")
+    assert "The recordings" in together.out
+    assert "zero" in read_twin(tmp_path / "t.toml").values
+    each = halltwin("explain", "--each", one, two, "--json", tmp_path / "e.json")
+    assert each.out.count("Verdict:") == 2
+    assert "--json alone" in halltwin("explain", "--each", one, two, "--plot", tmp_path / "e.png").err
+    assert "the same readings" in halltwin("explain", one, one).err
+    assert "found 3 angles of the sensor for 2 sweeps" in halltwin("explain", one, two, "--mounting", "0,9,8").err

@@ -13,6 +13,8 @@ STAGES = {
     "row_masks": "looking for single readings that stand alone",
     "quantisation": "looking for the stairs of a rounded output",
     "search": "searching for causes",
+    "recording_levels": "weighing each recording by its noise",
+    "recordings_alone": "fitting each recording by itself",
     "repeated_frames": "looking for repeated frames",
     "variance": "weighing noisy stretches",
     "stepwise": "searching for causes",

@@ -82,6 +82,7 @@ NOTICED_BY: dict[str, tuple[str, ...]] = {
     "blocks_a_turn": (f"{_D}/proof/test_cross_validation.py::test_blocks_are_dealt_out_in_turn",),
     "heldout_slack": (f"{_D}/proof/test_selection.py::test_which_cause_stays",),
     "heldout_seen": (f"{_D}/proof/test_selection.py::test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost",),
+    "shared_ratio": ("tests/diagnosis/test_several_recordings.py::test_recordings_of_two_devices_are_told",),
     "fewest_checked": (f"{_D}/stages/test_predictive_check.py::test_of_too_few_readings_nothing_is_said",),
     "predictive_sweeps": (f"{_D}/stages/test_predictive_check.py::test_a_missing_cause_is_seen",),
     "fewest_simulated": (f"{_D}/proof/test_selection.py::test_as_many_sweeps_are_simulated_as_there_is_room_for",),

@@ -26,7 +26,7 @@ def mask_spikes(fit: Fit, step: float, also: BoolArray) -> Fit:
     """
     settings, motion = fit.settings, fit.observations.motion
     for _ in range(_PASSES):
-        mask = spikes(fit.residual[0], motion, max(step, coarsest_stair(fit.chain)), settings)
+        mask = spikes(fit.residual[0] / fit.observations.level, motion, max(step, coarsest_stair(fit.chain)), settings)
         usable = ~mask & fit.observations.sure & ~rows_of(fit.observations, also)
         if fit.observations.observables == 2:
             # Channels that fall out say nothing true about the radius: alone for a reading, or by more than any cause

@@ -126,7 +126,7 @@ def least_seen(fit: Fit, keys: Sequence[str], fold: IntArray) -> float:
     columns = fit.jacobian[[free.key in keys and _strength(fit, free) for free in fit.free]]
     squares = np.sum(np.where(fit.observations.usable, columns, 0.0) ** 2, axis=1)
     squares = squares[np.any(squares > 0.0, axis=1)]
-    inside = np.stack([squares[:, fold == number].sum(axis=1) for number in range(fit.settings.folds)])
+    inside = np.stack([squares[:, fold == number].sum(axis=1) for number in np.unique(fold)])
     return float(np.min(1.0 - inside / squares.sum(axis=1), initial=1.0))
 
 

@@ -31,7 +31,7 @@ def test_the_noise_that_made_a_sequence_is_chosen_whatever_is_masked(label: str,
     for _ in range(DRAWS):
         noise = to_rows(np.sqrt(family.spectra[member]) * rng.standard_normal(ROWS))
         usable = rng.random(ROWS) >= masked
-        observations = cast(Any, SimpleNamespace(usable=usable, scale=np.ones(ROWS)))
+        observations = cast(Any, SimpleNamespace(usable=usable, scale=np.ones(ROWS), lengths=(ROWS,)))
         squares = to_cosine(observations, noise) ** 2 @ family.weights.T
         rows = int(np.count_nonzero(usable))
         chosen += int(np.argmax(-0.5 * (rows * np.log(squares) + family.cost(rows)))) == member

@@ -38,15 +38,14 @@ __all__ = ["PIPELINE", "Discovery", "State", "discover"]
 PIPELINE: tuple[Stage, ...] = (
     observe,  # rows that count as independent angles; the grid of the output
     initial_fit,  # the paper's error model, or a given twin with its zeros free
-    recording_levels,  # of several recordings, the noise of each
     row_masks,  # single readings that stand alone are kept out of the fits
     own_parameters,  # strengths of a given twin are free, so that a cause is only what none of them can do
     quantisation,  # stairs that the set of values shows
     until_still(
+        recording_levels,  # of several recordings, the noise of each
         repeated_frames,  # readings that repeat the one before
         variance,  # rows that are beyond doubt louder weigh less
         stepwise,  # causes in the mean: add, exchange, remove
-        recording_levels,  # now that structure is out of the noise
         sense_check,  # who counts which way, now that the causes are known
         own_shapes,  # of a given twin's effects, which without the causes would go anywhere
         spread,  # causes in the scatter; the rows weigh by it

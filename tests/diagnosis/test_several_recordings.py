@@ -52,6 +52,8 @@ def test_one_set_of_parameters_explains_both() -> None:
     assert quiet["extended_rms_deg"] == pytest.approx(0.02, rel=0.1)
     assert loud["extended_rms_deg"] == pytest.approx(0.06, rel=0.1)
     assert abs(abs(loud["zero_deg"]) - abs(quiet["zero_deg"])) == pytest.approx(0.4, abs=0.02)
+    level = found.discovery.fit.observations.level
+    assert level[-1] / level[0] == pytest.approx(3.0, rel=0.15)
     assert quiet["rms_ratio"] < 1.1 > loud["rms_ratio"]
     assert "loud.csv" in found.summary()
 

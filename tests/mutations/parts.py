@@ -106,8 +106,8 @@ PARTS: tuple[Mutation, ...] = (
         ),
         (
             "spread.judged_behind_the_scale",
-            "to_rows(fit.cosine_residual[0] * root) * fit.observations.scale",
-            "to_rows(fit.cosine_residual[0] * root)",
+            "(fit.observations.scale / fit.observations.level)",
+            "1.0",
             "marks/test_spread.py::test_what_the_rows_scale_has_taken_out_is_put_back",
         ),
     ),

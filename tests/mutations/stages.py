@@ -108,7 +108,7 @@ STAGES: tuple[Mutation, ...] = (
         ),
         (
             "spread.scale_without_a_cause_stays",
-            "        if np.all(fit.observations.scale == 1.0):\n            return state\n",
+            "        if np.all(fit.observations.scale == fit.observations.level):\n            return state\n",
             "        return state\n",
             "stages/test_spread.py::test_a_scale_that_no_cause_carries_goes",
         ),

@@ -15,7 +15,6 @@ from twin.angles import Array, wrap
 from twin.baseline import FACTORS
 from twin.catalogue import find
 from twin.chain import Chain
-from twin.each_recording import MARK, acts_in
 from twin.effect import Effect
 from twin.mechanics.zero import ZERO
 from twin.param import Param
@@ -33,16 +32,6 @@ class Free:
 ZERO_ANGLE = Free(ZERO.name, "zero_deg")
 BASELINE = (ZERO_ANGLE, *(Free(f.key, f.param) for f in FACTORS if f.effect is not ZERO))
 """The paper's error model, always fitted."""
-
-
-def own_zeros(chain: Chain) -> tuple[Free, ...]:
-    """The zeros of further recordings of the device, each beside that of the first one."""
-    return tuple(Free(effect.name, ZERO_ANGLE.name) for effect in chain.effects if zero_of(effect.name) is not None)
-
-
-def zero_of(key: str) -> int | None:
-    """The further recording (counted from 0) whose own zero a key is; None: it is something else."""
-    return acts_in(key) if key.startswith(f"{ZERO.name}{MARK}") else None
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import ZERO_ANGLE, Fit, evaluate, solve, zero_of
+from diagnosis.discovery.fitting.joint_fit import ZERO_ANGLE, Fit, evaluate, solve
+from diagnosis.discovery.fitting.own_zeros import zero_of
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.baseline import FACTORS
 from twin.each_recording import acts_in

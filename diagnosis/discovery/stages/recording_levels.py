@@ -32,12 +32,13 @@ def recording_levels(state: State) -> State:
 
 
 def _levels(observations: Observations, residual: Array) -> Array:
-    """Noise of each row's recording (n,) against the usual one, from the residual (n,) [rad] of rows in use."""
+    """Noise of each row's recording (n,) against the usual one, from the residual (n,) [rad].
+
+    Rows that stand alone count too: among those of a quieter recording a louder one's would all seem to.
+    """
     recordings = observations.motion.recordings
     assert recordings is not None
-    own = np.array(
-        [robust_rms(local_residual(residual[rows][observations.usable[rows]])) for rows in recordings.slices]
-    )
+    own = np.array([robust_rms(local_residual(residual[rows][observations.sure[rows]])) for rows in recordings.slices])
     usual = float(np.median(own[recordings.number]))
     if usual == 0.0:
         return np.ones(len(observations))

@@ -73,7 +73,7 @@ def full_motion(points: int = 120) -> Motion:
 
 def permuted(motion: Motion, order: np.ndarray[Any, Any]) -> Motion:
     """The same readings in another order."""
-    arrays = [item.name for item in fields(motion) if item.name != "columns"]
+    arrays = [item.name for item in fields(motion) if item.name not in ("columns", "recordings")]
     return replace(motion, **{name: getattr(motion, name)[order] for name in arrays})
 
 

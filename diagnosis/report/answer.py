@@ -81,10 +81,9 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "searched": found.looked_at,
             "cut_short": _cut_short(found),
             "twin": to_dict(found.device),
-            **recordings_answer(found),
         }
     )
-    return answer
+    return answer | _rounded(recordings_answer(found))
 
 
 def _not_checked(found: Discovery) -> dict[str, Any] | None:

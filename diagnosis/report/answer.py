@@ -83,7 +83,8 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "twin": to_dict(found.device),
         }
     )
-    return answer | _rounded(recordings_answer(found))
+    answer |= _rounded(recordings_answer(found))
+    return answer
 
 
 def _not_checked(found: Discovery) -> dict[str, Any] | None:

@@ -23,6 +23,8 @@ from diagnosis.report.wording import (
     structure_words,
     with_unit,
 )
+from twin.baseline import FACTORS
+from twin.mechanics.zero import ZERO
 
 _LACKS = {
     "both directions": ("one direction", "turn in both directions"),
@@ -62,7 +64,9 @@ _ALSO_SAYS = {
 
 _UNEXPLAINED = "Structure is there that no cause of the catalogue explains"
 UNCHANGED = "Nothing of the given twin has changed beyond chance, and all of it stays as it was"
-OTHERS_HELD = "All else of the given twin has not changed beyond chance, and stays as it was"
+NOT_CHANGED = "All else of the given twin has not changed beyond chance"
+OTHERS_HELD = f"{NOT_CHANGED}, and stays as it was"
+FITTED_ANEW = f"{NOT_CHANGED}; it was fitted anew, as the twin had hardly told some of it from the rest"
 _SEARCHED = "of these {used} were searched, in stretches spread over the record"
 
 
@@ -194,6 +198,8 @@ def after_head(answer: Mapping[str, Any]) -> str:
 def moved_words(answer: Mapping[str, Any]) -> str:
     """Which factors stand elsewhere once the causes are known; of a given twin, that the others were held."""
     if held_fixed(answer):
+        if _fitted_anew(answer):
+            return FITTED_ANEW
         return OTHERS_HELD if answer["changed"] else UNCHANGED
     if not answer["causes"]:
         return ""
@@ -203,6 +209,14 @@ def moved_words(answer: Mapping[str, Any]) -> str:
     if not names:
         return "With the causes known, every factor stays within its interval"
     return f"With the causes known, {_and(names)} {'lies' if len(names) == 1 else 'lie'} outside of the interval before"
+
+
+def _fitted_anew(answer: Mapping[str, Any]) -> bool:
+    """Whether factors of a given twin that have not changed were fitted all the same."""
+    named = {change["parameter"] for change in answer["changed"]}
+    parameters = answer["extended"]["parameters"]
+    others = (f.name for f in FACTORS if f.effect is not ZERO and f"{f.key}.{f.param}" not in named)
+    return any(parameters[name]["low"] != parameters[name]["high"] for name in others)
 
 
 def senses_words(answer: Mapping[str, Any]) -> str:

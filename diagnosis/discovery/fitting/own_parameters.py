@@ -14,9 +14,9 @@ from twin.catalogue import find
 from twin.chain import Chain
 from twin.effect import Effect
 
-_TOLD = 0.01
-"""Share of a parameter's column that no other parameter can do, below which a recording does not tell it: its variance
-is then 10,000 times what it would be alone."""
+_TOLD = 1e-4
+"""Share of a parameter's column that no other parameter can do, below which a recording does not tell it: the square of
+it stands in a fit's normal equations, beside which a double has four digits left."""
 
 
 def own_free(fit: Fit, keys: Collection[str], *, shapes: bool) -> Fit:

@@ -1,8 +1,9 @@
 """Changes: which of a given twin's own parameters stand elsewhere in this recording, and which are as they were.
 
 All of them are fitted, and their differences from the twin are weighed jointly. The twin is taken to be known as well
-as this recording tells it, so that a difference has twice the covariance of the fit. The smallest set of changes is
-looked for that leaves no difference which is not chance: with one parameter moved, all others that lean on it do not.
+as a recording like this one tells it, mounted as it was: a difference has about twice the covariance of the fit, and
+more where the earlier mounting told two parameters apart less well. The smallest set of changes is looked for that
+leaves no difference which is not chance: with one parameter moved, all others that lean on it do not.
 """
 
 from __future__ import annotations
@@ -14,7 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
-from diagnosis.discovery.fitting.joint_fit import Fit, Free
+from diagnosis.discovery.fitting.initial_fit import awake
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate
 from diagnosis.discovery.fitting.own_parameters import value_in
 from diagnosis.discovery.settings import FOOTPRINTS
 from twin.angles import Array
@@ -23,7 +25,7 @@ from twin.chain import Chain
 from twin.effect import Owner
 
 TWIN_VARIANCE = 2.0
-"""Covariance of a difference over that of the fit: the twin was found from a recording like this one."""
+"""Variance of a difference over that of the fit: the twin was found from a recording like this one."""
 _ALL_SETS = 3
 """Changes up to which every set is tried; larger ones are built one by one."""
 _FEWEST_MOVED = 3
@@ -83,19 +85,18 @@ class Differences:
     @classmethod
     def of(cls, fit: Fit, twin: Chain, own: Sequence[Free], *, effects: int) -> Differences:
         """The differences of a fit in which the twin's ``own`` parameters are free, beside so many effects searched."""
-        tested = [place for place, one in enumerate(fit.free) if one in own]
-        others = [place for place in range(len(fit.free)) if place not in set(tested)]
-        r, j = fit.whitened()
-        dof = max(fit.rows * fit.observations.observables - len(fit.free), 1)
-        # Of nuisances nothing is known: what they can do is taken out of every column.
-        nuisance = _orthonormal(j[others])
-        columns = j[tested] - (j[tested] @ nuisance.T) @ nuisance
-        free = tuple(fit.free[place] for place in tested)
-        settings = fit.settings
+        free = tuple(one for one in fit.free if one in own)
+        settings, dof = fit.settings, degrees_left(fit)
+        start = awake(twin)
+        known = tuple(one for one in fit.free if one.turn is None and one.name in start.values.get(one.key, {}))
+        before = evaluate(start, known, fit.observations, fit.weighting)
+        r, _ = fit.whitened()
+        variance = float(r @ r) / dof
+        free = tuple(one for one in free if not _hardly_known(before, free, one, variance))
         return cls(
             free,
             np.array([_away(fit, twin, one) for one in free]),
-            columns @ columns.T / (float(r @ r) / dof) / TWIN_VARIANCE,
+            _parallel(_told(fit, free), _told(before, free)) / variance,
             dof,
             settings.effect_log_p(len(free) + effects),
             settings.same_fit(coarse=fit.weighting.coarse),
@@ -172,6 +173,46 @@ class Differences:
                 )
             )
         return tuple(sorted(found, key=lambda change: -change.gain))
+
+
+def degrees_left(fit: Fit) -> int:
+    """Degrees of freedom that a fit leaves."""
+    return max(fit.rows * fit.observations.observables - len(fit.free), 1)
+
+
+def _told(fit: Fit, free: Sequence[Free]) -> Array:
+    """What a recording tells of some of a fit's free parameters, per variance of its noise: an information matrix.
+
+    Of all others nothing is known: what they can do is taken out of every column.
+    """
+    _, j = fit.whitened()
+    tested = [fit.free.index(one) for one in free]
+    nuisance = _orthonormal(j[[place for place in range(len(fit.free)) if place not in set(tested)]])
+    columns = j[tested] - (j[tested] @ nuisance.T) @ nuisance
+    return np.asarray(columns @ columns.T)
+
+
+def _hardly_known(twin: Fit, free: Sequence[Free], one: Free, variance: float) -> bool:
+    """Whether a strength with a phase is within three sigma of none in the twin: its phase may then be any."""
+    effect = find(one.key, twin.chain.effects)
+    if not effect.roles("phase") or one.name not in effect.roles("strength"):
+        return False
+    told = _told(twin, free)
+    size = np.sqrt(np.maximum(np.diag(told), 1e-300))
+    place = list(free).index(one)
+    spread = np.linalg.pinv(told / np.outer(size, size), rcond=1e-12, hermitian=True)[place, place] / size[place] ** 2
+    return value_in(twin.chain, one) ** 2 < twin.settings.sigma_apart**2 * variance * float(spread)
+
+
+def _parallel(first: Array, second: Array) -> Array:
+    """The information on a difference of two estimates: the inverse of the sum of their covariances, which may not be.
+
+    It is their parallel sum, A (A + B)^+ B (Anderson and Duffin, J. Math. Anal. Appl. 26, 1969, 576-594).
+    """
+    size = np.sqrt(np.maximum(np.diag(first + second), 1e-300))
+    a, b = first / np.outer(size, size), second / np.outer(size, size)
+    both = a @ np.linalg.pinv(a + b, rcond=1e-12, hermitian=True) @ b
+    return np.asarray(0.5 * (both + both.T) * np.outer(size, size))
 
 
 def another_device(fit: Fit, free: Sequence[Free], changes: Sequence[Change]) -> bool:

@@ -7,9 +7,10 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from diagnosis.discovery.finding import Finding
+from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.own_parameters import set_back
-from diagnosis.discovery.proof.changes import TWIN_VARIANCE, Change, Differences, another_device
+from diagnosis.discovery.proof.changes import TWIN_VARIANCE, Change, Differences, another_device, degrees_left
 from diagnosis.discovery.search.likelihood_ratio import add
 from diagnosis.discovery.search.rivals import judge
 from diagnosis.discovery.search.screening import Base, Candidate, screen
@@ -31,6 +32,9 @@ def changes(state: State) -> State:
     found = told.changes(full, twin)
     other = another_device(full, told.free, found) or _counts_otherwise(state)
     fit = _with(state, found)
+    if _leaves_more_than_chance(state, fit, told.threshold):
+        # Each within its chance, but not all together: what the earlier mounting hardly told stays free.
+        return state.with_(changed=found, other_device=other, held=())
     if found and not other:
         # Of another device everything is another value: no single cause would do the same.
         cause = _instead(state, found, fit, told.price)
@@ -38,6 +42,16 @@ def changes(state: State) -> State:
             return cause
         found = _with_rivals(state, found, fit, told.same)
     return state.with_(fit, changed=found, other_device=other, held=())
+
+
+def _leaves_more_than_chance(state: State, fit: Fit, threshold: float) -> bool:
+    """Whether what is not named makes the fit worse by more than chance once it is held at the twin's values."""
+    held = len(state.fit.free) - len(fit.free)
+    if not held:
+        return False
+    gain = _squares(state, fit) - _squares(state, state.fit)
+    dof = degrees_left(state.fit)
+    return float(log_probability(np.array(dof * np.log1p(max(gain, 0.0) / dof)), held, dof)) < threshold
 
 
 def _counts_otherwise(state: State) -> bool:
@@ -68,8 +82,7 @@ def _squares(state: State, fit: Fit) -> float:
     """Chi-squared of a fit by the noise of the one in which everything is free, as differences are counted."""
     full, _ = state.fit.whitened()
     left, _ = fit.whitened()
-    dof = max(state.fit.rows * state.fit.observations.observables - len(state.fit.free), 1)
-    return float(left @ left) / (float(full @ full) / dof) / TWIN_VARIANCE
+    return float(left @ left) / (float(full @ full) / degrees_left(state.fit)) / TWIN_VARIANCE
 
 
 def _contenders(state: State, without: Fit, gain: float) -> list[Candidate]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diagnosis.discovery.fitting.joint_fit import Free
-from diagnosis.discovery.proof.changes import Differences
+from diagnosis.discovery.proof.changes import Differences, _parallel
 from diagnosis.discovery.settings import DiscoverySettings
 
 FREE = (
@@ -73,3 +73,14 @@ def test_a_direction_that_the_sweep_does_not_tell_is_no_change() -> None:
     information[1] = information[:, 1] = 0.0
     free = Differences(FREE, told.difference, information, told.dof, told.threshold, told.same)
     assert free.moved() == ()
+
+
+def test_a_difference_is_known_as_well_as_both_of_its_sides_allow() -> None:
+    """Of two estimates as good as each other half the information is left; of what one does not tell, none."""
+    first = np.array([[4.0, 1.0], [1.0, 9.0]])
+    assert _parallel(first, first) == pytest.approx(0.5 * first)
+    second = np.array([[2.0, -1.0], [-1.0, 8.0]])
+    assert np.linalg.inv(_parallel(first, second)) == pytest.approx(np.linalg.inv(first) + np.linalg.inv(second))
+    one_way = np.array([[1.0, 1.0], [1.0, 1.0]])
+    blind = np.array([1.0, -1.0])
+    assert blind @ _parallel(first, one_way) @ blind == pytest.approx(0.0, abs=1e-9)

@@ -35,8 +35,9 @@ class Discovery:
     belong to single-reading causes; ``invisible`` the effects that this sweep cannot show, with what it lacks;
     ``cut_short`` the stage in which the search was stopped, where it was; ``misfits`` what the extended twin does not
     predict although neither a cause nor structure tells of it. ``changed`` are the parameters of a given twin that have
-    moved, ``other_device`` whether so many have that it is another device's. ``alone`` is each of several recordings
-    fitted by itself, and ``whole_recordings`` whether these were held out as a whole.
+    moved, ``other_device`` whether so many have that it is another device's, ``fitted_anew`` whether the others were
+    not held at the twin's values. ``alone`` is each of several recordings fitted by itself, and ``whole_recordings``
+    whether these were held out as a whole.
     """
 
     sweep: Sweep
@@ -53,6 +54,7 @@ class Discovery:
     given: Chain | None = None
     changed: tuple[Change, ...] = ()
     other_device: bool = False
+    fitted_anew: bool = False
     invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
     likeness: PredictiveCheck | None = None
     lack: LackOfFit | None = None
@@ -90,6 +92,7 @@ class Discovery:
             given=state.given,
             changed=state.changed,
             other_device=state.other_device,
+            fitted_anew=state.fitted_anew,
             invisible={
                 everywhere(effect.name): effect.missing(provides)
                 for effect in state.effects
@@ -114,7 +117,7 @@ class Discovery:
 
         Explained is only what leaves no structure, is no misfit, and was searched to the end.
         """
-        named = bool(self.changed) or any(cause.name != "unnamed" for cause in self.causes)
+        named = bool(self.changed) or self.fitted_anew or any(cause.name != "unnamed" for cause in self.causes)
         without_name = any(cause.name == "unnamed" for cause in self.causes)
         open_still = without_name or bool(self.misfits)
         if named:

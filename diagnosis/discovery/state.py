@@ -43,9 +43,10 @@ class State:
     ``fold`` (n,), the block in which each row was held out; ``held``, held-out residuals (n,) [rad] of the baseline and
     after each of ``keys``, and once there is an answer after each of ``causes``; ``causes``, the entries of
     the answer; ``likeness``, the predictive check; ``lack``, what is left against repeated readings. Of a given twin
-    also ``own``, its parameters that are asked whether they have moved, ``changed``, those that have, and
-    ``other_device``, whether so many have that it is another's twin. Of several recordings
-    ``alone``, each of them fitted by itself.
+    also ``own``, its parameters that are asked whether they have moved, ``changed``, those that have,
+    ``other_device``, whether so many have that it is another's twin, and ``fitted_anew``, whether the others were not
+    held at its values, as it hardly tells some from the rest. Of several recordings ``alone``, each of them fitted by
+    itself.
     """
 
     sweep: Sweep
@@ -70,6 +71,7 @@ class State:
     own: tuple[Free, ...] = ()
     changed: tuple[Change, ...] = ()
     other_device: bool = False
+    fitted_anew: bool = False
     watch: Watch = field(default_factory=Watch)
 
     def __repr__(self) -> str:

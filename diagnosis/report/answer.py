@@ -60,6 +60,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             **_checked(found),
             "changed": [_change(found, change) for change in found.changed],
             "other_device": found.other_device,
+            "fitted_anew": found.fitted_anew,
             "causes": [_cause(found, cause) for cause in found.causes],
             "unexplained": {
                 "rms_deg": _rms(extended[kept]),

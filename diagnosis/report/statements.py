@@ -23,8 +23,6 @@ from diagnosis.report.wording import (
     structure_words,
     with_unit,
 )
-from twin.baseline import FACTORS
-from twin.mechanics.zero import ZERO
 
 _LACKS = {
     "both directions": ("one direction", "turn in both directions"),
@@ -187,7 +185,7 @@ def _flag(answer: Mapping[str, Any], key: str) -> str:
 
 def extends(answer: Mapping[str, Any]) -> bool:
     """Whether the extended twin is another than the one before: by a cause, or by what has changed of a given one."""
-    return bool(answer["causes"] or answer["changed"])
+    return bool(answer["causes"] or answer["changed"] or answer["fitted_anew"])
 
 
 def after_head(answer: Mapping[str, Any]) -> str:
@@ -198,7 +196,7 @@ def after_head(answer: Mapping[str, Any]) -> str:
 def moved_words(answer: Mapping[str, Any]) -> str:
     """Which factors stand elsewhere once the causes are known; of a given twin, that the others were held."""
     if held_fixed(answer):
-        if _fitted_anew(answer):
+        if answer["fitted_anew"]:
             return FITTED_ANEW
         return OTHERS_HELD if answer["changed"] else UNCHANGED
     if not answer["causes"]:
@@ -209,14 +207,6 @@ def moved_words(answer: Mapping[str, Any]) -> str:
     if not names:
         return "With the causes known, every factor stays within its interval"
     return f"With the causes known, {_and(names)} {'lies' if len(names) == 1 else 'lie'} outside of the interval before"
-
-
-def _fitted_anew(answer: Mapping[str, Any]) -> bool:
-    """Whether factors of a given twin that have not changed were fitted all the same."""
-    named = {change["parameter"] for change in answer["changed"]}
-    parameters = answer["extended"]["parameters"]
-    others = (f.name for f in FACTORS if f.effect is not ZERO and f"{f.key}.{f.param}" not in named)
-    return any(parameters[name]["low"] != parameters[name]["high"] for name in others)
 
 
 def senses_words(answer: Mapping[str, Any]) -> str:
@@ -362,7 +352,7 @@ def _gain_words(answer: Mapping[str, Any]) -> str:
 def closer_words(answer: Mapping[str, Any]) -> str:
     """How much closer the extended twin is, or why that is no figure."""
     steps = (*answer["changed"], *answer["causes"])
-    if all(step["heldout_rms_deg_before"] == step["heldout_rms_deg_after"] for step in steps):
+    if steps and all(step["heldout_rms_deg_before"] == step["heldout_rms_deg_after"] for step in steps):
         # Single readings and scatter are no part of what a twin predicts for the mean.
         return "It lies in single readings or in their scatter, so that their mean is predicted no better"
     gain = answer["extended"]["gain"]

@@ -30,7 +30,17 @@ def answer(state: State) -> State:
     count = len(state.changed)
     changed = [replace(c, before_deg=b, after_deg=a) for c, (b, a) in zip(state.changed, pairs[:count], strict=True)]
     causes = [replace(e, before_deg=b, after_deg=a) for e, (b, a) in zip(entries, pairs[count:], strict=True)]
+    if state.fitted_anew and not changed:
+        held.insert(0, _as_given(state))
     return state.with_(causes=tuple(causes), changed=tuple(changed), held=tuple(held))
+
+
+def _as_given(state: State) -> Array:
+    """The held-out residual (n,) [rad] of a given twin as it is."""
+    if state.given is None or state.fold is None:
+        return state.held_out[0]
+    before = set_back(state.fit, [one for one in state.own if one in state.fit.free], state.given)
+    return held_out_residual(before, state.keys, (), state.fold)
 
 
 def _before_changes(state: State) -> list[Array]:
@@ -39,8 +49,8 @@ def _before_changes(state: State) -> list[Array]:
         return []
     if state.fold is None:
         return [state.held_out[0]] * len(state.changed)
-    held = []
-    for count in range(len(state.changed)):
+    held = [_as_given(state)]
+    for count in range(1, len(state.changed)):
         later = [change.free for change in state.changed[count:]]
         before = set_back(state.fit, later, state.given)
         held.append(held_out_residual(before, state.keys, (), state.fold))

@@ -34,7 +34,7 @@ def changes(state: State) -> State:
     fit = _with(state, found)
     if _leaves_more_than_chance(state, fit, told.threshold):
         # Each within its chance, but not all together: what the earlier mounting hardly told stays free.
-        return state.with_(changed=found, other_device=other, held=())
+        return state.with_(changed=found, other_device=other, fitted_anew=True, held=())
     if found and not other:
         # Of another device everything is another value: no single cause would do the same.
         cause = _instead(state, found, fit, told.price)

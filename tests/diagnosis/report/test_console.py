@@ -64,6 +64,7 @@ def an_answer(**changes: Any) -> dict[str, Any]:
     return {
         "changed": [],
         "other_device": False,
+        "fitted_anew": False,
         "sweep": {
             "name": "bench.csv",
             "rows": 2880,
@@ -220,6 +221,8 @@ def test_beside_a_given_twin_it_is_said_what_has_changed_and_what_was_held() -> 
         assert "cannot be told from: backlash" in words
         assert "All else of the given twin has not changed beyond chance, and stays as it was" in words
     assert "not that device" not in words
+    answer["fitted_anew"] = True
+    assert "it was fitted anew, as the twin had hardly told some of it" in " ".join(shown(answer, 100).split())
     answer["other_device"] = True
     words = " ".join(shown(answer, 100).split())
     assert "This is not that device's twin: 2 parameters that belong to a device are others." in words

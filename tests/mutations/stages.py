@@ -56,6 +56,54 @@ STAGES: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
+        f"{_D}/stages/changes.py",
+        _T,
+        (
+            "changes.what_has_not_moved_stays_free",
+            "return set_back(state.fit, [one for one in state.own if one not in free], state.given)",
+            "return set_back(state.fit, [one for one in state.own if one not in state.own], state.given)",
+            "stages/test_changes.py::test_what_has_changed_is_named_and_the_rest_stays",
+        ),
+        (
+            "changes.the_other_way_round_is_the_same_device",
+            "other = another_device(full, told.free, found) or _counts_otherwise(state)",
+            "other = another_device(full, told.free, found)",
+            "stages/test_changes.py::test_what_has_changed_is_named_and_the_rest_stays",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/stages/own_parameters.py",
+        _T,
+        (
+            "own_parameters.events_of_another_recording_stay",
+            "fit = _borne_out(fit, key)",
+            "pass",
+            "stages/test_changes.py::test_a_slip_of_another_recording_is_gone_from_the_twin",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/proof/changes.py",
+        _T,
+        (
+            "changes.one_after_the_other_only",
+            "_ALL_SETS = 3",
+            "_ALL_SETS = 0",
+            "proof/test_changes.py::test_two_that_hide_one_another_are_found_together",
+        ),
+        (
+            "changes.three_of_many_are_another_device",
+            "return moved >= _FEWEST_MOVED and 2 * moved > asked",
+            "return False",
+            "stages/test_changes.py::test_what_has_changed_is_named_and_the_rest_stays",
+        ),
+        (
+            "changes.the_twin_is_exact",
+            "both = a @ np.linalg.pinv(a + b, rcond=1e-12, hermitian=True) @ b",
+            "both = a",
+            "proof/test_changes.py::test_a_difference_is_known_as_well_as_both_of_its_sides_allow",
+        ),
+    ),
+    *of_one_file(
         f"{_D}/stages/held_out_selection.py",
         _T,
         (

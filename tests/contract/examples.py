@@ -195,6 +195,9 @@ EXAMPLES: dict[str, Example] = {
         memory=True,
         signature=lambda m, p: -_rad(p["deg_per_krpm_per_s"]) * m.acceleration_rad_s2 * 30.0 / (1000.0 * np.pi),
     ),
+    "thermal_zero_shift": Example(
+        strengths={"deg_per_K": 0.004}, shapes={}, signature=lambda m, p: _rad(p["deg_per_K"]) * _warm(m)
+    ),
     "zero_drift": Example(strengths={"amplitude_deg": 0.5}, shapes={"time_constant_s": 5.0}, signature=_drift),
     # magnet
     "magnet_harmonic": Example(

@@ -109,7 +109,7 @@ def _one_pattern(motion: Motion) -> Sequence[Mapping[str, float]]:
 
 
 def _orders_of_temperature(motion: Motion) -> Sequence[Mapping[str, float]]:
-    return _low_orders((0, *range(3, HIGHEST_SINGLE_ORDER + 1)), [{"at_K": _farthest(motion)}])(motion)
+    return _low_orders(range(3, HIGHEST_SINGLE_ORDER + 1), [{"at_K": _farthest(motion)}])(motion)
 
 
 UNNAMED_ORDER = Effect(
@@ -164,7 +164,7 @@ def _strongest(orders: Sequence[int]) -> Callable[[Parameters], Mapping[str, flo
 
 
 DIRECTION_ORDERS = (1, 2, 3, 4)
-# Orders 1 and 2 times the temperature are the drifts of offset, gain and phase.
+# Orders 1 and 2 times the temperature are the drifts of offset, gain and phase, order 0 alone that of the zero.
 TEMPERATURE_ORDERS = (0, 3, 4, 5, 6)
 HIGHEST_SINGLE_ORDER = 40
 

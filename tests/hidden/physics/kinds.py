@@ -103,6 +103,7 @@ NAMED: dict[str, Kind] = {
     ),
     "lagging_offset": Kind(thermal.lagging_offset, (("offset_drift",),), SEVERAL, OVEN, outcome_repeats=False),
     "curved_offset": Kind(thermal.curved_offset, (("offset_drift",),), SEVERAL, OVEN),
+    "expanding_frame": Kind(thermal.expanding_frame, (("thermal_zero_shift",),), protocols=OVEN),
     "mobility": Kind(thermal.mobility, (("gain_drift",),), protocols=OVEN),
     "turned_plate": Kind(thermal.turned_plate, (("phase_drift",),), protocols=OVEN),
     "creeping_frame": Kind(
@@ -156,10 +157,10 @@ OUTSIDE: dict[str, Kind] = {
         (*MISPLACED, "magnet_harmonic", "unnamed"),
     ),
     "torsion_swing": Kind(
-        rotor.torsion_inertia, (("unnamed",), ("load_torsion",)), own_motion=swings.swing, channels=False
+        rotor.torsion_inertia, (("load_torsion",), ("unnamed",)), own_motion=swings.swing, channels=False
     ),
     "torsion_run_up": Kind(
-        rotor.torsion_inertia, (("unnamed",), ("load_torsion",)), own_motion=swings.run_up, channels=False
+        rotor.torsion_inertia, (("load_torsion",), ("unnamed",)), own_motion=swings.run_up, channels=False
     ),
     "play_weight": Kind(rotor.play_under_weight, UNNAMED, ("unnamed", "magnet_harmonic"), ("static", "many_turns")),
     "gear_runout": Kind(rotor.gear_runout, UNNAMED, protocols=("many_turns", "spin"), demands=Demands(turns=5)),
@@ -168,7 +169,6 @@ OUTSIDE: dict[str, Kind] = {
     "belt": Kind(
         rotor.belt, UNNAMED, ("unnamed", "bearing_wobble"), protocols=("many_turns",), demands=Demands(turns=8)
     ),
-    "expanding_frame": Kind(thermal.expanding_frame, UNNAMED, protocols=OVEN),
     "self_heating": Kind(
         thermal.self_heating,
         (("unnamed",), ("offset_drift",)),

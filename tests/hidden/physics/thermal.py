@@ -84,7 +84,8 @@ def turned_plate(rng: np.random.Generator, setting: Setting) -> Planned:
 def expanding_frame(rng: np.random.Generator, setting: Setting) -> Planned:
     """The frame that holds the sensor expands and turns it, in proportion to temperature."""
     slope = float(rng.choice((-1, 1)) * rng.uniform(0.1, 0.3)) / _farthest(setting)
-    return Planned(Mechanism(shaft=lambda at, motion: at + slope * motion.warmth), 0.2)
+    acts = Mechanism(shaft=lambda at, motion: at + slope * motion.warmth)
+    return Planned(acts, 0.2, {"thermal_zero_shift": {"deg_per_K": slope}})
 
 
 def creeping_frame(rng: np.random.Generator, setting: Setting) -> Planned:

@@ -25,6 +25,8 @@ from diagnosis.discovery.stages.own_parameters import own_parameters
 from diagnosis.discovery.stages.own_shapes import own_shapes
 from diagnosis.discovery.stages.predictive_check import predictive_check
 from diagnosis.discovery.stages.quantisation import quantisation
+from diagnosis.discovery.stages.recording_levels import recording_levels
+from diagnosis.discovery.stages.recordings_alone import recordings_alone
 from diagnosis.discovery.stages.repeated_frames import repeated_frames
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.stages.sense_check import sense_check
@@ -44,12 +46,12 @@ from twin.angles import Array
 from twin.chain import Chain
 from twin.sweep import Sweep
 
-LOOP: tuple[Stage, ...] = (repeated_frames, variance, stepwise, sense_check, own_shapes, spread)
+LOOP: tuple[Stage, ...] = (recording_levels, repeated_frames, variance, stepwise, sense_check, own_shapes, spread)
 """The stages that the pipeline repeats until none of them has anything more to say."""
 ONCE: tuple[Stage, ...] = (
     *(observe, initial_fit, row_masks, own_parameters, quantisation),
     *LOOP,
-    *(held_out_selection, flipped_bits, grid_cause, changes, final_fit, answer),
+    *(held_out_selection, flipped_bits, grid_cause, changes, final_fit, recordings_alone, answer),
     *(further_measurements, predictive_check),
 )
 """Every stage, each once."""

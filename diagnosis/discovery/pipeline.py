@@ -18,6 +18,7 @@ from diagnosis.discovery.stages.further_measurements import further_measurements
 from diagnosis.discovery.stages.grid_cause import grid_cause
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit
+from diagnosis.discovery.stages.listed import listed
 from diagnosis.discovery.stages.observe import observe
 from diagnosis.discovery.stages.own_parameters import own_parameters
 from diagnosis.discovery.stages.own_shapes import own_shapes
@@ -57,6 +58,7 @@ PIPELINE: tuple[Stage, ...] = (
     final_fit,  # the optimum itself, and the baseline on the same rows
     recordings_alone,  # of several recordings, whether they share one device
     answer,  # one entry a cause, with its figures
+    listed,  # only entries that their own figures bear out
     further_measurements,  # what would part each cause from its rivals
     predictive_check,  # would sweeps simulated from the extended twin look alike
 )

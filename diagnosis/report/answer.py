@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.discovery.finding import Finding
+from diagnosis.discovery.fitting.intervals import Deviations, quantile_95, standard_deviations
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.marks.row_masks import raw_residual
@@ -29,8 +30,6 @@ from twin.param import Param
 
 SCHEMA = "halltwin.explain/1"
 _T95 = 1.959964
-Deviations = dict[tuple[str, str], float]
-"""Standard deviation of a parameter, by effect and parameter."""
 
 
 def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
@@ -151,7 +150,7 @@ def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:
     for factor in FACTORS:
         declared = factor.effect.params[factor.param]
         value = float(fit.chain.values.get(factor.key, {}).get(factor.param, factor.null))
-        half = _T95 * deviation.get((factor.key, factor.param), 0.0)
+        half = quantile_95(fit) * deviation.get((factor.key, factor.param), 0.0)
         middle, low, high = (figure * factor.scale for figure in (value, value - half, value + half))
         at_bound = value <= declared.lower or value >= declared.upper
         answer[factor.name] = {**_figure(middle, low, high, factor.unit), "at_bound": bool(at_bound)}
@@ -178,22 +177,12 @@ def _holds(wide: Mapping[str, Any], known: Mapping[str, Any]) -> bool:
     return bool(wide["low"] <= known["low"] and known["high"] <= wide["high"])
 
 
-def standard_deviations(fit: Fit) -> Deviations:
-    """Standard deviation of every free scalar parameter of a fit, in its own unit."""
-    variance = np.diag(fit.covariance()) if fit.free else np.zeros(0)
-    return {
-        (free.key, free.name): float(np.sqrt(max(v, 0.0)))
-        for free, v in zip(fit.free, variance, strict=True)
-        if free.turn is None
-    }
-
-
 def _change(found: Discovery, change: Change) -> dict[str, Any]:
     """One parameter of a given twin that has moved: what it was, and is with its 95 % interval."""
     fit, free = found.fit, change.free
     effect = find(free.key, fit.chain.effects)
     value = float(fit.chain.values[free.key][free.name])
-    half = _T95 * standard_deviations(fit).get((free.key, free.name), 0.0)
+    half = quantile_95(fit) * standard_deviations(fit).get((free.key, free.name), 0.0)
     return {
         "parameter": change.name,
         "effect": base_name(free.key),
@@ -253,7 +242,7 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
     """The parameters of one instance of an effect, each with its 95 % interval."""
     effect = find(key, fit.chain.effects)
     values = {**effect.null(), **fit.chain.values.get(key, {})}
-    derived = effect.derived(values)
+    derived, reach = effect.derived(values), quantile_95(fit)
     figures: dict[str, dict[str, Any]] = {}
     for name, param in effect.params.items():
         if param.role == "per turn" or name not in values or np.ndim(values[name]):
@@ -263,7 +252,7 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
         if param.aside and values[name] == param.null:
             continue
         value = float(values[name])
-        half = _T95 * deviation.get((key, name), 0.0)
+        half = reach * deviation.get((key, name), 0.0)
         if param.role == "phase":
             # Of a phase no less can be known than nothing.
             half = min(half, 180.0)
@@ -324,7 +313,7 @@ def _phase_at_first_row(
     """A phase [deg], fitted in the middle of the record, where it is known best, as it is at the record's first row."""
     half_s = 0.5 * float(np.ptp(fit.observations.motion.time_s))
     value = float(wrap_deg(phase["value"] - 360.0 * frequency_Hz * half_s))
-    half = float(np.hypot(0.5 * (phase["high"] - phase["low"]), 360.0 * half_s * _T95 * deviation_Hz))
+    half = float(np.hypot(0.5 * (phase["high"] - phase["low"]), 360.0 * half_s * quantile_95(fit) * deviation_Hz))
     return {"value": value, "low": value - half, "high": value + half}
 
 

@@ -25,6 +25,7 @@ STAGES = {
     "grid_cause": "judging the rounding of the output",
     "final_fit": "fitting the extended twin",
     "answer": "working out what each cause gains",
+    "listed": "holding each cause against its own figures",
     "further_measurements": "weighing further measurements",
     "predictive_check": "comparing simulated sweeps with the measured one",
 }

@@ -33,7 +33,7 @@ UNNAMED_BUMP = Effect(
     acts_on="angle",
     params={
         "centre_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=720.0, doc="place", role="shape", typical=5.0),
-        "width_deg": Param(unit="deg", null=10.0, lower=1.0, upper=35.0, doc="sigma", role="shape", typical=5.0),
+        "width_deg": Param(unit="deg", null=10.0, lower=1.0, upper=20.0, doc="sigma", role="shape", typical=5.0),
         "height_deg": Param(unit="deg", null=0.0, lower=-90.0, upper=90.0, doc="height"),
     },
     forward=_bump,

@@ -9,6 +9,7 @@ from dataclasses import replace
 from diagnosis.discovery.finding import Finding, merge
 from diagnosis.discovery.fitting.observations import of_readings
 from diagnosis.discovery.fitting.own_parameters import set_back
+from diagnosis.discovery.proof.changes import Change
 from diagnosis.discovery.proof.cross_validation import held_out_residual, rms_deg
 from diagnosis.discovery.state import State
 from twin.angles import Array
@@ -23,6 +24,22 @@ def answer(state: State) -> State:
     scatter change nothing there.
     """
     entries = merge(state.findings)
+    causes, changed, held = _with_figures(state, entries)
+    # The turn of some comes only with what stands below them.
+    early = [entry for entry, cause in zip(entries, causes, strict=True) if cause.after_deg > cause.before_deg]
+    if early:
+        entries = [*(entry for entry in entries if entry not in early), *early]
+        causes, changed, held = _with_figures(state, entries)
+    return state.with_(causes=causes, changed=changed, held=held)
+
+
+def _with_figures(
+    state: State, entries: Sequence[Finding]
+) -> tuple[tuple[Finding, ...], tuple[Change, ...], tuple[Array, ...]]:
+    """The entries in this order, and the changes ahead of them, with the RMS before and after each.
+
+    With the held-out residuals (n,) [rad] that these are of.
+    """
     held = [*_before_changes(state), *_chained(state, entries)]
     observations = state.fit.observations
     figures = [of_readings(rms_deg(residual, observations.usable), observations) for residual in held]
@@ -32,7 +49,7 @@ def answer(state: State) -> State:
     causes = [replace(e, before_deg=b, after_deg=a) for e, (b, a) in zip(entries, pairs[count:], strict=True)]
     if state.fitted_anew and not changed:
         held.insert(0, _as_given(state))
-    return state.with_(causes=tuple(causes), changed=tuple(changed), held=tuple(held))
+    return tuple(causes), tuple(changed), tuple(held)
 
 
 def _as_given(state: State) -> Array:

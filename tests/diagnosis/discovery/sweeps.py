@@ -20,6 +20,7 @@ from diagnosis.discovery.stages.further_measurements import further_measurements
 from diagnosis.discovery.stages.grid_cause import grid_cause
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit
+from diagnosis.discovery.stages.listed import listed
 from diagnosis.discovery.stages.observe import observe
 from diagnosis.discovery.stages.own_parameters import own_parameters
 from diagnosis.discovery.stages.own_shapes import own_shapes
@@ -51,7 +52,7 @@ LOOP: tuple[Stage, ...] = (recording_levels, repeated_frames, variance, stepwise
 ONCE: tuple[Stage, ...] = (
     *(observe, initial_fit, row_masks, own_parameters, quantisation),
     *LOOP,
-    *(held_out_selection, flipped_bits, grid_cause, changes, final_fit, recordings_alone, answer),
+    *(held_out_selection, flipped_bits, grid_cause, changes, final_fit, recordings_alone, answer, listed),
     *(further_measurements, predictive_check),
 )
 """Every stage, each once."""

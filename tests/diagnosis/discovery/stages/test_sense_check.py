@@ -100,3 +100,25 @@ def test_channels_tell_the_sense_by_themselves() -> None:
     made = Made(quadratic=3e-4, start_sense=-1, start_output=-1, channels=True, points=180)
     state = before(sense_check, made)
     assert sense_check(state) is state
+
+
+def test_a_cause_that_stood_in_for_the_quadratic_term_is_left_out_in_the_other_sense() -> None:
+    """In the wrong sense the quadratic term is an error of order 3; what else was found there stays found."""
+    made = Made(
+        quadratic=0.012,
+        start_sense=-1,
+        start_output=-1,
+        causes=(("hysteresis", 0.1),),
+        back=True,
+        points=180,
+    )
+    state = before(sense_check, made)
+    assert set(state.keys) == {"hysteresis", "magnet_harmonic"}
+    # It fits about as well in either: only what the causes cost parts the two.
+    assert gain_of(state) < ODDS
+    after = sense_check(state)
+    assert after.fit.chain.sensor_sense == 1
+    assert after.keys == ("hysteresis",)
+    assert after.baseline is not None
+    assert after.baseline.chain.sensor_sense == 1
+    assert sense_check(after) is after

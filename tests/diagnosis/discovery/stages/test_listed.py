@@ -1,0 +1,62 @@
+"""Listed: what its own figures do not bear out is dropped, and the rest is judged anew."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.discovery.finding import Finding
+from diagnosis.discovery.fitting.intervals import may_be_null, quantile_95, standard_deviations
+from diagnosis.discovery.fitting.joint_fit import Free, evaluate, solve
+from diagnosis.discovery.stages.answer import answer
+from diagnosis.discovery.stages.listed import listed
+from diagnosis.discovery.state import State
+from tests.diagnosis.discovery.sweeps import Made, before
+
+SATURATION, HARMONIC = "saturation", "magnet_harmonic"
+MADE = Made(causes=((SATURATION, 0.08),), points=96)
+
+
+def with_harmonic(amplitude_deg: float) -> State:
+    """A state in which a harmonic that the readings know nothing of is held too, fitted, beside the cause there is."""
+    state = before(answer, MADE)
+    fit = state.fit
+    chain = fit.chain.with_effect(HARMONIC, order=6.0, amplitude_deg=amplitude_deg)
+    free = (*fit.free, Free(HARMONIC, "amplitude_deg"), Free(HARMONIC, "phase_deg"))
+    fit = solve(evaluate(chain, free, fit.observations, fit.weighting))
+    found = Finding((HARMONIC,), -30.0, 60.0, -30.0)
+    return answer(state.with_(fit, keys=(*state.keys, HARMONIC), findings=(*state.findings, found), held=()))
+
+
+def test_a_cause_that_may_be_nothing_is_dropped_and_the_rest_fitted_anew() -> None:
+    state = with_harmonic(0.01)
+    assert may_be_null(state.fit, HARMONIC)
+    assert not may_be_null(state.fit, SATURATION)
+    after = listed(state)
+    assert [cause.keys for cause in after.causes] == [(SATURATION,)]
+    assert HARMONIC not in after.fit.chain.values
+    plain = listed(before(listed, MADE)).fit.chain.values[SATURATION]["k_percent"]
+    assert after.fit.chain.values[SATURATION]["k_percent"] == pytest.approx(plain, rel=1e-3)
+    # What is before the first entry and after the last are the figures of what is left.
+    assert len(after.held) == 2
+
+
+def test_a_cause_without_held_out_gain_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+    state = before(listed, MADE)
+    monkeypatch.setattr("diagnosis.discovery.stages.listed.may_be_null", lambda fit, key: False)
+    assert listed(state) is state
+    worse = tuple(replace(cause, after_deg=cause.before_deg * (1.0 + 1e-6)) for cause in state.causes)
+    after = listed(state.with_(causes=worse))
+    assert after.causes == ()
+    assert after.keys == ()
+    assert not np.any([key == SATURATION for key in after.fit.chain.values])
+
+
+def test_an_interval_is_students() -> None:
+    """Of 96 readings less seven parameters, 1.3 % wider than a Gaussian one."""
+    fit = before(listed, MADE).fit
+    freedom = fit.rows - len(fit.free)
+    assert quantile_95(fit) == pytest.approx(1.959964 * (1.0 + (1.959964**2 + 1.0) / (4.0 * freedom)), rel=1e-3)
+    assert set(standard_deviations(fit)) == {(free.key, free.name) for free in fit.free}

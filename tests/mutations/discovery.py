@@ -46,9 +46,44 @@ _MECHANISMS: tuple[Mutation, ...] = (
     Mutation(
         "sense_check.off",
         "diagnosis/discovery/stages/sense_check.py",
-        "    if likelihood(other) <= likelihood(fit) + state.settings.swap_log_odds:\n",
+        "    if likelihood(other) - plan.threshold * len(state.keys) <= here:\n",
         "    if True:\n",
         (f"{_TESTS}/stages/test_sense_check.py::test_what_fits_better_by_the_odds_is_taken",),
+        short=True,
+    ),
+    Mutation(
+        "sense_check.nothing_left_out",
+        "diagnosis/discovery/stages/sense_check.py",
+        "        if score[idlest] <= plan.threshold:\n",
+        "        if True:\n",
+        (
+            f"{_TESTS}/stages/test_sense_check.py::"
+            "test_a_cause_that_stood_in_for_the_quadratic_term_is_left_out_in_the_other_sense",
+        ),
+        short=True,
+    ),
+    Mutation(
+        "listed.intervals_not_asked",
+        "diagnosis/discovery/stages/listed.py",
+        "    if may_be_nothing:\n",
+        "    if False:\n",
+        (f"{_TESTS}/stages/test_listed.py::test_a_cause_that_may_be_nothing_is_dropped_and_the_rest_fitted_anew",),
+        short=True,
+    ),
+    Mutation(
+        "listed.gain_not_asked",
+        "diagnosis/discovery/stages/listed.py",
+        "cause.after_deg >= cause.before_deg",
+        "False",
+        (f"{_TESTS}/stages/test_listed.py::test_a_cause_without_held_out_gain_is_dropped",),
+        short=True,
+    ),
+    Mutation(
+        "verdict.misfits_pass",
+        "diagnosis/discovery/result.py",
+        "without_name or bool(self.misfits)",
+        "without_name",
+        (f"{_TESTS}/proof/test_lack_of_fit.py::test_angles_that_are_off_are_told_with_place_and_size",),
         short=True,
     ),
     Mutation(
@@ -78,7 +113,7 @@ _MECHANISMS: tuple[Mutation, ...] = (
 )
 
 
-_WHOLE = frozenset({"observe", "initial_fit", "row_masks", "variance"})
+_WHOLE = frozenset({"observe", "initial_fit", "row_masks", "variance", "listed"})
 """Stages whose absence shows in more than the answer: each has a test of its own among those of the pipeline."""
 _SEVERAL = "tests/diagnosis/test_several_recordings.py"
 _OF_SEVERAL = {

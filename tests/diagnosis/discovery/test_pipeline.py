@@ -23,6 +23,7 @@ from diagnosis.discovery.stages.further_measurements import further_measurements
 from diagnosis.discovery.stages.grid_cause import grid_cause
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit
+from diagnosis.discovery.stages.listed import listed
 from diagnosis.discovery.stages.observe import observe
 from diagnosis.discovery.stages.predictive_check import predictive_check
 from diagnosis.discovery.stages.quantisation import quantisation
@@ -154,6 +155,10 @@ CASES = (
 def test_without_a_stage_the_answer_is_another(case: Case) -> None:
     assert case.asked(discover(start_of(case.made))) == case.whole
     assert case.asked(discover(start_of(case.made), without(case.stage))) == case.left
+
+
+def test_what_the_answer_lists_is_held_against_its_own_figures() -> None:
+    assert PIPELINE[PIPELINE.index(answer) + 1] is listed
 
 
 def test_without_observations_there_is_nothing_to_do() -> None:

@@ -60,7 +60,6 @@ _MECHANISMS: tuple[Mutation, ...] = (
             f"{_TESTS}/stages/test_sense_check.py::"
             "test_a_cause_that_stood_in_for_the_quadratic_term_is_left_out_in_the_other_sense",
         ),
-        short=True,
     ),
     Mutation(
         "listed.intervals_not_asked",
@@ -68,7 +67,6 @@ _MECHANISMS: tuple[Mutation, ...] = (
         "    if may_be_nothing:\n",
         "    if False:\n",
         (f"{_TESTS}/stages/test_listed.py::test_a_cause_that_may_be_nothing_is_dropped_and_the_rest_fitted_anew",),
-        short=True,
     ),
     Mutation(
         "listed.gain_not_asked",
@@ -76,7 +74,6 @@ _MECHANISMS: tuple[Mutation, ...] = (
         "cause.after_deg >= cause.before_deg",
         "False",
         (f"{_TESTS}/stages/test_listed.py::test_a_cause_without_held_out_gain_is_dropped",),
-        short=True,
     ),
     Mutation(
         "verdict.misfits_pass",
@@ -84,7 +81,6 @@ _MECHANISMS: tuple[Mutation, ...] = (
         "without_name or bool(self.misfits)",
         "without_name",
         (f"{_TESTS}/proof/test_lack_of_fit.py::test_angles_that_are_off_are_told_with_place_and_size",),
-        short=True,
     ),
     Mutation(
         "search.several_in_place_of_one_off",

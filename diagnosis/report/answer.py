@@ -57,9 +57,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "noise": found.fit.weighting.family.labels[found.fit.weighting.member],
             "verdict": found.verdict,
             **_checked(found),
-            "changed": [_change(found, change) for change in found.changed],
-            "other_device": found.other_device,
-            "fitted_anew": found.fitted_anew,
+            **_changed(found),
             "causes": [_cause(found, cause) for cause in found.causes],
             "unexplained": {
                 "rms_deg": _rms(extended[kept]),
@@ -85,6 +83,15 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
     )
     answer |= _rounded(recordings_answer(found))
     return answer
+
+
+def _changed(found: Discovery) -> dict[str, Any]:
+    """What of a given twin has changed, whether it is another device's, and what of it was fitted anew."""
+    return {
+        "changed": [_change(found, change) for change in found.changed],
+        "other_device": found.other_device,
+        "fitted_anew": found.fitted_anew,
+    }
 
 
 def _not_checked(found: Discovery) -> dict[str, Any] | None:

@@ -108,6 +108,9 @@ class Motion:
         n = wrapped.size
         shaft = wrapped if n == 0 else np.concatenate([wrapped[:1], wrapped[0] + np.cumsum(wrap(np.diff(wrapped)))])
         way = _way(shaft, direction, speed_rad_s)
+        speed = _speed(shaft, way, time_s, speed_rad_s)
+        if not np.any(speed):
+            way = _as_reached(shaft, way)
         temperature = _without_gaps(temperature_c)
         recorded = {
             "time_s": time_s is not None,
@@ -121,7 +124,7 @@ class Motion:
             shaft_rad=shaft,
             time_s=np.arange(n, dtype=np.float64) if time_s is None else np.asarray(time_s, dtype=np.float64),
             direction=way,
-            speed_rad_s=_speed(shaft, way, time_s, speed_rad_s),
+            speed_rad_s=speed,
             turn=np.zeros(n, dtype=np.int64)
             if turn is None
             else np.unique(turn, return_inverse=True)[1].astype(np.int64),
@@ -284,6 +287,22 @@ def _way(shaft_rad: Array, direction: Array | None, speed_rad_s: Array | None) -
     sense = np.where(np.asarray(speed_rad_s) < 0.0, -1.0, 1.0)
     agreement = float(np.mean(sense * way))
     return np.asarray(sense * np.sign(agreement)) if abs(agreement) > 0.8 else way
+
+
+def _as_reached(shaft_rad: Array, way: Array) -> Array:
+    """Direction (n,) in which each stop was reached.
+
+    A record may name the stop at which the shaft turns round by the way in which it leaves it.
+    """
+    step = np.diff(shaft_rad)
+    usual = np.median(np.abs(step[step != 0.0])) if np.any(step) else 0.0
+    turned = np.flatnonzero(np.diff(way[:-1]))
+    onward = step[turned] * way[turned] > 0.5 * usual
+    back = step[turned + 1] * way[turned] < -0.5 * usual
+    reached = np.array(way)
+    late = turned[onward & back]
+    reached[late + 1] = way[late]
+    return reached
 
 
 def _speed(shaft_rad: Array, way: Array, time_s: Array | None, speed_rad_s: Array | None) -> Array:

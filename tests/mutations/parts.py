@@ -18,8 +18,8 @@ PARTS: tuple[Mutation, ...] = (
         ),
         (
             "outliers.steps_of_the_grid_are_masked",
-            "far_out(away, settings) + step",
-            "far_out(away, settings)",
+            "far_out(residual, settings) + step",
+            "far_out(residual, settings)",
             "stages/test_row_masks.py::test_which_rows_are_masked",
         ),
     ),

@@ -50,10 +50,9 @@ HYSTERESIS = Effect(
         "lag_deg": Param(
             unit="deg",
             null=0.0,
-            lower=-5.0,
+            lower=0.0,
             upper=5.0,
-            doc="steady lag; negative: the reference lags",
-            allowed=(0.0, 5.0),
+            doc="steady lag",
             field_power=-1.0,
         ),
         "memory_deg": Param(

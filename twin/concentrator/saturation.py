@@ -8,9 +8,28 @@ from twin.angles import Array
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
+CUBIC = 2.0
+"""Exponent of the loss in a curve that is smooth through zero: c - k c^3."""
+
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    return signal - 0.01 * np.asarray(values["k_percent"]) * (signal * signal * signal)
+    k = 0.01 * np.asarray(values["k_percent"])
+    exponent = np.asarray(values.get("exponent", CUBIC), dtype=np.float64)
+    if np.all(exponent == CUBIC):
+        return signal - k * (signal * signal * signal)
+    return np.asarray(signal - k * of_order_4(exponent) * signal * np.abs(signal) ** exponent)
+
+
+def of_order_4(exponent: Array) -> Array:
+    """What k is multiplied by so that a loss of this exponent turns the angle in order 4 as the cubic's does.
+
+    The loss k c |c|^p turns the angle by k sin a cos a (|cos a|^p - |sin a|^p), whose component in sin 4a is
+    k (4 / sqrt(pi)) p Gamma((p + 3) / 2) / Gamma(p / 2 + 4): a quarter of k for p = 2.
+    """
+    from scipy.special import gammaln
+
+    share = 4.0 / np.sqrt(np.pi) * exponent * np.exp(gammaln(0.5 * (exponent + 3.0)) - gammaln(0.5 * exponent + 4.0))
+    return np.asarray(0.25 / share)
 
 
 SATURATION = Effect(
@@ -22,16 +41,28 @@ SATURATION = Effect(
         "k_percent": Param(
             unit="%",
             null=0.0,
-            lower=-30.0,
+            lower=0.0,
             upper=30.0,
-            doc="loss at full amplitude, c - k c^3",
+            doc="loss at full amplitude, c - k c^3, or that of the cubic with the same order 4",
             typical=0.5,
-            allowed=(0.0, 30.0),
             field_power=2.0,
-        )
+        ),
+        "exponent": Param(
+            unit="1",
+            null=CUBIC,
+            lower=0.5,
+            upper=6.0,
+            doc="of the loss; 2: cubic, tanh, 1: Froehlich's curve c / (1 + k |c|)",
+            role="shape",
+            typical=0.5,
+            prior_sd=1.0,
+            aside=True,
+        ),
     },
     forward=forward,
     needs=frozenset({"one turn"}),
-    source="leading odd term of the magnetisation curve of a soft magnetic disk; paper, section 2.2.4",
+    fitted_shapes=("exponent",),
+    source="leading term of the magnetisation curve of a soft magnetic disk; paper, section 2.2.4; exponent 1: "
+    "Froehlich, Elektrotechnische Zeitschrift 2 (1881) 134",
     signature="order 4, phase locked to the sensor axes (sin 4a); order 4 in the radius",
 )

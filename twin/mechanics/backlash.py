@@ -50,9 +50,7 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     # The play follows the nominal shaft angle: what the other effects add to it is far below its width.
     shaft = motion.shaft_rad
     half_width = np.atleast_1d(radians(values["half_width_deg"]))
-    lag = play(shaft, np.abs(half_width), way=float(motion.direction[0])) - shaft
-    # A negative width: the dead zone lies ahead of the reference, which then stands behind instead of the magnet.
-    return signal + np.sign(half_width) * lag
+    return signal + (play(shaft, half_width, way=float(motion.direction[0])) - shaft)
 
 
 BACKLASH = Effect(
@@ -63,11 +61,10 @@ BACKLASH = Effect(
         "half_width_deg": Param(
             unit="deg",
             null=0.0,
-            lower=-5.0,
+            lower=0.0,
             upper=5.0,
-            doc="half of the dead zone; negative: ahead of the reference",
+            doc="half of the dead zone",
             typical=0.1,
-            allowed=(0.0, 5.0),
         )
     },
     forward=forward,

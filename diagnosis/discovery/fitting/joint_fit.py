@@ -322,17 +322,18 @@ def _room(fit: Fit) -> tuple[Array, Array]:
     """How far each free parameter may move down and up (P,), in its own unit; phases and turns' zeros go anywhere."""
     lower, upper = np.full(len(fit.free), -np.inf), np.full(len(fit.free), np.inf)
     for place, free in enumerate(fit.free):
-        param = find(free.key, fit.chain.effects).params[free.name]
+        effect = find(free.key, fit.chain.effects)
+        param = effect.params[free.name]
         if free.turn is None and param.role != "phase":
             value = float(fit.chain.values[free.key].get(free.name, param.null))
-            least, most = _bounds(param)
+            least, most = _bounds(effect, param)
             lower[place], upper[place] = min(least - value, 0.0), max(most - value, 0.0)
     return lower, upper
 
 
-def _bounds(param: Param) -> tuple[float, float]:
-    """Between which a parameter is fitted: an amplitude may pass through zero, its phase then turns by half a turn."""
-    through_zero = param.role == "strength" and param.lower == 0.0
+def _bounds(effect: Effect, param: Param) -> tuple[float, float]:
+    """Between which a parameter is fitted: an amplitude may pass through zero where a phase can turn by half a turn."""
+    through_zero = param.role == "strength" and param.lower == 0.0 and bool(effect.roles("phase"))
     return (-param.upper if through_zero else param.lower), param.upper
 
 
@@ -345,7 +346,8 @@ def _moved(fit: Fit, step: Array) -> Chain:
     """The chain with its free parameters moved by ``step`` (P,), in the parameters' own units."""
     values = {key: dict(params) for key, params in fit.chain.values.items()}
     for place, free in enumerate(fit.free):
-        param = find(free.key, fit.chain.effects).params[free.name]
+        effect = find(free.key, fit.chain.effects)
+        param = effect.params[free.name]
         if free.turn is not None:
             zeros = np.array(values[free.key][free.name], dtype=np.float64)
             zeros[free.turn] += step[place]
@@ -353,7 +355,7 @@ def _moved(fit: Fit, step: Array) -> Chain:
             continue
         moved = float(values[free.key].get(free.name, param.null)) + step[place]
         # A rounding beyond its bound.
-        values[free.key][free.name] = moved if param.role == "phase" else float(np.clip(moved, *_bounds(param)))
+        values[free.key][free.name] = moved if param.role == "phase" else float(np.clip(moved, *_bounds(effect, param)))
     return replace(fit.chain, values=values)
 
 

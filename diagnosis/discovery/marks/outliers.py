@@ -23,10 +23,20 @@ def local_residual(residual: Array) -> Array:
     return np.asarray(residual - np.median(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1))
 
 
-def far_out(away: Array, settings: DiscoverySettings) -> float:
-    """How far from its neighbours a row stands alone, of local residuals (n,) that are mostly noise."""
-    far = settings.spike_sigma_few if away.size < settings.spike_few else settings.spike_sigma
-    return far * max(robust_rms(away), 1e-9)
+def local_rms(residual: Array) -> float:
+    """RMS of what single readings of a residual (n,) do on their own, blind to outliers and to slow structure.
+
+    Where structure rises or falls by more than the noise from row to row, most rows are the very median of their
+    neighbours; the second difference of white noise is then still the root of six times as large as the noise.
+    """
+    second = np.diff(residual, 2) / np.sqrt(6.0)
+    return max(robust_rms(local_residual(residual)), robust_rms(second))
+
+
+def far_out(residual: Array, settings: DiscoverySettings) -> float:
+    """How far from its neighbours a row of a residual (n,) stands alone."""
+    far = settings.spike_sigma_few if residual.size < settings.spike_few else settings.spike_sigma
+    return far * max(local_rms(residual), 1e-9)
 
 
 def spikes(residual: Array, motion: Motion, step: float, settings: DiscoverySettings) -> BoolArray:
@@ -36,7 +46,7 @@ def spikes(residual: Array, motion: Motion, step: float, settings: DiscoverySett
     Five or more neighbours off together are structure, not spikes; so is what comes again at the same angle.
     """
     away = local_residual(residual)
-    mask = np.abs(away) > far_out(away, settings) + step
+    mask = np.abs(away) > far_out(residual, settings) + step
     edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         if last - first > settings.longest_spike:

@@ -11,7 +11,7 @@ from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.noise.rounding import coarsest_stair
-from diagnosis.discovery.marks.outliers import local_residual, robust_rms
+from diagnosis.discovery.marks.outliers import local_rms
 from diagnosis.discovery.marks.stairs import reblurred, without_stairs
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import TAU, Array
@@ -91,7 +91,7 @@ def with_stairs(
             chain = chain.with_values({effect.name: dict(values)})
             found.append(Finding.among(family, effect.name, log_p, gain=-2.0 * log_p))
     if grid is not None and bits is not None and grid.name not in chain.values:
-        sigma = robust_rms(local_residual(fit.residual[0]))
+        sigma = local_rms(fit.residual[0])
         if step / np.sqrt(12.0) > settings.stairs_in_noise * sigma:
             chain = chain.with_values({grid.name: {grid.roles("level")[0]: float(bits)}})
     return _blurred(fit, chain), tuple(found)

@@ -7,7 +7,7 @@ import numpy as np
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.noise.rounding import coarsest_stair
-from diagnosis.discovery.marks.outliers import local_residual, robust_rms
+from diagnosis.discovery.marks.outliers import local_rms
 from diagnosis.discovery.marks.row_masks import raw_residual
 from twin.effect import BoolArray, Effect
 from twin.sweep import Sweep
@@ -25,7 +25,7 @@ def touched_rows(
     residual = np.where(spoken_for, 0.0, raw_residual(fit, sweep))
     # What a CORDIC's uneven stairs leave stands out of the noise too.
     stairs = coarsest_stair(fit.chain) / np.sqrt(12.0)
-    sigma = max(robust_rms(local_residual(residual)), stairs)
+    sigma = max(local_rms(residual), stairs)
     mask, log_p = effect.marks(np.radians(sweep.measured_deg), residual, sigma, step, sweep.motion())
     if log_p > fit.settings.effect_log_p(family) or not mask.any():
         return None

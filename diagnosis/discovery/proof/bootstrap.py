@@ -9,7 +9,7 @@ import numpy as np
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.noise.estimate import estimated
 from diagnosis.discovery.fitting.noise.rounding import ahead_of_stairs, coarsest_stair
-from diagnosis.discovery.marks.outliers import far_out, local_residual
+from diagnosis.discovery.marks.outliers import far_out
 from twin.angles import Array, wrap
 from twin.catalogue import find
 from twin.hall.noise import NOISE, parameters
@@ -19,7 +19,7 @@ from twin.noise.sequences import draw, turned
 
 def noise_of(fit: Fit) -> Noise:
     """The noise of a fit's readings, as it stands behind all stairs."""
-    return estimated(fit, limit_rad=far_out(local_residual(fit.residual[0]), fit.settings) + coarsest_stair(fit.chain))
+    return estimated(fit, limit_rad=far_out(fit.residual[0], fit.settings) + coarsest_stair(fit.chain))
 
 
 def row_scale(fit: Fit, noise: Noise) -> Array | float:

@@ -27,6 +27,11 @@ def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
     The baseline's coefficients are integrated out, and so are the turns' own zeros, which are draws from a
     distribution with the scatter that they show: a common cause of many turns' zeros gains by making them scatter less.
     """
+    return max(_likelihoods(fit, members or fit.weighting.plausible).values())
+
+
+def _likelihoods(fit: Fit, members: Sequence[int]) -> dict[int, float]:
+    """The same by family member."""
     family = fit.weighting.family
     base = [k for k, free in enumerate(fit.free) if find(free.key, fit.chain.effects).baseline]
     turns = [k for k, free in enumerate(fit.free) if free.turn is not None]
@@ -34,12 +39,12 @@ def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
     dof = fit.rows * fit.observations.observables - len(base)
     prior = float(np.sum(np.log(fit.strengths[turns]))) if turns else 0.0
     cost = family.cost(fit.rows)
-    best = -np.inf
-    for member in members or fit.weighting.plausible:
+    found = {}
+    for member in members:
         r, j = fit.whitened(member)
         _, log_det = np.linalg.slogdet(j[integrated] @ j[integrated].T + 1e-300 * np.eye(len(integrated)))
-        best = max(best, -0.5 * (dof * np.log(max(float(r @ r), 1e-300)) + cost[member] + log_det))
-    return float(best) + prior
+        found[member] = prior - 0.5 * float(dof * np.log(max(float(r @ r), 1e-300)) + cost[member] + log_det)
+    return found
 
 
 def judged_p(gain: float, terms: int, dof: int, looks: float) -> float:
@@ -114,6 +119,11 @@ def add(fit: Fit, candidate: Candidate) -> tuple[Fit, str]:
     return refit(chain, (*fit.free, *free), fit), key
 
 
+def reweighed(fit: Fit, member: int) -> Fit:
+    """The fit as it stands, weighed by another family member."""
+    return evaluate(fit.chain, fit.free, fit.observations, replace(fit.weighting, member=member))
+
+
 def drop(fit: Fit, key: str) -> Fit:
     """The joint fit without this instance."""
     return solve_tidy(take_out(fit, key))
@@ -139,9 +149,14 @@ class Trial:
 
     @classmethod
     def of(cls, fit: Fit, candidate: Candidate) -> Trial:
-        """Add the candidate to the fit."""
+        """Add the candidate to the fit, with the noise that is left then: what it explains had passed for colour."""
         trial, key = add(fit, candidate)
-        return cls(candidate, trial, key, plausible_members(trial))
+        members = plausible_members(trial)
+        found = _likelihoods(trial, members)
+        member = max(found, key=lambda one: found[one])
+        if member != trial.weighting.member:
+            trial = solve_tidy(reweighed(trial, member))
+        return cls(candidate, trial, key, members)
 
     def log_p(self, before: Fit, members: tuple[int, ...], dof: int) -> float:
         """Log probability that noise of these members gains as much."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from diagnosis.discovery.marks.outliers import local_residual, robust_rms
+from diagnosis.discovery.marks.outliers import local_rms
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.quantisation import quantisation
 from diagnosis.discovery.state import State
@@ -35,7 +35,7 @@ def on_a_grid(share: float) -> State:
     """Readings on a grid whose step/sqrt(12) is this share of their robust scatter, the grid's own included."""
     plain = noise(180)
     ahead = STEP / np.sqrt(12.0) * np.sqrt(1.0 / share**2 - 1.0)
-    return rounded(plain * ahead / robust_rms(local_residual(plain)))
+    return rounded(plain * ahead / local_rms(plain))
 
 
 @pytest.mark.parametrize(

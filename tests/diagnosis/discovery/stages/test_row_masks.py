@@ -13,14 +13,17 @@ import numpy as np
 import pytest
 
 from diagnosis.discovery.fitting.joint_fit import evaluate
-from diagnosis.discovery.marks.outliers import local_residual, robust_rms
+from diagnosis.discovery.marks.outliers import local_rms, robust_rms
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
 from twin.angles import Array
 
 NEAR = 0.15
-"""Share of a limit by which the cases stand on either side of it: what the fit itself takes up of a row is less."""
+"""Share of a limit by which the cases stand on either side of it: what the fit itself takes up of a row is less.
+
+In a short record the row itself adds as much to the scatter of its neighbours: twice the share.
+"""
 FINE = Made(points=180, bits=30)
 
 
@@ -52,7 +55,7 @@ CASES = {
     "in a record just long enough": Case(made=few(60), away=10.0, masked=(40,)),
     "in a record just too short": Case(made=few(59), away=10.0),
     "nearer than the limit of a short record": Case(made=few(59), away=14.0 * (1.0 - NEAR)),
-    "farther than the limit of a short record": Case(made=few(59), away=14.0 * (1.0 + NEAR), masked=(40,)),
+    "farther than the limit of a short record": Case(made=few(59), away=14.0 * (1.0 + 2.0 * NEAR), masked=(40,)),
     # Five degrees apart: of readings within a few degrees three that are off the same way pass for a narrow shape.
     "as many neighbours as may be": Case(made=few(72), rows=_NEIGHBOURS[:-1], away=20.0, masked=_NEIGHBOURS[:-1]),
     "one neighbour more": Case(made=few(72), rows=_NEIGHBOURS, away=20.0),
@@ -70,7 +73,7 @@ def handed(case: Case) -> State:
     """The state that the stage is handed."""
     state = before(row_masks, case.made)
     plain = noise(len(state.sweep))
-    sigma, residual = robust_rms(local_residual(plain)), plain.copy()
+    sigma, residual = local_rms(plain), plain.copy()
     for row in case.rows:
         residual[row] = np.median(plain[row - 4 : row + 5]) + case.away * sigma + case.steps * state.step
     touched = np.isin(np.arange(len(state.sweep)), case.touched)
@@ -81,6 +84,16 @@ def handed(case: Case) -> State:
 def test_which_rows_are_masked(case: Case) -> None:
     state = row_masks(handed(case))
     assert tuple(np.flatnonzero(~state.fit.observations.usable)) == case.masked
+
+
+@pytest.mark.parametrize("steepest", [0.5, 2.0, 4.0])
+def test_structure_that_rises_by_more_than_the_noise_masks_no_row(steepest: float) -> None:
+    """A row between two neighbours is their median, however loud it is; of 180 rows none lies beyond seven sigma."""
+    state = before(row_masks, FINE)
+    plain = noise(len(state.sweep))
+    slope = steepest * robust_rms(plain) * np.sin(0.1 * np.arange(plain.size))
+    left = row_masks(with_residual(state, plain + np.cumsum(slope)))
+    assert left.fit.observations.usable.all()
 
 
 def test_a_masked_row_moves_the_fit_no_more() -> None:

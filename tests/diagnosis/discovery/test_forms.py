@@ -1,0 +1,98 @@
+"""One physical cause, one name: sweeps made from physics, not by the twin's own formulas.
+
+Each holds one cause beside offsets and a gain mismatch, far stronger than the noise, so that the right name is certain
+and everything else is an invention.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnosis import explain
+from twin.angles import Array
+
+NOISE_DEG = 0.02
+
+
+def channels(field_rad: Array, curve: Callable[[Array], Array] = np.asarray) -> Array:
+    """Two channels (2, n) of a field at these angles, each behind the same curve."""
+    x, y = curve(np.cos(field_rad + 0.7)), curve(np.sin(field_rad + 0.7))
+    return np.stack([x + 0.006, 1.004 * y - 0.004])
+
+
+def sweep(shaft_rad: Array, signal: Array, seed: int, **columns: Array) -> dict[str, Array]:
+    """Columns of a sweep: noise on both channels, the angle in words of 14 bits."""
+    noisy = signal + np.radians(NOISE_DEG) * np.random.default_rng(seed).standard_normal(signal.shape)
+    step = 360.0 / 2**14
+    measured = step * np.round(np.degrees(np.arctan2(noisy[1], noisy[0])) / step)
+    return {"reference_deg": np.degrees(shaft_rad), "measured_deg": measured, **columns}
+
+
+def named(columns: dict[str, Array]) -> dict[str, dict[str, Any]]:
+    """The causes by name, each with its parameters' figures."""
+    return {cause["name"]: cause["parameters"] for cause in explain(columns).to_dict()["causes"]}
+
+
+def turns(points: int, count: int) -> Array:
+    """Angles [rad] of so many turns one way."""
+    return np.arange(points * count) * 2.0 * np.pi / points
+
+
+def froehlich(field: Array) -> Array:
+    """Froehlich's magnetisation curve: 2 % less at full amplitude."""
+    return np.asarray(field / (1.0 + 0.02 * np.abs(field)))
+
+
+def cubic(field: Array) -> Array:
+    """So strong that the error is steeper from reading to reading than the noise."""
+    return np.asarray(field - 0.0333 * field**3)
+
+
+@pytest.mark.parametrize(("curve", "k_percent"), [(froehlich, 1.54), (cubic, 3.33)])
+def test_any_curve_that_falls_behind_is_one_saturation(curve: Callable[[Array], Array], k_percent: float) -> None:
+    """k is that of the cubic with the same order 4, in Froehlich's curve by its Fourier series 0.77 of the loss."""
+    shaft = turns(90, 4)
+    signal = channels(shaft, curve)
+    found = named(sweep(shaft, signal, 3, vx=signal[0], vy=signal[1]))
+    assert list(found) == ["saturation"]
+    assert found["saturation"]["k_percent"]["value"] == pytest.approx(k_percent, abs=0.06)
+
+
+def follower(shaft_rad: Array, radius: float) -> Array:
+    """A vector that is dragged by the unit vector at these angles on a leash of this length, as complex (n,)."""
+    path = np.concatenate([np.linspace(a, b, 30) for a, b in itertools.pairwise(shaft_rad)])
+    dragged = np.sqrt(1.0 - radius**2) * np.exp(1j * (shaft_rad[0] - np.sign(path[1] - path[0]) * np.arcsin(radius)))
+    found = [dragged]
+    for place, angle in enumerate(path):
+        leash = np.exp(1j * angle) - dragged
+        dragged += leash * max(1.0 - radius / max(abs(leash), 1e-12), 0.0)
+        if place % 30 == 29:
+            found.append(dragged)
+    return np.array(found)
+
+
+def test_a_stack_of_plays_is_one_hysteresis() -> None:
+    """Also where the stop at which the shaft turns round is recorded with the way in which it is left."""
+    up = np.radians(np.arange(0.0, 725.0, 5.0))
+    shaft = np.concatenate([up, up[-2::-1], up[1:], up[-2::-1]])
+    field = np.exp(1j * shaft) + sum(0.012 * follower(shaft, radius) for radius in (0.03, 0.08, 0.15, 0.25))
+    left = np.sign(np.diff(shaft, append=2.0 * shaft[-1] - shaft[-2]))
+    found = named(sweep(shaft, channels(np.unwrap(np.angle(field))), 5, direction=left))
+    assert list(found) == ["hysteresis"]
+    steady = np.degrees(sum(0.012 * r * np.sqrt(1.0 - r * r) for r in (0.03, 0.08, 0.15, 0.25)) / 1.048)
+    assert found["hysteresis"]["lag_deg"]["value"] == pytest.approx(steady, rel=0.1)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_what_physics_forbids_has_no_name(seed: int) -> None:
+    """A curve that runs ahead of the field, and a sensor ahead of the direction: `saturation` and lags lie at zero."""
+    shaft = turns(72, 2)
+    shaft = np.concatenate([shaft, shaft[::-1]])
+    direction = np.repeat([1.0, -1.0], shaft.size // 2)
+    signal = channels(shaft + np.radians(0.1) * direction, lambda field: field + 0.015 * field**3)
+    assert {"saturation", "hysteresis", "backlash"}.isdisjoint(named(sweep(shaft, signal, seed, direction=direction)))

@@ -1,4 +1,4 @@
-"""index_slip: the reference's zero jumps once."""
+"""index_slip: the reference's zero jumps, once or several times."""
 
 from __future__ import annotations
 
@@ -48,8 +48,9 @@ INDEX_SLIP = Effect(
     forward=forward,
     shapes=shapes,
     zoomed=("time_s",),
+    repeatable=True,
     drawing=drawing,
     needs=frozenset({"time_s"}),
-    source="definition: an incremental encoder that loses or gains counts once",
-    signature="a step in order 0",
+    source="definition: an incremental encoder that loses or gains counts",
+    signature="a step in order 0, or several",
 )

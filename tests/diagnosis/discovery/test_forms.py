@@ -96,3 +96,19 @@ def test_what_physics_forbids_has_no_name(seed: int) -> None:
     direction = np.repeat([1.0, -1.0], shaft.size // 2)
     signal = channels(shaft + np.radians(0.1) * direction, lambda field: field + 0.015 * field**3)
     assert {"saturation", "hysteresis", "backlash"}.isdisjoint(named(sweep(shaft, signal, seed, direction=direction)))
+
+
+def test_a_reference_that_loses_counts_several_times_slips() -> None:
+    """No drift and no slow order makes up for it."""
+    shaft = turns(90, 4)
+    time_s = 0.4 * np.arange(shaft.size)
+    slips = ((40.0, 0.12), (75.0, 0.09), (110.0, 0.15))
+    lost = sum(np.radians(step) * (time_s >= at) for at, step in slips)
+    found = named(sweep(shaft - lost, channels(shaft), 7, time_s=time_s))
+    assert list(found) == ["index_slip"]
+    figures = found["index_slip"]
+    instants = [figures[name]["value"] for name in ("time_s", "time_s_2", "time_s_3")]
+    assert np.sort(instants) == pytest.approx([at for at, _ in slips], abs=0.4)
+    steps = [figures[name]["value"] for name in ("step_deg", "step_deg_2", "step_deg_3")]
+    # A step is told by a hundred readings on each side: five standard deviations.
+    assert np.array(steps)[np.argsort(instants)] == pytest.approx([step for _, step in slips], abs=0.02)

@@ -134,7 +134,7 @@ class DiscoverySettings:
     """Budget. Candidates that are fitted exactly in the place of a cause."""
     contender_nats: float = _nats(8.0)
     """Limit. By how much a first-order score may undervalue a candidate: those within it of the best are fitted."""
-    contender_share: float = _share(0.1)
+    contender_share: float = _share(0.15)
     """Limit. The same for strong causes, as a share of the best score: first order errs in proportion to the gain."""
     fair_share: float = _share(0.15)
     """Limit. Share of a cause's gain that another must reach by itself to be tried in its place, or to be one of

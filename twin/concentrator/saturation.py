@@ -55,7 +55,9 @@ SATURATION = Effect(
             doc="of the loss; 2: cubic, tanh, 1: Froehlich's curve c / (1 + k |c|)",
             role="shape",
             typical=0.5,
-            prior_sd=1.0,
+            # Froehlich's curve is as far from it as two standard deviations.
+            prior_mean=CUBIC,
+            prior_sd=0.5,
             aside=True,
         ),
     },

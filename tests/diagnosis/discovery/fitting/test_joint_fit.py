@@ -10,7 +10,7 @@ import pytest
 from scipy.fft import dct
 from scipy.optimize import least_squares
 
-from diagnosis.discovery.fitting.joint_fit import BASELINE, SMALL_GAIN, Fit, Weighting, evaluate, free_of, solve
+from diagnosis.discovery.fitting.joint_fit import BASELINE, SMALL_GAIN, Fit, Free, Weighting, evaluate, free_of, solve
 from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.observations import collect
 from diagnosis.discovery.settings import DiscoverySettings
@@ -121,7 +121,14 @@ def misfit(fit: Fit, values: Array) -> Array:
         radius = observations.log_radius - np.log(np.hypot(x, y))
         parts.append(radius - np.mean(radius))
     root = 1.0 / np.sqrt(fit.weighting.family.spectra[fit.weighting.member])
-    return np.concatenate([root * dct(part, type=2, norm="ortho") for part in parts]) / np.radians(NOISE_DEG)
+    white = [root * dct(part, type=2, norm="ortho") / np.radians(NOISE_DEG) for part in parts]
+    return np.concatenate([*white, [pull(free, value) for free, value in zip(fit.free, values, strict=True)]])
+
+
+def pull(free: Free, value: float) -> float:
+    """How far a parameter is from what is likely beforehand, in standard deviations of that; 0 where nothing is."""
+    param = find(free.key).params[free.name]
+    return 0.0 if param.prior_mean is None else (value - param.prior_mean) / param.prior_sd
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)

@@ -138,7 +138,7 @@ def test_of_strong_causes_the_reach_is_a_share_of_the_score(
     share: float, found: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     front = -400.0
-    true = front - share * 0.1 * front
+    true = front - share * LIMITS.contender_share * front
     fit, base = settle(fifth().fit)
     ranked = [candidate(SATURATION, fit, log_p=front), offered(true)[-1]]
     monkeypatch.setattr(forward_step, "candidates", lambda *_: ranked)

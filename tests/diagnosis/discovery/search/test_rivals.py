@@ -91,7 +91,7 @@ def nearly(off: float) -> State:
 
 @pytest.mark.parametrize(
     ("off", "coarse", "sigma", "same"),
-    [(0.28, False, 2.9, True), (0.32, False, 3.6, False), (0.4, True, 4.85, True), (0.5, True, 6.05, False)],
+    [(0.24, False, 2.7, True), (0.28, False, 3.3, False), (0.4, True, 5.1, True), (0.5, True, 6.2, False)],
 )
 def test_as_good_is_within_three_sigma_and_beside_coarse_stairs_within_six(
     off: float, coarse: bool, sigma: float, same: bool

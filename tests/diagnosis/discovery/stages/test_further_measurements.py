@@ -29,7 +29,7 @@ class Case:
 CASES = {
     # The radius has the order 4 of saturation and none of a magnet's harmonic.
     "saturation in a turn": Case(
-        made=Made(causes=(("saturation", 0.06),), points=120),
+        made=Made(causes=(("saturation", 0.08),), points=120),
         rival="magnet_harmonic",
         parts="raw channels",
         parts_not="other direction",

@@ -81,8 +81,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "twin": to_dict(found.device),
         }
     )
-    answer |= _rounded(recordings_answer(found))
-    return answer
+    return {**answer, **_rounded(recordings_answer(found))}
 
 
 def _changed(found: Discovery) -> dict[str, Any]:

@@ -94,7 +94,7 @@ class Param:
     counts: bool = False
     allowed: tuple[float, float] | None = None
     field_power: float = 0.0
-    distance_power: Callable[[Parameters], float] | None = None
+    distance_power: Callable[[Parameters], Any] | None = None
     mirror: Literal[-1, 0, 1] | None = None
     prior_sd: float = 0.0
     prior_mean: float | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -21,13 +22,13 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     return [{"order": float(order)} for order in range(3, 9) if 2 * order < motion.points_per_turn]
 
 
-def falls_off(values: Parameters) -> float:
+def falls_off(values: Parameters) -> Any:
     """Power of the distance that the amplitude goes with.
 
     A harmonic of order n + 1 in the magnetisation turns the field by order n; its field falls with the distance from
     the magnet's centre n powers faster than the dipole's (multipole expansion), and so does the angle it turns by.
     """
-    return -float(values["order"])
+    return -np.asarray(values["order"], dtype=np.float64)[()]
 
 
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:

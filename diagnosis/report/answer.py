@@ -37,7 +37,6 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
     residual = np.degrees(raw_residual(found.baseline, found.sweep))
     extended = np.degrees(raw_residual(found.fit, found.sweep))
     kept = ~found.masked if found.masked.any() and not found.masked.all() else np.ones_like(found.masked)
-    gain = found.baseline_held_deg / max(found.extended_held_deg, 1e-12)
     unnamed = [key for cause in found.causes if cause.name == "unnamed" for key in cause.keys]
     parameters_before, parameters_after = (baseline_parameters(fit) for fit in (found.baseline, found.fit))
     answer: dict[str, Any] = _rounded(
@@ -69,7 +68,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
                 "rms_deg": _rms(extended[kept]),
                 "fitted_rms_deg": rms_deg(found, found.fit),
                 "heldout_rms_deg": found.extended_held_deg,
-                "gain": gain,
+                "gain": found.baseline_held_deg / max(found.extended_held_deg, 1e-12),
                 "likeness_p": None if found.likeness is None else found.likeness.p,
                 "likeness_worst": None if found.likeness is None else found.likeness.worst,
                 "likeness_not_checked": _not_checked(found),
@@ -80,8 +79,9 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "cut_short": _cut_short(found),
             "twin": to_dict(found.device),
         }
+        | recordings_answer(found)
     )
-    return {**answer, **_rounded(recordings_answer(found))}
+    return answer
 
 
 def _changed(found: Discovery) -> dict[str, Any]:

@@ -140,8 +140,8 @@ STAGES: tuple[Mutation, ...] = (
         _T,
         (
             "variance.asked_after_a_search",
-            "    if state.looked_at:\n        return state\n",
-            "",
+            "    if state.looked_at or several:\n",
+            "    if several:\n",
             "stages/test_variance.py::test_once_a_search_has_been_made_what_it_leaves_is_judged_instead",
         ),
     ),

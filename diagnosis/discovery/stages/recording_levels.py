@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import evaluate, solve
 from diagnosis.discovery.fitting.observations import Observations
-from diagnosis.discovery.marks.outliers import local_residual, robust_rms
+from diagnosis.discovery.marks.outliers import robust_rms
 from diagnosis.discovery.state import State
 from twin.angles import Array
 
@@ -19,7 +19,7 @@ _SMALLEST = 0.02
 
 
 def recording_levels(state: State) -> State:
-    """Give the rows of each recording the scale that its readings have about their neighbours."""
+    """Give the rows of each recording the scale that its readings have against their neighbours."""
     fit = state.fit
     if fit.observations.motion.recordings is None:
         return state
@@ -38,7 +38,8 @@ def _levels(observations: Observations, residual: Array) -> Array:
     """
     recordings = observations.motion.recordings
     assert recordings is not None
-    own = np.array([robust_rms(local_residual(residual[rows][observations.sure[rows]])) for rows in recordings.slices])
+    # Of second differences, in which structure that is smooth from reading to reading has gone (von Neumann, 1941).
+    own = np.array([robust_rms(np.diff(residual[rows][observations.sure[rows]], 2)) for rows in recordings.slices])
     usual = float(np.median(own[recordings.number]))
     if usual == 0.0:
         return np.ones(len(observations))

@@ -13,7 +13,9 @@ def variance(state: State) -> State:
     Nothing is named yet: structure that is still unknown passes for uneven noise. Once a search has been made, the
     spread of what it leaves is judged instead (:func:`~diagnosis.discovery.stages.spread.spread`).
     """
-    if state.looked_at:
+    several = state.fit.observations.motion.recordings is not None
+    if state.looked_at or several:
+        # What common factors leave in one of several recordings is loud, and is what tells the causes from each other.
         return state
     fit, limit = state.fit, state.settings.beyond_doubt_log_p
     burst = bursts(fit)

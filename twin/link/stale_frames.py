@@ -26,14 +26,15 @@ def marks(measured: Array, residual: Array, noise: float, step: float, motion: M
 
     A repeat by chance needs the noise to cancel the movement: with a movement of ``move`` and a difference of two
     noises of ``sqrt(2) noise`` its probability a row is the density there times the grid's step. Where the direction
-    or the turn changes, slack or a new zero may undo the movement: no repeat is told there.
+    or the turn changes, slack or a new zero may undo the movement: no repeat is told there. Nor where what repeats is
+    nearer to the reading that was expected than to the one before: a cause, such as a stuck bit, may undo the movement.
     """
     repeat = np.concatenate([[False], np.abs(wrap(np.diff(measured))) < 1e-9])
     on = (np.diff(motion.direction) == 0) & (np.diff(motion.turn) == 0)
     move = np.concatenate([[0.0], np.where(on, np.abs(np.diff(motion.shaft_rad)), 0.0)])
     grid = max(step, 1e-6)
     sigma = np.sqrt(2.0) * max(noise, 0.3 * grid)
-    mask = repeat & (move > 1.5 * grid) & (move > 4.0 * sigma)
+    mask = repeat & (move > 1.5 * grid) & (move > 4.0 * sigma) & (np.abs(residual) > 0.5 * move)
     chance = grid / sigma * np.exp(-0.5 * (np.maximum(move - grid, 0.0) / sigma) ** 2)
     expected = float(np.sum(np.minimum(chance[(move > 1.5 * grid) & (move > 4.0 * sigma)], 1.0)))
     count = int(mask.sum())

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.search.exchange import Search
-from diagnosis.discovery.search.likelihood_ratio import drop, handicap, likelihood, settle
+from diagnosis.discovery.search.likelihood_ratio import Trial, drop, handicap, likelihood, settle
 from diagnosis.discovery.search.removal import Removal
+from diagnosis.discovery.search.screening import Base, screen_one
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.state import State
+from twin.effect import Effect
 
 
 def sense_check(state: State) -> State:
@@ -15,25 +19,44 @@ def sense_check(state: State) -> State:
 
     Angles alone tell who counts which way by the quadratic term only, and a cause may have stood in for it: in the
     other sense it has nothing to do, and is left out there. Each sense is judged by its likelihood, less what each of
-    its causes had to gain to be added. Where the other one keeps all causes, they are forgotten and looked for anew.
+    its causes had to gain to be added. Where the other one keeps all causes, they are forgotten and looked for anew; and
+    where one cause that no mirror leaves as it is, such as a stuck bit, describes the readings better there by itself.
     """
     fit, baseline = state.fit, state.baseline
     if state.given is not None or baseline is None or fit.observations.observables == 2:
         return state
-    plan = Search.among(state.searched, fit)
     other = solve(evaluate(fit.chain.mirrored(), fit.free, fit.observations, fit.weighting))
     here = likelihood(fit) + state.settings.swap_log_odds
+    turned = _mirrored(state, baseline, other, here)
+    if turned is None and state.keys:
+        fresh = solve(evaluate(other.chain.without(*state.keys), baseline.free, fit.observations, fit.weighting))
+        if _one_cause_beats(here, fresh, state.searched):
+            turned = state.with_(fresh, keys=())
+    return state if turned is None else stepwise(turned)
+
+
+def _mirrored(state: State, baseline: Fit, other: Fit, here: float) -> State | None:
+    """The state in the other sense, with what it keeps of the causes; None where that is no better than ``here``."""
+    fit, plan = state.fit, Search.among(state.searched, state.fit)
     # Before any is left out: no more can be won than what all of them cost.
     if likelihood(other) - plan.threshold * len(state.keys) <= here:
-        return state
+        return None
     pruned, keys = _pruned(other, state.keys, plan)
     spared = len(state.keys) - len(keys)
     if likelihood(pruned) - plan.threshold * spared <= here:
-        return state
+        return None
     fresh = solve(evaluate(pruned.chain.without(*keys), baseline.free, fit.observations, fit.weighting))
     if not spared:
-        return stepwise(state.with_(fresh, keys=()))
-    return stepwise(state.with_(pruned, keys=keys, baseline=fresh))
+        return state.with_(fresh, keys=())
+    return state.with_(pruned, keys=keys, baseline=fresh)
+
+
+def _one_cause_beats(least: float, fit: Fit, effects: Sequence[Effect]) -> bool:
+    """Whether one of the effects that no mirror leaves as they are takes the fit beyond this likelihood."""
+    base = Base.of(fit)
+    tried = (screen_one(base, effect) for effect in effects if not (effect.mirrors or effect.baseline))
+    found = [one for one in tried if one is not None]
+    return any(likelihood(Trial.of(fit, one).fit) > least + handicap(one.effect, fit) for one in found)
 
 
 def _pruned(fit: Fit, keys: tuple[str, ...], plan: Search) -> tuple[Fit, tuple[str, ...]]:

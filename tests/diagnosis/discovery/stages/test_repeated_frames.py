@@ -12,6 +12,8 @@ from diagnosis.discovery.stages.repeated_frames import repeated_frames
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.claims import claiming, with_effects
 from tests.diagnosis.discovery.sweeps import Made, before, planted_of
+from twin.link.stale_frames import STALE_FRAMES
+from twin.motion import Motion
 
 LIMIT = DiscoverySettings().footprint_log_p
 STALE, GLITCH = "stale_frames", "bus_glitch"
@@ -47,6 +49,22 @@ def test_every_repeated_frame_is_named_and_masked(made: Made) -> None:
     assert tuple(np.flatnonzero(after.touched)) == rows
     assert set(rows) <= set(np.flatnonzero(~after.fit.observations.usable))
     assert repeated_frames(after) is after
+
+
+def test_a_repeat_that_the_expected_reading_repeats_is_none() -> None:
+    """A cause may hold the reading where the shaft moves on: then the error is its own, not a step of the shaft."""
+    motion = Motion.from_angle(np.radians(np.arange(0.0, 360.0, 1.0)))
+    noise = np.radians(0.02) * np.random.default_rng(0).standard_normal(360)
+    measured = motion.shaft_rad + noise
+    measured[200] = measured[199]
+    stale = np.where(np.arange(360) == 200, -np.radians(1.0), noise)
+    assert STALE_FRAMES.marks is not None
+    touched, log_p = STALE_FRAMES.marks(measured, stale, np.radians(0.02), 0.0, motion)
+    assert np.flatnonzero(touched).tolist() == [200]
+    assert log_p < -100.0
+    touched, log_p = STALE_FRAMES.marks(measured, noise, np.radians(0.02), 0.0, motion)
+    assert not touched.any()
+    assert log_p == 0.0
 
 
 def test_without_them_the_fit_is_that_of_the_other_readings() -> None:

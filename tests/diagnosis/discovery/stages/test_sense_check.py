@@ -82,6 +82,27 @@ def test_what_fits_better_by_the_odds_is_taken(case: Case) -> None:
         assert sense_check(after) is after
 
 
+def test_a_cause_that_no_mirror_leaves_as_it_is_decides() -> None:
+    """A bit that stays at one in y alone is, in the other sense, none: what the search found there is forgotten."""
+    right = before(sense_check, Made(quadratic=0.0, causes=(("adc_stuck_bit", 0.3),), back=True, points=180))
+    assert right.keys == ("adc_stuck_bit",)
+    assert right.baseline is not None
+    baseline = right.baseline
+    chain = baseline.chain.mirrored().with_effect("hysteresis", lag_deg=0.01)
+    wrong = solve(evaluate(chain, baseline.free, right.fit.observations, baseline.weighting))
+    state = right.with_(wrong, keys=("hysteresis",))
+    # The mirror alone does not tell.
+    assert abs(gain_of(state)) < ODDS
+    after = sense_check(state)
+    assert after.keys == ("adc_stuck_bit",)
+    assert after.fit.chain.sensor_sense == right.fit.chain.sensor_sense
+    # With nothing found, nothing is in doubt.
+    silent = state.with_(
+        solve(evaluate(chain.without("hysteresis"), baseline.free, wrong.observations, wrong.weighting))
+    )
+    assert sense_check(silent.with_(keys=())).keys == ()
+
+
 CLEAR = CASES["enough"]
 
 

@@ -138,7 +138,7 @@ def test_how_it_works_lists_every_stage_in_order() -> None:
 
 def test_the_twin_of_its_page_is_read_run_and_written() -> None:
     chain = from_dict(tomllib.loads(block(GUIDE / "twin.md", "twin", "toml")))
-    assert [part.name for part in chain.described] == ["disk", "plates"]
+    assert [part.name for part in chain.described] == ["disk", "plates", "sampling", "converter"]
     motion = Protocol().motion()
     signals = run(chain, motion, np.random.default_rng(1))
     recorded = np.radians(chain.simulate(motion, seed=1).measured_deg)

@@ -154,5 +154,8 @@ def word_bits(chain: Chain) -> int:
 
 
 def _codes(chain: Chain, channels: Array) -> Codes | None:
+    converter = chain.parts.converter
+    if converter is not None:
+        return np.asarray(np.round(channels / converter.step), dtype=np.int64)
     bits = int(chain.values.get(ADC_QUANTISATION.name, {}).get("bits", 0))
     return codes_of(channels, bits) if bits > 0 else None

@@ -188,7 +188,7 @@ def test_described_parts_are_written_and_read() -> None:
 
 
 def test_no_message_offers_the_mirror() -> None:
-    with pytest.raises(TwinError, match=r"hardware has no 'foo'; it has field_mT, disk, plate, plate_y$"):
+    with pytest.raises(TwinError, match=r"hardware has no 'foo'; it has field_mT, disk, plate, plate_y, converter$"):
         from_dict({"schema": SCHEMA, "hardware": {"foo": 1}})
 
 

@@ -83,12 +83,16 @@ class Converter:
         """
         ideal = np.arange(-(2 ** (self.bits - 1)) + 1, 2 ** (self.bits - 1)) - 0.5
         u = ideal / 2.0 ** (self.bits - 1)
-        bow = self.inl_lsb * (u - u**3) / (2.0 / np.sqrt(27.0))
+        bow = self.bow(u)
         widths = np.random.default_rng(self.part).standard_normal(ideal.size) * self.dnl_lsb
         walk = np.cumsum(widths)
         # Through both ends, as a trimmed converter's curve goes: a bridge instead of a walk.
         walk -= np.linspace(0.0, walk[-1], ideal.size)
         return np.asarray(np.maximum.accumulate(ideal + bow + walk) * self.step)
+
+    def bow(self, u: Array) -> Array:
+        """How much too high its curve lies, in steps, at inputs (any shape) in full scales."""
+        return np.asarray(self.inl_lsb * (u - u**3) / (2.0 / np.sqrt(27.0)))
 
 
 def instants(time_s: Array, converter: Converter, rng: np.random.Generator | None = None) -> Array:

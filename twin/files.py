@@ -2,7 +2,7 @@
 
 ``[effects.NAME]`` holds an effect's parameters. Where they are given, ``[magnet]`` and ``[magnet.placement]`` drive the
 channels by a computed field, ``[reference]`` (lines, interpolation, index_deg, has_index) makes the reference an
-incremental encoder, and ``[hardware]`` (field_mT), ``[hardware.disk]``, ``[hardware.plate]``, ``[hardware.plate_y]`` and
+incremental encoder; ``[hardware]`` (field_mT), ``[hardware.disk]``, ``[hardware.plate]``, ``[hardware.plate_y]`` and
 ``[hardware.converter]`` describe the concentrator, the Hall plates and the converter. What is not described is ideal.
 """
 

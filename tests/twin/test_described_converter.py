@@ -96,5 +96,5 @@ def test_it_is_written_read_and_seen_in_the_mirror() -> None:
     assert from_dict(to_dict(chain)).parts == chain.parts
     apart = wrap(chain.mirrored().readings(SPINNING) - chain.readings(SPINNING))
     np.testing.assert_allclose(apart, 0.0, atol=1e-12)
-    with pytest.raises(UserError, match="give it as .effects.adc_stuck_bit."):
+    with pytest.raises(UserError, match=r"give it as \[effects\.adc_stuck_bit\]"):
         from_dict({"schema": SCHEMA, "hardware": {"converter": {"stuck_bit": 3}}})

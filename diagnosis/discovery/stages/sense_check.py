@@ -19,8 +19,8 @@ def sense_check(state: State) -> State:
 
     Angles alone tell who counts which way by the quadratic term only, and a cause may have stood in for it: in the
     other sense it has nothing to do, and is left out there. Each sense is judged by its likelihood, less what each of
-    its causes had to gain to be added. Where the other one keeps all causes, they are forgotten and looked for anew; and
-    where one cause that no mirror leaves as it is, such as a stuck bit, describes the readings better there by itself.
+    its causes had to gain to be added. Where the other one keeps all causes, they are forgotten and looked for anew. So
+    they are where one cause that no mirror leaves as it is, such as a stuck bit, is better there by itself.
     """
     fit, baseline = state.fit, state.baseline
     if state.given is not None or baseline is None or fit.observations.observables == 2:

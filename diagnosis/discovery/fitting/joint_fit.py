@@ -277,7 +277,7 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
         moved = float(np.max(np.abs(step)))
         gained = cost - new_cost
         share = gained / max(float(step @ (2.0 * gradient - normal @ step)), 1e-300)
-        damping *= max(1.0 / 3.0, 1.0 - (2.0 * share - 1.0) ** 3)
+        damping *= max(1.0 / 3.0, 1.0 - (2.0 * min(share, 1.0) - 1.0) ** 3)
         fit = replace(trial, strengths=_prior_strengths(trial.chain, fit.free, fit.observations, trial.residual[0]))
         cost = _cost(fit)
         if moved < tolerance * sigma or gained < SMALL_GAIN * sigma**2:

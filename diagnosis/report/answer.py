@@ -19,12 +19,13 @@ from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
 from diagnosis.report.provenance import Provenance
-from diagnosis.report.recordings import recordings_answer
+from diagnosis.report.recordings import in_recordings, recordings_answer
 from diagnosis.report.row_counts import MOST_LISTED
 from diagnosis.report.senses import senses
 from twin.angles import wrap_deg
 from twin.baseline import FACTORS
 from twin.catalogue import base_name, find
+from twin.each_recording import everywhere
 from twin.files import to_dict
 from twin.param import Param
 
@@ -216,7 +217,7 @@ def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
         "false_alarm_probability": cause.false_alarm_probability,
         "heldout_rms_deg_before": cause.before_deg,
         "heldout_rms_deg_after": cause.after_deg,
-        "indistinguishable_from": list(cause.rivals),
+        "indistinguishable_from": list(dict.fromkeys(map(everywhere, cause.rivals))),
         "to_tell_apart": advice(cause.options, found.fit.settings) if cause.rivals else "",
         "to_tell_apart_options": [
             {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options
@@ -227,7 +228,7 @@ def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
         answer["rows_rms_deg"] = _rms(touched)
         if effect.marks.rows_listed:
             answer["rows"] = found.sweep.numbers[list(cause.rows)].tolist()
-    return answer
+    return answer | in_recordings(found, cause.keys)
 
 
 def parameters(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:

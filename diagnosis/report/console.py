@@ -14,7 +14,7 @@ from rich.text import Text
 
 from diagnosis.report import statements
 from diagnosis.report.change_words import change_line, change_name, change_rivals_words
-from diagnosis.report.recordings import HEADS, recordings_notes, recordings_rows
+from diagnosis.report.recordings import HEADS, recordings_notes, recordings_rows, where_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.statements import FactorRow
 from diagnosis.report.wording import chance
@@ -190,7 +190,8 @@ def _columns(width: int, figures: Sequence[int]) -> Table:
 def _details(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list[str]:
     """A cause's parameters and what else it might be; structure without a name in words."""
     lines = statements.parameter_lines(answer, cause)
-    return [*lines, *filter(None, (statements.single_rows_words(cause), statements.rivals_words(cause)))]
+    said = (where_words(cause), statements.single_rows_words(cause), statements.rivals_words(cause))
+    return [*lines, *filter(None, said)]
 
 
 def _verdict(answer: Mapping[str, Any]) -> RenderableType:

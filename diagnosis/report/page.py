@@ -15,6 +15,7 @@ from diagnosis.report import statements, tables
 from diagnosis.report.change_words import change_name
 from diagnosis.report.data import Readings, readings, two_ways
 from diagnosis.report.facts import facts
+from diagnosis.report.recordings import HEADS, recordings_notes, recordings_rows, where_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.style import CSS
 from diagnosis.report.svg import Plot
@@ -44,6 +45,7 @@ def page(found: Discovery, answer: Mapping[str, Any]) -> str:
             *_causes(answer, found, read),
             _chain(answer, found),
             _parameters(answer),
+            _recordings(answer),
             _invisible(answer),
             _provenance(answer),
         ]
@@ -173,8 +175,9 @@ def _cause(
         )
     else:
         words = f"<p>Stage: {escape(effect.stage)}. Signature in the error: {escape(minus(effect.signature))}.</p>"
+    where = f"<p>{statements.sentence(_text(where_words(cause)))}</p>" if where_words(cause) else ""
     gain = (
-        f"<p>RMS on held-out readings, without it and with it: {_text(statements.held_words(cause))} deg. "
+        f"{where}<p>RMS on held-out readings, without it and with it: {_text(statements.held_words(cause))} deg. "
         f"{statements.sentence(_text(statements.single_rows_words(cause)))}</p>"
     )
     pictures = [
@@ -224,6 +227,16 @@ def _parameters(answer: Mapping[str, Any]) -> str:
         f"{' '.join(statements.sentence(_text(words)) for words in said)}</p>"
     )
     return f"<h2>The factors of the error model</h2>{words}{tables.factors(answer)}"
+
+
+def _recordings(answer: Mapping[str, Any]) -> str:
+    """Several recordings side by side; nothing for a single one."""
+    rows = [[escape(cell) for cell in row] for row in recordings_rows(answer)]
+    if not rows:
+        return ""
+    notes = "".join(f"<p>{statements.sentence(_text(note))}</p>" for note in recordings_notes(answer))
+    heads = [*HEADS[:-3], *(f"{head}, RMS deg" for head in HEADS[-3:])]
+    return f"<h2>The recordings side by side</h2>{tables.table(heads, rows, numbers=range(1, len(heads)))}{notes}"
 
 
 def _invisible(answer: Mapping[str, Any]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from diagnosis.discovery.proof.cross_validation import rms_deg
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.factor_names import LABELS, UNITS
 from diagnosis.report.wording import plain
+from twin.each_recording import acts_in
 
 HEADS = (
     *("recording", "readings", "air gap, mm", "turned, deg", "temperature, C", "zero, deg"),
@@ -28,6 +29,21 @@ def recordings_answer(found: Discovery) -> dict[str, Any]:
         "recordings": [_recording(found, number) for number in range(len(recordings))],
         "held_out_by": "recordings" if found.whole_recordings else "blocks",
     }
+
+
+def in_recordings(found: Discovery, keys: Sequence[str]) -> dict[str, list[str]]:
+    """The names of the recordings that alone a cause acts in; nothing where it acts in all."""
+    recordings, places = found.sweep.recordings, [acts_in(key) for key in keys]
+    if recordings is None:
+        return {}
+    names = [recordings.setups[place].name for place in places if place is not None]
+    return {"in_recordings": list(dict.fromkeys(names))} if names else {}
+
+
+def where_words(cause: Mapping[str, Any]) -> str:
+    """In which recordings alone a cause acts; empty where it acts in all."""
+    names = cause.get("in_recordings", [])
+    return f"in {' and '.join(names)} alone" if names else ""
 
 
 def _recording(found: Discovery, number: int) -> dict[str, Any]:

@@ -119,3 +119,24 @@ def test_commands_line_of_several(tmp_path: Path) -> None:
     assert "--json alone" in halltwin("explain", "--each", one, two, "--plot", tmp_path / "e.png").err
     assert "the same readings" in halltwin("explain", one, one).err
     assert "found 3 angles of the sensor for 2 sweeps" in halltwin("explain", one, two, "--mounting", "0,9,8").err
+
+
+def test_what_happened_in_one_recording_is_named_with_it() -> None:
+    """The reference slips once, in the second recording: no parameter of the device."""
+    motion = Motion.from_angle(np.concatenate([THERE, THERE[::-1]]), time_s=np.arange(2.0 * THERE.size))
+    sensor = DEVICE.with_effect("noise", rms_deg=0.02)
+    slipped = sensor.with_effect("index_slip", step_deg=0.4, time_s=150.0)
+    sweeps = [replace(one.simulate(motion, seed=k), name=f"{k}.csv") for k, one in enumerate([sensor, slipped])]
+    found = explain(sweeps)
+    assert [cause.name for cause in found.causes] == ["index_slip"]
+    (entry,) = found.to_dict()["causes"]
+    assert entry["in_recordings"] == ["1.csv"]
+    assert entry["parameters"]["step_deg"]["value"] == pytest.approx(0.4, abs=0.02)
+    assert "in 1.csv alone" in found.summary()
+
+
+def test_the_report_shows_them_side_by_side(tmp_path: Path) -> None:
+    lagging().write_report(tmp_path / "r.html")
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "The recordings side by side" in page
+    assert "loud.csv" in page.split("The recordings side by side")[1]

@@ -140,3 +140,17 @@ def test_the_report_shows_them_side_by_side(tmp_path: Path) -> None:
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert "The recordings side by side" in page
     assert "loud.csv" in page.split("The recordings side by side")[1]
+
+
+def test_zeros_of_turns_are_their_recordings() -> None:
+    """A reference that finds its zero anew in each turn: a recording held out has zeros that no other one tells."""
+    shaft = np.radians(np.arange(0.0, 4.0 * 360.0, 5.0))
+    motion = Motion.from_angle(shaft, turn=np.floor(shaft / (2.0 * np.pi)))
+    sensor = DEVICE.with_effect("saturation", k_percent=1.0).with_effect("noise", rms_deg=0.02)
+    device = sensor.with_effect("reference_rezero", spread_deg=0.3)
+    found = explain([replace(device.simulate(motion, seed=k), name=f"{k}.csv") for k in range(2)])
+    assert {cause.name for cause in found.causes} == {"saturation", "reference_rezero"}
+    answer = found.to_dict()
+    assert answer["held_out_by"] == "recordings"
+    # Half of a turn's 72 readings tell its zero to a sixth of the noise.
+    assert answer["extended"]["heldout_rms_deg"] < 0.03

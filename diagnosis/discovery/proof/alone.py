@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import ZERO_ANGLE, Fit, evaluate, solve
-from diagnosis.discovery.fitting.own_zeros import zero_of
+from diagnosis.discovery.fitting.own_zeros import owner, zero_of
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.baseline import FACTORS
-from twin.each_recording import acts_in
 from twin.effect import BoolArray
 
 _SIGMA = 4.0
@@ -49,9 +48,7 @@ def _alone(fit: Fit, number: int, settings: DiscoverySettings) -> Alone:
     recordings = fit.observations.motion.recordings
     assert recordings is not None
     here = fit.observations.usable & (recordings.number == number)
-    # Beside the recording's own zero the common one tells nothing.
-    idle = ZERO_ANGLE if number else None
-    free = tuple(one for one in fit.free if acts_in(one.key) in (None, number) and one != idle)
+    free = tuple(one for one in fit.free if owner(one, fit.observations.motion) in (None, number))
     own = solve(evaluate(fit.chain, free, fit.observations.masked(here), fit.weighting))
     common_deg = _rms_deg(fit, here, len(fit.free) / len(recordings))
     own_deg = _rms_deg(own, here, len(free))

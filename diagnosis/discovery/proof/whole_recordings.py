@@ -10,7 +10,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import ZERO_ANGLE, Fit, Free, evaluate, solve
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve
+from diagnosis.discovery.fitting.own_zeros import owner
 from twin.angles import Array, IntArray, wrap
 from twin.catalogue import find
 from twin.chain import Chain
@@ -57,7 +58,7 @@ def held_out_rows(fit: Fit, chain: Chain, free: Sequence[Free], fold: IntArray) 
     assert recordings is not None
     residual = np.full(len(fit.observations), np.nan)
     for number in range(len(recordings)):
-        own = [one for one in free if _owner(one) == number]
+        own = [one for one in free if owner(one, fit.observations.motion) == number]
         shared = tuple(one for one in free if one not in own)
         here = fold // HALVES == number
         if np.count_nonzero(use & ~here) <= len(shared):
@@ -71,8 +72,3 @@ def held_out_rows(fit: Fit, chain: Chain, free: Sequence[Free], fold: IntArray) 
             held = here & (fold % HALVES == half)
             residual[held] = wrap(fit.observations.measured - settled.linear.angle)[held]
     return residual
-
-
-def _owner(free: Free) -> int | None:
-    """The recording that a parameter belongs to; the first one's zero is that of all, beside which the others count."""
-    return 0 if free == ZERO_ANGLE else acts_in(free.key)

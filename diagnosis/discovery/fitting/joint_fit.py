@@ -277,7 +277,7 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
         moved = float(np.max(np.abs(step)))
         gained = cost - new_cost
         share = gained / max(float(step @ (2.0 * gradient - normal @ step)), 1e-300)
-        damping *= max(1.0 / 3.0, 1.0 - (2.0 * min(share, 1.0) - 1.0) ** 3)
+        damping *= eased(share)
         fit = replace(trial, strengths=_prior_strengths(trial.chain, fit.free, fit.observations, trial.residual[0]))
         cost = _cost(fit)
         if moved < tolerance * sigma or gained < SMALL_GAIN * sigma**2:
@@ -316,6 +316,12 @@ def step_within(system: Array, gradient: Array, lower: Array, upper: Array) -> A
             break
         step, free = within, free & ~beyond
     return step
+
+
+def eased(share: float) -> float:
+    """What becomes of the damping behind a step that gained this share of what was expected of it (Nielsen)."""
+    # A share beyond all bounds, where next to nothing was expected, eases no more than one.
+    return max(1.0 / 3.0, 1.0 - (2.0 * min(share, 1.0) - 1.0) ** 3)
 
 
 def _room(fit: Fit) -> tuple[Array, Array]:

@@ -10,7 +10,17 @@ import pytest
 from scipy.fft import dct
 from scipy.optimize import least_squares
 
-from diagnosis.discovery.fitting.joint_fit import BASELINE, SMALL_GAIN, Fit, Free, Weighting, evaluate, free_of, solve
+from diagnosis.discovery.fitting.joint_fit import (
+    BASELINE,
+    Fit,
+    Free,
+    SMALL_GAIN,
+    Weighting,
+    eased,
+    evaluate,
+    free_of,
+    solve,
+)
 from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.observations import collect
 from diagnosis.discovery.settings import DiscoverySettings
@@ -167,3 +177,8 @@ def test_what_is_likely_beforehand_pulls_as_one_more_reading_would() -> None:
     assert pulls["sensor_tilt_x_deg"] == pytest.approx(-2.0 * rms)
     assert pulls["direction_deg"] == 0.0
     assert np.count_nonzero(fit.prior_jacobian) == len(held)
+
+
+def test_damping_is_eased_by_a_third_at_most_whatever_a_step_gained() -> None:
+    # At half of what was expected the damping stays.
+    assert [eased(share) for share in (0.5, 1.0, 1e200)] == [1.0, 1.0 / 3.0, 1.0 / 3.0]

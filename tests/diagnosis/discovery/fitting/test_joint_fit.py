@@ -12,9 +12,9 @@ from scipy.optimize import least_squares
 
 from diagnosis.discovery.fitting.joint_fit import (
     BASELINE,
+    SMALL_GAIN,
     Fit,
     Free,
-    SMALL_GAIN,
     Weighting,
     eased,
     evaluate,

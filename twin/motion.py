@@ -266,7 +266,7 @@ class Motion:
             "two speeds": fast - slow > 0.2 * fast,
             "two temperatures": np.ptp(self.temperature_c) > 5.0,
             "two air gaps": max(setup.field for setup in setups) > LEAST_FIELD_RATIO * min(one.field for one in setups),
-            "two mountings": float(np.max(np.abs(np.exp(1j * turned) - 1.0))) > LEAST_TURN_RAD,
+            "two mountings": float(np.max(np.abs(np.exp(1j * (turned - turned[0])) - 1.0))) > LEAST_TURN_RAD,
         }
         return {name for name, has in shown.items() if has}
 

@@ -82,9 +82,9 @@ def _free_limits(motion: Motion) -> tuple[float, float]:
 
 
 def unnamed_order(order: Array) -> BoolArray:
-    """Orders (any shape) that belong to no cause: 9 to 19, and what is not whole."""
+    """Orders (any shape) from 9 upwards, and what is not whole: below, each whole one has a cause."""
     whole = np.abs(order - np.round(order)) < 1e-9
-    return np.asarray(np.where(whole, (order >= 9) & (order <= 19), order > 0.55))
+    return np.asarray(np.where(whole, order >= 9, order > 0.55))
 
 
 def _low_orders(

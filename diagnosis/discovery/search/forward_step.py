@@ -29,25 +29,38 @@ _HIGHEST_SHARE = 0.9
 def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
     """Every effect that may still be added, at its best shape, best first after the handicap."""
     present = {base_name(key) for key in keys}
-    open_to = [e for e in effects if e.name not in present or e.repeatable]
+    open_to = [e for e in effects if e.name not in present or (e.repeatable and not _of_one_source(e))]
     found = screen(base, open_to)
     found += multiples(base, effects, keys)
     return sorted(found, key=lambda c: c.log_p + handicap(c.effect, base.fit))
 
 
+def _of_one_source(effect: Effect) -> bool:
+    """Whether further lines of an effect are the multiples of its first one, or what that is a multiple of."""
+    return effect.line is not None and bool(effect.line.multiples)
+
+
 def multiples(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
-    """The multiples at which a line that is in the fit already may show again, also where these alias."""
+    """The multiples at which a line that is in the fit already may show again, also where these alias.
+
+    The one in the fit may be a multiple itself: then the line that it belongs to is looked for too.
+    """
     found = []
-    # Near the number of points a turn an order is a slow function of the row: no line is told from it.
-    highest = _HIGHEST_SHARE * base.fit.observations.motion.points_per_turn
     for effect in effects:
-        if effect.line is None or not effect.line.multiples:
+        if effect.line is None or not _of_one_source(effect):
             continue
+        motion = base.fit.observations.motion
+        low, _ = effect.line.limits(motion)
+        # Near the number of points a turn an order is a slow function of the row: no line is told from it.
+        high = _HIGHEST_SHARE * motion.points_per_turn if effect.line.clock == "shaft" else np.inf
         for key in keys:
             if base_name(key) == effect.name:
-                order = float(base.fit.chain.values[key][effect.line.param])
-                shapes = [{effect.line.param: order * k} for k in effect.line.multiples if order * k < highest]
-                candidate = screen_one(base, effect, shapes=shapes)
+                first = float(base.fit.chain.values[key][effect.line.param])
+                times = np.array(effect.line.multiples, dtype=np.float64)
+                # Ascending: of two that alias to one another the lower one is taken.
+                values = np.sort(np.concatenate([first / times, first * times]))
+                values = values[effect.line.within(values) & (values >= low) & (values < high)]
+                candidate = screen_one(base, effect, shapes=[{effect.line.param: float(value)} for value in values])
                 found += [candidate] if candidate is not None else []
     return found
 

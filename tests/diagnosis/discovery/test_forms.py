@@ -112,3 +112,33 @@ def test_a_reference_that_loses_counts_several_times_slips() -> None:
     steps = [figures[name]["value"] for name in ("step_deg", "step_deg_2", "step_deg_3")]
     # A step is told by a hundred readings on each side: five standard deviations.
     assert np.array(steps)[np.argsort(instants)] == pytest.approx([step for _, step in slips], abs=0.02)
+
+
+def test_a_ripple_with_harmonics_is_one_reference_ripple() -> None:
+    """Also where harmonics lie beyond half the rate of the readings, which come at uneven intervals: no jitter beside."""
+    rng = np.random.default_rng(1)
+    time_s = np.cumsum(0.0045 * (1.0 + 0.3 * rng.uniform(-1.0, 1.0, 600)))
+    shaft = 4.0 * np.pi * time_s
+
+    def converted(at_s: Array) -> Array:
+        return np.asarray(sum(0.004 * np.cos(2.0 * np.pi * 61.0 * k * at_s + k) / k for k in (1, 2, 3)))
+
+    ratio = 1.0 + np.stack([converted(time_s), converted(time_s + 0.0009)])
+    found = named(sweep(shaft, channels(shaft) * ratio, 2, time_s=time_s, speed_rpm=np.full(time_s.size, 120.0)))
+    assert list(found) == ["reference_ripple"]
+    lines = [figure["value"] for name, figure in found["reference_ripple"].items() if name.startswith("frequency_Hz")]
+    assert np.sort(lines) == pytest.approx([61.0, 122.0, 183.0], abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("lines", "drive"),
+    [(((50, 0.06), (100, 0.03)), {50, 100}), (((100, 0.06), (50, 0.03)), {50, 100}), (((40, 0.06), (44, 0.05)), {40})],
+)
+def test_a_drive_has_one_order_and_its_multiples(lines: tuple[tuple[int, float], ...], drive: set[int]) -> None:
+    """Another line has no name."""
+    shaft = turns(250, 2)
+    moved = sum(np.radians(size) * np.sin(order * shaft + order) for order, size in lines)
+    found = named(sweep(shaft, channels(shaft + moved), 4))
+    assert set(found) == {"drive_ripple"} | ({"unnamed"} if len(drive) == 1 else set())
+    figures = found["drive_ripple"].items()
+    assert {round(figure["value"]) for name, figure in figures if name.startswith("order")} == drive

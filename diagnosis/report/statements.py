@@ -65,6 +65,7 @@ UNCHANGED = "Nothing of the given twin has changed beyond chance, and all of it 
 NOT_CHANGED = "All else of the given twin has not changed beyond chance"
 OTHERS_HELD = f"{NOT_CHANGED}, and stays as it was"
 FITTED_ANEW = f"{NOT_CHANGED}; it was fitted anew, as the twin had hardly told some of it from the rest"
+_MOST_DIGITS = 7
 _SEARCHED = "of these {used} were searched, in stretches spread over the record"
 
 
@@ -240,7 +241,11 @@ def _and(names: Sequence[str]) -> str:
 def held_words(cause: Mapping[str, Any]) -> str:
     """The held-out RMS before and after a cause."""
     before, after = cause["heldout_rms_deg_before"], cause["heldout_rms_deg_after"]
-    return "not held out" if before is None or after is None else f"{plain(before)} -> {plain(after)}"
+    if before is None or after is None:
+        return "not held out"
+    # As many digits as show that there is a gain.
+    digits = next((n for n in range(3, _MOST_DIGITS) if plain(before, n) != plain(after, n)), 3)
+    return f"{plain(before, digits)} -> {plain(after, digits)}"
 
 
 def parameter_lines(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list[str]:

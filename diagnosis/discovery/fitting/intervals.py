@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
@@ -10,6 +12,7 @@ from twin.catalogue import find
 Deviations = dict[tuple[str, str], float]
 """Standard deviation of a parameter, by effect and parameter."""
 _TWO_SIDED_95 = 0.975
+_JOINT_95 = 0.95
 
 
 def standard_deviations(fit: Fit) -> Deviations:
@@ -31,16 +34,41 @@ def quantile_95(fit: Fit) -> float:
 
 
 def may_be_null(fit: Fit, key: str) -> bool:
-    """Whether the 95 % interval of every strength of a cause holds its null, so that nothing may be there.
+    """Whether nothing may be there: whether the joint 95 % region of a cause's strengths and phases holds their null.
 
-    Of a line it is that of the amplitude, of a zero for each turn that of their spread. What has no strength that a fit
-    moves, such as a whole number of bits, is not asked.
+    Strengths and phases are asked together: an amplitude alone, its phase free to turn, may be as uncertain as it is
+    large while something is there beyond doubt. Of a zero for each turn the spread is asked. What has no strength that
+    a fit moves, such as a whole number of bits, is not asked.
     """
     effect, values = find(key, fit.chain.effects), fit.chain.values.get(key, {})
-    reach, deviations = quantile_95(fit), standard_deviations(fit)
-    asked = [name for name in (*effect.roles("strength"), *effect.roles("level")) if (key, name) in deviations]
-    if any(abs(float(values[name]) - effect.params[name].null) > reach * deviations[key, name] for name in asked):
-        return False
+    free = {one.name for one in fit.free if one.key == key and one.turn is None}
+    strengths = [name for name in (*effect.roles("strength"), *effect.roles("level")) if name in free]
+    if strengths:
+        away = {name: float(values[name]) - effect.params[name].null for name in strengths}
+        phases = [name for name in effect.roles("phase") if name in free]
+        return _within_joint_region(fit, key, away, len(strengths) + len(phases))
     told = effect.derived(values) if effect.roles("per turn") else {}
     spreads = [low for name, (_, low, _, _) in told.items() if name in effect.params]
-    return bool(asked or spreads) and not any(low > 0.0 for low in spreads)
+    return bool(spreads) and not any(low > 0.0 for low in spreads)
+
+
+def _within_joint_region(fit: Fit, key: str, away: Mapping[str, float], terms: int) -> bool:
+    """Whether what a cause's strengths do, beside all other causes, is no more than its 95 % region holds (F test).
+
+    ``away`` are the strengths from their null, ``terms`` they and their phases. The cause's own shapes are not among
+    what it stands beside: without it they mean nothing.
+    """
+    from scipy.special import fdtri
+
+    residual, jacobian = fit.whitened()
+    does = np.zeros(residual.size)
+    for column, one in zip(jacobian, fit.free, strict=True):
+        if one.key == key and one.name in away:
+            does = does + away[one.name] * column
+    beside = jacobian[[one.key != key for one in fit.free]].T
+    scale = np.linalg.norm(beside, axis=0)
+    beside = beside[:, scale > 0.0] / scale[scale > 0.0]
+    alone = does - beside @ np.linalg.lstsq(beside, does, rcond=None)[0]
+    freedom = max(fit.rows * fit.observations.observables - len(fit.free), 1)
+    variance = float(residual @ residual) / freedom
+    return float(alone @ alone) <= terms * float(fdtri(terms, freedom, _JOINT_95)) * variance

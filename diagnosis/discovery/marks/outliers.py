@@ -15,6 +15,10 @@ def robust_rms(values: Array) -> float:
     return float(1.4826 * np.median(np.abs(values - np.median(values)))) if values.size else 0.0
 
 
+LEFT_BY_MEDIAN = 0.866
+"""Robust RMS of white noise of RMS 1 once the median of nine neighbours is taken off it (of a million readings)."""
+
+
 def local_residual(residual: Array) -> Array:
     """Residual (n,) against the median of its neighbours: what single readings do on their own."""
     if residual.size < 12:
@@ -27,9 +31,10 @@ def local_rms(residual: Array) -> float:
     """RMS of what single readings of a residual (n,) do on their own, blind to outliers and to slow structure.
 
     Where structure rises or falls by more than the noise from row to row, most rows are the very median of their
-    neighbours; the second difference of white noise is then still the root of six times as large as the noise.
+    neighbours; the second difference of white noise is then still the root of six times as large as the noise. It is
+    counted so that both say the same of white noise.
     """
-    second = np.diff(residual, 2) / np.sqrt(6.0)
+    second = LEFT_BY_MEDIAN * np.diff(residual, 2) / np.sqrt(6.0)
     return max(robust_rms(local_residual(residual)), robust_rms(second))
 
 

@@ -45,6 +45,20 @@ def test_a_cause_that_may_be_nothing_is_dropped_and_the_rest_fitted_anew(monkeyp
     assert len(after.held) == 2
 
 
+def test_a_phase_that_says_the_same_leaves_no_doubt_of_an_amplitude() -> None:
+    """Without an order a phase scales what the amplitude does: alone either may be anything, together they are known."""
+    state = before(answer, MADE)
+    fit, key = state.fit, "unnamed_speed"
+    moving = replace(fit.observations.motion, speed_rad_s=np.linspace(1.0, 9.0, len(fit.observations)))
+    observations = replace(fit.observations, motion=moving)
+    chain = fit.chain.with_effect(key, order=0.0, amplitude_deg=0.2, phase_deg=-60.0, at_rpm=60.0)
+    free = (*fit.free, Free(key, "amplitude_deg"), Free(key, "phase_deg"))
+    fit = evaluate(chain, free, observations, fit.weighting)
+    fit = replace(fit, cosine_residual=before(answer, MADE).fit.cosine_residual)
+    assert standard_deviations(fit)[key, "amplitude_deg"] > 1.0
+    assert not may_be_null(fit, key)
+
+
 def test_a_cause_without_held_out_gain_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     state = before(listed, MADE)
     monkeypatch.setattr("diagnosis.discovery.stages.listed.may_be_null", lambda fit, key: False)

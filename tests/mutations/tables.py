@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.mutations.by_hand import BY_HAND
 from tests.mutations.discovery import DISCOVERY
 from tests.mutations.files import FILES
+from tests.mutations.forms import FORMS
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
 from tests.mutations.paper import PAPER
@@ -26,6 +27,7 @@ def mutations() -> tuple[Mutation, ...]:
         *STAGES,
         *PAPER,
         *PARTS,
+        *FORMS,
         *FILES,
         *STUDIES,
         *SCRIPTS,

@@ -182,3 +182,13 @@ def test_what_is_likely_beforehand_pulls_as_one_more_reading_would() -> None:
 def test_damping_is_eased_by_a_third_at_most_whatever_a_step_gained() -> None:
     # At half of what was expected the damping stays.
     assert [eased(share) for share in (0.5, 1.0, 1e200)] == [1.0, 1.0 / 3.0, 1.0 / 3.0]
+
+
+def test_a_strength_without_a_phase_ends_at_its_bound() -> None:
+    """A curve that runs ahead of the field is no negative saturation."""
+    fit, _ = started(Case(causes={"saturation": {"k_percent": 1.0}}))
+    shaft = fit.chain.shaft(fit.observations.motion)
+    ahead = fit.chain.with_values({"saturation": {"k_percent": -1.0}}).readings(shaft)
+    fit = replace(fit, observations=replace(fit.observations, measured=ahead))
+    found = solve(evaluate(fit.chain, fit.free, fit.observations, fit.weighting))
+    assert found.chain.values["saturation"]["k_percent"] == 0.0

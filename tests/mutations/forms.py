@@ -1,0 +1,63 @@
+"""Mutations of what keeps one physical cause under one name: each mechanism off, with the test that notices."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation
+
+_FORMS = "tests/diagnosis/discovery/test_forms.py"
+
+FORMS: tuple[Mutation, ...] = tuple(
+    Mutation(name, file, old, new, (test,))
+    for name, file, old, new, test in (
+        (
+            "forms.steep_structure_has_no_scatter",
+            "diagnosis/discovery/marks/outliers.py",
+            "max(robust_rms(local_residual(residual)), robust_rms(second))",
+            "robust_rms(local_residual(residual))",
+            "tests/diagnosis/discovery/stages/test_row_masks.py"
+            "::test_structure_that_rises_by_more_than_the_noise_masks_no_row",
+        ),
+        (
+            "forms.saturation_is_always_cubic",
+            "twin/concentrator/saturation.py",
+            'fitted_shapes=("exponent",)',
+            "fitted_shapes=()",
+            f"{_FORMS}::test_any_curve_that_falls_behind_is_one_saturation",
+        ),
+        (
+            "forms.a_stop_counts_as_recorded",
+            "twin/motion.py",
+            "way = _as_reached(shaft, way)",
+            "way = np.array(way)",
+            f"{_FORMS}::test_a_stack_of_plays_is_one_hysteresis",
+        ),
+        (
+            "forms.strengths_pass_through_zero_without_a_phase",
+            "diagnosis/discovery/fitting/joint_fit.py",
+            ' and param.lower == 0.0 and bool(effect.roles("phase"))',
+            " and param.lower == 0.0",
+            "tests/diagnosis/discovery/fitting/test_joint_fit.py::test_a_strength_without_a_phase_ends_at_its_bound",
+        ),
+        (
+            "forms.a_reference_slips_once",
+            "twin/reference/index_slip.py",
+            "    repeatable=True,\n",
+            "",
+            f"{_FORMS}::test_a_reference_that_loses_counts_several_times_slips",
+        ),
+        (
+            "forms.a_ripple_is_a_sine",
+            "twin/adc/reference_ripple.py",
+            ", multiples=(2, 3, 4, 5)",
+            "",
+            f"{_FORMS}::test_a_ripple_with_harmonics_is_one_reference_ripple",
+        ),
+        (
+            "forms.a_drive_has_any_order",
+            "diagnosis/discovery/search/forward_step.py",
+            " and not _of_one_source(e)",
+            "",
+            f"{_FORMS}::test_a_drive_has_one_order_and_its_multiples",
+        ),
+    )
+)

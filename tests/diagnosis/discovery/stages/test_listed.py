@@ -46,7 +46,7 @@ def test_a_cause_that_may_be_nothing_is_dropped_and_the_rest_fitted_anew(monkeyp
 
 
 def test_a_phase_that_says_the_same_leaves_no_doubt_of_an_amplitude() -> None:
-    """Without an order a phase scales what the amplitude does: alone either may be anything, together they are known."""
+    """Without an order a phase scales what the amplitude does: alone either may be anything, both are known."""
     state = before(answer, MADE)
     fit, key = state.fit, "unnamed_speed"
     moving = replace(fit.observations.motion, speed_rad_s=np.linspace(1.0, 9.0, len(fit.observations)))

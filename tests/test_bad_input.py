@@ -168,7 +168,7 @@ def test_damaged_gzip(damage: str, tmp_path: Path) -> None:
 
 def test_no_such_file_and_a_folder(tmp_path: Path) -> None:
     assert "no such file" in refused("explain", tmp_path / "nothing.csv")
-    assert "is a folder" in refused("explain", tmp_path)
+    assert "no sweep in this folder" in refused("explain", tmp_path)
 
 
 def test_line_break_in_the_name_stays_one_line(tmp_path: Path) -> None:

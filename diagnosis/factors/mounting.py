@@ -56,6 +56,9 @@ class Mounting:
             raise UserError("found no air gap; give one of the first sweep, or one for each")
         for gap in self.air_gap_mm:
             Placement(air_gap_mm=gap)
+        for turn in self.turned_deg:
+            if not -360.0 <= turn <= 360.0:
+                raise UserError(f"the sensor's turn (mounting) is {turn:g} deg; expected from -360 to 360")
         if not 0.0 < self.gap_error_mm < min(self.air_gap_mm):
             raise UserError(f"gap_error_mm is {self.gap_error_mm:g} mm; expected more than 0, and less than any gap")
 

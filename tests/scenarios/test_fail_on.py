@@ -30,9 +30,10 @@ def cause(name: str, *rivals: str) -> dict[str, object]:
 
 def test_what_an_explanation_holds() -> None:
     sweep = {"name": "s.csv", "rejected": 0}
-    assert in_explanation({"sweep": sweep, "causes": []}) == {}
+    same = {"changed": [], "other_device": None}
+    assert in_explanation({"sweep": sweep, "causes": [], **same}) == {}
     found = in_explanation(
-        {"sweep": sweep | {"rejected": 1}, "causes": [cause("latency", "xy_skew"), cause("unnamed")]}
+        {"sweep": sweep | {"rejected": 1}, "causes": [cause("latency", "xy_skew"), cause("unnamed")], **same}
     )
     assert found == {
         "latency": "latency",

@@ -123,7 +123,7 @@ def forward(signal, motion, values, rng):
     global CALLS
     if len(motion) == {SEARCHED}:
         CALLS += 1
-        if CALLS == 300:
+        if CALLS == 60:
             signals.raise_signal(signals.SIGINT)
     return right(signal, motion, values, rng)
 

@@ -51,7 +51,8 @@ def test_a_cause_costs_the_baseline_some_of_its_bound() -> None:
     motion = plain.motion()
     chain, _ = simulate(other, motion, np.random.default_rng(0))
     with_cause = bounds(chain, other, motion)
-    assert with_cause.size == SLOTS + 1
+    # Its size and its exponent.
+    assert with_cause.size == SLOTS + 2
     assert np.all(with_cause[:SLOTS] >= bounds(chain, plain, motion) * (1.0 - 1e-9))
 
 

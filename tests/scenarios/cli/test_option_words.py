@@ -88,7 +88,7 @@ def test_a_name_without_parameters_is_told_as_a_name_first() -> None:
     said = refused("bench", "--hide", "saturation")
     assert said == (
         "halltwin: --hide saturation: expected EFFECT:PARAMETER=VALUE, e.g. saturation:k_percent=2; "
-        "saturation has k_percent\n"
+        "saturation has k_percent, exponent\n"
     )
 
 

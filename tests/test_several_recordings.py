@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from diagnosis import explain
-from tests.hidden.several_recordings import KINDS, devices, judged
+from tests.several_recordings import KINDS, devices, judged
 
 
 @pytest.mark.parametrize("kind", ["eccentric reference", "magnet's fourth harmonic"])

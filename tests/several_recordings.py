@@ -1,4 +1,4 @@
-"""``python -m tests.hidden.several_recordings``: ambiguous causes of devices that were recorded three times.
+"""``python -m tests.several_recordings``: ambiguous causes of devices that were recorded three times.
 
 Devices are made here from definitions, without any code of the twin: a sensor over a diametral magnet, a reference, a
 coupling. Each is recorded as it is, at a wider air gap with the sensor turned, and warm with the sensor turned. Every

@@ -49,6 +49,7 @@ RIGHT: dict[str, str] = {
     "bench --speed-rpm": "0",
     "--temperatures": "-1 0 36.9",
     "--temperature": "-1 0 36.9",
+    "--mounting": "-1 0 36.9",
     "--settle": "0 36.9",
     "--manifest": "0 36.9",
     "--timeout": "36.9",

@@ -219,7 +219,7 @@ def with_other(command: tuple[str, ...], *options: str) -> tuple[str, ...]:
         (("--settle", "0.5", "--seed", "3"), "begun with --settle 0.3, now 0.5; --seed 0, now 3;"),
         (("--speed-rpm", "0", "--speed-rpm", "60"), "begun with --speed-rpm 0.0, now 0.0,60.0;"),
         (("--fault", "wild=0.01"), "begun with --fault gone:hall=60, now gone:hall=60,wild:hall=0.01;"),
-        (("--hide", "saturation:k_percent=2"), "begun with the twin's effects.saturation.k_percent none, now 2;"),
+        (("--hide", "saturation:k_percent=2"), "the twin's effects.saturation.k_percent none, now 2;"),
         (("--twin", "paper-encoder"), ""),
     ],
     ids=str,

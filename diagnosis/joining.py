@@ -173,6 +173,12 @@ def _effects(effects: Sequence[Effect], setups: Sequence[Setup], magnet: Magnet)
     return tuple(found)
 
 
+def _left_out(sweeps: Sequence[Sweep]) -> tuple[str, ...]:
+    """Columns that only some of the recordings have."""
+    given = dict.fromkeys(name for sweep in sweeps for name in sweep.columns)
+    return tuple(name for name in given if not all(name in sweep.columns for sweep in sweeps))
+
+
 def _one_sweep(sweeps: Sequence[Sweep], setups: Sequence[Setup]) -> Sweep:
     """All rows one behind the other, in the columns that all recordings have, numbered through."""
     names = [name for name in sweeps[0].columns if all(name in sweep.columns for sweep in sweeps)]
@@ -191,5 +197,5 @@ def _one_sweep(sweeps: Sequence[Sweep], setups: Sequence[Setup]) -> Sweep:
         name=", ".join(sweep.name for sweep in sweeps),
         row_numbers=np.concatenate([s.numbers + first for s, first in placed]),
         set_aside=sum(sweep.set_aside for sweep in sweeps),
-        recordings=Recordings(number, tuple(setups)),
+        recordings=Recordings(number, tuple(setups), _left_out(sweeps)),
     )

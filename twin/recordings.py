@@ -49,10 +49,13 @@ class Recordings:
         Number of the recording of each reading (n,), from 0, never falling.
     setups : tuple of Setup
         How the bench was set up in each.
+    left_out : tuple of str
+        Columns that only some recordings have, so that none is used.
     """
 
     number: IntArray
     setups: tuple[Setup, ...]
+    left_out: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.setups)
@@ -77,4 +80,4 @@ class Recordings:
     def part(self, rows: IntArray) -> Recordings:
         """The recordings of these rows (m,), in rising order; those without a row are left out."""
         left, number = np.unique(self.number[rows], return_inverse=True)
-        return Recordings(number.astype(np.int64), tuple(self.setups[k] for k in left))
+        return Recordings(number.astype(np.int64), tuple(self.setups[k] for k in left), self.left_out)

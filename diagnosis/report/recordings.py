@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnosis.discovery.proof.cross_validation import rms_deg
 from diagnosis.discovery.result import Discovery
-from diagnosis.report.factor_names import LABELS, UNITS
+from diagnosis.report.factor_names import LABELS, SCALES, UNITS
 from diagnosis.report.wording import plain
 from twin.each_recording import acts_in
 
@@ -28,6 +28,7 @@ def recordings_answer(found: Discovery) -> dict[str, Any]:
     return {
         "recordings": [_recording(found, number) for number in range(len(recordings))],
         "held_out_by": "recordings" if found.whole_recordings else "blocks",
+        "columns_left_out": list(recordings.left_out),
     }
 
 
@@ -98,6 +99,8 @@ def recordings_notes(answer: Mapping[str, Any]) -> list[str]:
         said.append("held out by whole recordings: each is predicted by what the others tell of the device")
     else:
         said.append("held out by blocks of each recording: one alone could not show the causes found")
+    if answer["columns_left_out"]:
+        said.append(f"not used, as only some of the recordings have it: {', '.join(answer['columns_left_out'])}")
     said += [
         f"the reference of {one['name']} counts from {plain(one['reference_counted_on_deg'])} deg elsewhere than "
         f"that of {several[0]['name']}"
@@ -110,13 +113,20 @@ def recordings_notes(answer: Mapping[str, Any]) -> list[str]:
 def _not_shared(one: Mapping[str, Any]) -> str:
     """That a recording does not share the device's parameters, and in which factors it differs."""
     differ = ", ".join(
-        f"{LABELS[name]} {plain(values['own'])} instead of {plain(values['common'])} {UNITS[name]}".rstrip()
+        f"{LABELS[name]} {_apart(values['own'] * SCALES[name], values['common'] * SCALES[name])} {UNITS[name]}".rstrip()
         for name, values in one["differ"].items()
     )
     return (
         f"{one['name']} does not share one device's parameters with the others: {plain(one['rms_ratio'])} times closer "
         f"with its own ({differ}); if it is of another device, explain it by itself (--each)"
     )
+
+
+def _apart(own: float, common: float) -> str:
+    """Two figures, with digits enough to tell them apart."""
+    told = next((n for n in range(3, 9) if plain(own, n) != plain(common, n)), 3)
+    digits = min(told + 1, 9)
+    return f"{plain(own, digits)} instead of {plain(common, digits)}"
 
 
 def _shown(value: float | None, digits: int = 3) -> str:

@@ -61,7 +61,9 @@ _ALSO_SAYS = {
 """A want that goes without saying where the second one is wanted too."""
 
 _UNEXPLAINED = "Structure is there that no cause of the catalogue explains"
-UNCHANGED = "Nothing of the given twin has changed beyond chance, and all of it stays as it was"
+UNCHANGED = (
+    "Beside zero and noise, which each sweep has of its own, nothing of the given twin has changed beyond chance"
+)
 NOT_CHANGED = "All else of the given twin has not changed beyond chance"
 OTHERS_HELD = f"{NOT_CHANGED}, and stays as it was"
 FITTED_ANEW = f"{NOT_CHANGED}; it was fitted anew, as the twin had hardly told some of it from the rest"
@@ -213,7 +215,8 @@ def moved_words(answer: Mapping[str, Any]) -> str:
 def senses_words(answer: Mapping[str, Any]) -> str:
     """That sensor and output may as well count the other way; empty where the readings tell."""
     senses = answer.get("senses")
-    if senses is None or senses["decided"] or not senses["mirrored"]:
+    # The turn of a sensor between two recordings has no mirror here.
+    if senses is None or senses["decided"] or not senses["mirrored"] or answer.get("recordings"):
         return ""
     mirrored = senses["mirrored"]
     parameters = (answer["extended"] if answer["causes"] else answer["baseline"])["parameters"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import Any
 
 import numpy as np
 
@@ -58,8 +58,8 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     return [{"full_scale_percent": float(level)} for level in np.arange(102.0, 200.0, 4.0)]
 
 
-def _lsb(doc: str, *, mirror: Literal[0] | None = None) -> Param:
-    return Param(unit="LSB", null=0.0, lower=-200.0, upper=200.0, doc=doc, typical=15.0, mirror=mirror)
+def _lsb(doc: str, **about: Any) -> Param:
+    return Param(unit="LSB", null=0.0, lower=-200.0, upper=200.0, doc=doc, typical=15.0, **about)
 
 
 ADC_INL = Effect(
@@ -69,7 +69,7 @@ ADC_INL = Effect(
     params={
         # With y turned over a bow is one of the other sign in y alone: no value does that.
         "bow_lsb": _lsb("largest deviation of a bow, in steps of 14 bit", mirror=0),
-        "s_lsb": _lsb("largest deviation of an S"),
+        "s_lsb": _lsb("largest deviation of an S", role="level", aside=True),
         **{f"bit{bit}_lsb": _lsb(f"error of the weight of bit {bit}; 1: the largest") for bit in range(1, BITS + 1)},
         "full_scale_percent": Param(
             unit="%",
@@ -85,7 +85,8 @@ ADC_INL = Effect(
     },
     forward=forward,
     needs=frozenset({"one turn"}),
-    # Eight sizes at once describe a good deal of anything: it must explain far more than a plainer cause.
+    # Seven sizes at once describe a good deal of anything: it must explain far more than a plainer cause. An S is what
+    # a saturation is, which says it more plainly: no search sets it.
     handicap=20.0,
     shapes=shapes,
     zoomed=("full_scale_percent",),

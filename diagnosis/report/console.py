@@ -14,7 +14,7 @@ from rich.text import Text
 
 from diagnosis.report import statements
 from diagnosis.report.change_words import change_line, change_name, change_rivals_words
-from diagnosis.report.recordings import HEADS, recordings_notes, recordings_rows, where_words
+from diagnosis.report.recordings import recordings_notes, recordings_table, where_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.statements import FactorRow
 from diagnosis.report.wording import chance
@@ -203,11 +203,11 @@ def _verdict(answer: Mapping[str, Any]) -> RenderableType:
 
 def _recordings(answer: Mapping[str, Any]) -> RenderableType | None:
     """Several recordings side by side; None for a single one."""
-    rows = recordings_rows(answer)
+    heads, rows = recordings_table(answer)
     if not rows:
         return None
-    table = _grid(len(HEADS))
-    table.add_row(*(Text(head, "dim") for head in HEADS))
+    table = _grid(len(heads))
+    table.add_row(*(Text(head, "dim") for head in heads))
     for row in rows:
         table.add_row(*row)
     return Group(Text("The recordings, RMS error in deg", "bold"), table, *map(_indented, recordings_notes(answer)))

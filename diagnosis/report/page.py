@@ -15,7 +15,7 @@ from diagnosis.report import statements, tables
 from diagnosis.report.change_words import change_name
 from diagnosis.report.data import Readings, readings, two_ways
 from diagnosis.report.facts import facts
-from diagnosis.report.recordings import HEADS, recordings_notes, recordings_rows, where_words
+from diagnosis.report.recordings import RMS_HEADS, recordings_notes, recordings_table, where_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.style import CSS
 from diagnosis.report.svg import Plot
@@ -231,11 +231,12 @@ def _parameters(answer: Mapping[str, Any]) -> str:
 
 def _recordings(answer: Mapping[str, Any]) -> str:
     """Several recordings side by side; nothing for a single one."""
-    rows = [[escape(cell) for cell in row] for row in recordings_rows(answer)]
+    heads, told = recordings_table(answer)
+    rows = [[escape(cell) for cell in row] for row in told]
     if not rows:
         return ""
     notes = "".join(f"<p>{statements.sentence(_text(note))}</p>" for note in recordings_notes(answer))
-    heads = [*HEADS[:-3], *(f"{head}, RMS deg" for head in HEADS[-3:])]
+    heads = [f"{head}, RMS deg" if head in RMS_HEADS else head for head in heads]
     return f"<h2>The recordings side by side</h2>{tables.table(heads, rows, numbers=range(1, len(heads)))}{notes}"
 
 

@@ -13,11 +13,13 @@ from diagnosis.report.factor_names import LABELS, SCALES, UNITS
 from diagnosis.report.wording import plain
 from twin.each_recording import acts_in
 
+RMS_HEADS = ("baseline", "extended", "own")
+"""The RMS errors in deg: of the error model, with the causes, and with causes fitted to that recording alone."""
 HEADS = (
     *("recording", "readings", "air gap, mm", "turned, deg", "temperature, C", "zero, deg"),
-    *("baseline", "extended", "own"),
+    *RMS_HEADS,
 )
-"""Columns of the table; the last three are RMS errors in deg."""
+"""Columns of the table."""
 
 
 def recordings_answer(found: Discovery) -> dict[str, Any]:
@@ -71,9 +73,9 @@ def _recording(found: Discovery, number: int) -> dict[str, Any]:
     return told
 
 
-def recordings_rows(answer: Mapping[str, Any]) -> list[list[str]]:
-    """The table of the recordings, a row each, under :data:`HEADS`; empty for a single one."""
-    return [
+def recordings_table(answer: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
+    """Heads and rows of the table of the recordings, without columns that say nothing; no rows for a single one."""
+    rows = [
         [
             one["name"],
             str(one["rows"]),
@@ -87,6 +89,8 @@ def recordings_rows(answer: Mapping[str, Any]) -> list[list[str]]:
         ]
         for one in answer.get("recordings", ())
     ]
+    told = [place for place in range(len(HEADS)) if any(row[place] not in ("", "0") for row in rows)]
+    return [HEADS[place] for place in told], [[row[place] for place in told] for row in rows]
 
 
 def recordings_notes(answer: Mapping[str, Any]) -> list[str]:

@@ -103,15 +103,18 @@ class Linear:
         self._points = sorted(points, key=lambda item: item[0])
 
     def _blurred(self, computed: Array, blur: float) -> Array:
-        """Expected reading where stairs follow: the angle's steps averaged over Gaussian noise of RMS ``blur``."""
-        active = [(effect, values) for _, effect, values in self.chain.active("angle")]
-        stairs = [one for one in active if one[0].footprint == "values"]
+        """Expected reading where stairs follow: the angle's steps averaged over Gaussian noise of RMS ``blur``.
+
+        Stairs that follow on one another are averaged together, at the angle that reaches them.
+        """
         signal = computed
-        if stairs:
-            away, self.stair_variance = blurred_stairs(stairs, blur).at(computed[0])
-            signal = computed + away
-        for effect, values in active:
-            if effect.footprint != "values":
+        active = ((effect, values) for _, effect, values in self.chain.active("angle"))
+        for stepped, group in itertools.groupby(active, key=lambda one: one[0].footprint == "values"):
+            if stepped:
+                away, self.stair_variance = blurred_stairs(list(group), blur).at(signal[0])
+                signal = signal + away
+                continue
+            for effect, values in group:
                 signal = effect.forward(signal, self.motion, values, None)
         return np.asarray(self.chain.output_sense * signal[0])
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from diagnosis.discovery.fitting.blurred_stairs import blurred_stairs
-from twin.angles import TAU, Array
+from diagnosis.discovery.fitting.linearised_chain import Linear
+from twin.angles import TAU, Array, wrap
 from twin.catalogue import find
+from twin.chain import Chain
 from twin.motion import Motion
 
 STEP = TAU / 2**9
@@ -46,6 +48,22 @@ def test_the_mean_is_smooth() -> None:
     mean, _ = blurred_stairs([(find("output_quantisation"), {"bits": 9.0})], 1.2 * STEP).at(np.linspace(-4.0, 4.0, 999))
     # The first harmonic of a saw tooth is step/pi; points of a table on whole shares of a step leave none.
     assert np.max(np.abs(mean)) < STEP / np.pi * np.exp(-2.0 * (np.pi * 1.2) ** 2) + 1e-12
+
+
+def test_stairs_round_the_angle_that_reaches_them() -> None:
+    """The expectation is the mean of the chain's own readings, with an order ahead of the grid of the output.
+
+    Of so many draws the means scatter by noise and grid over their root; the RMS over 90 readings of that.
+    """
+    motion = Motion.from_angle(np.linspace(0.0, TAU, 90, endpoint=False))
+    chain = Chain().with_effect("unnamed_order", order=9.0, amplitude_deg=0.05, phase_deg=20.0)
+    chain = chain.with_effect("output_quantisation", bits=12)
+    noisy, draws = chain.with_effect("noise", rms_deg=0.01), 400
+    expected = Linear(chain, motion, blur=float(np.radians(0.01)), observables=1).angle
+    drawn = np.stack([np.radians(noisy.simulate(motion, seed=seed).measured_deg) for seed in range(draws)])
+    bias = np.mean(wrap(drawn - expected), axis=0)
+    scatter = np.radians(360.0 / 2**12) / np.sqrt(draws)
+    assert np.sqrt(np.mean(bias**2)) < scatter
 
 
 def test_angles_beyond_a_turn_are_the_same() -> None:

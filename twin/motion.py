@@ -219,6 +219,9 @@ class Motion:
     @cached_property
     def turns(self) -> float:
         """How many turns the shaft has travelled, both directions counted."""
+        if self.recordings is not None and len(self.recordings) > 1:
+            # From where one recording ended to where the next began nobody has turned it.
+            return sum(part.turns for part in self.parts)
         return float(self.travel_rad[-1] / TAU) if len(self) else 0.0
 
     @cached_property

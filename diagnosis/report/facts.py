@@ -32,9 +32,19 @@ def facts(found: Discovery) -> dict[str, Any]:
 
 
 def angle_error_deg(fit: Fit, sweep: Sweep) -> Array:
-    """Reading minus reference [deg] (n,) in the sense that the two count together, with its mean removed."""
+    """Reading minus reference [deg] (n,) in the sense that the two count together, without its mean.
+
+    Each of several recordings has a zero, and so a mean, of its own.
+    """
     slope = fit.chain.sensor_sense * fit.chain.output_sense
     error = np.radians(sweep.measured_deg - slope * sweep.reference_deg)
+    if sweep.recordings is not None:
+        return np.concatenate([_without_mean_deg(error[rows]) for rows in sweep.recordings.slices])
+    return _without_mean_deg(error)
+
+
+def _without_mean_deg(error: Array) -> Array:
+    """Angles [rad] (n,) without their mean, in degrees."""
     centre = np.angle(np.mean(np.exp(1j * error)))
     away = wrap(error - centre)
     return np.asarray(np.degrees(away - np.mean(away)))

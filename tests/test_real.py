@@ -59,9 +59,16 @@ def test_held_out_error_falls_at_least_four_times(name: str, folder: Path) -> No
     assert answered(folder, name)["extended"]["gain"] >= 4.0
 
 
-@pytest.mark.parametrize("name", BENCH)
+@pytest.mark.parametrize("name", OVEN)
 def test_direction_effect(name: str, folder: Path) -> None:
     assert names(answered(folder, name)) & {"hysteresis", "backlash"}
+
+
+def test_direction_effect_that_differs_along_the_turn(folder: Path) -> None:
+    """In the room the lag differs along the turn, so that no single play or memory describes it: by its direction."""
+    (unnamed,) = [cause for cause in answered(folder, "room_repeat")["causes"] if cause["name"] == "unnamed"]
+    assert "direction" in {one["kind"] for one in answered(folder, "room_repeat")["unexplained"]["structure"]}
+    assert unnamed["heldout_rms_deg_after"] < 0.7 * unnamed["heldout_rms_deg_before"]
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ CASES = {
     "saturation, strong enough": Case(shape=saturated, size_deg=0.011, found=("saturation",)),
     # e^6 to one against a shape without a name.
     "without a name, too weak": Case(shape=without_name, size_deg=0.011),
-    "without a name, strong enough": Case(shape=without_name, size_deg=0.0125, found=("unnamed_order",)),
+    "without a name, strong enough": Case(shape=without_name, size_deg=0.013, found=("unnamed_order",)),
     "beside a shape without a name, too weak": Case(
         shape=harmonic, size_deg=0.0105, beside=without_name, beside_deg=0.03, found=BOTH[:1]
     ),

@@ -33,12 +33,9 @@ class Case:
 
 
 CASES = {
-    # A converter's S is a cubic in each channel, as saturation is.
-    "saturation in a turn": Case(
-        made=Made(causes=((SATURATION, 0.05),), points=120), rivals=frozenset({HARMONIC, "adc_inl"})
-    ),
+    "saturation in a turn": Case(made=Made(causes=((SATURATION, 0.05),), points=120), rivals=frozenset({HARMONIC})),
     "saturation with channels": Case(
-        made=Made(causes=((SATURATION, 0.05),), points=120, channels=True), rivals=frozenset({"adc_inl"})
+        made=Made(causes=((SATURATION, 0.05),), points=120, channels=True), rivals=frozenset()
     ),
     # A harmonic's phase is its own, saturation's is locked to the sensor's axes.
     "harmonic of order 5": Case(made=Made(causes=((HARMONIC, 0.05),), points=120, seed=2), rivals=frozenset()),

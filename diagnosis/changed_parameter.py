@@ -50,16 +50,17 @@ class ChangedParameter:
             parameter=entry["parameter"],
             owner=entry["owner"],
             was=float(entry["was"]),
-            value=_number(entry["is"], float("nan")),
-            low=_number(entry["low"], float("-inf")),
-            high=_number(entry["high"], float("inf")),
+            value=number_or(entry["is"], float("nan")),
+            low=number_or(entry["low"], float("-inf")),
+            high=number_or(entry["high"], float("inf")),
             unit=entry["unit"],
-            false_alarm_probability=_number(entry["p"], float("nan")),
-            heldout_rms_deg_before=_number(entry["heldout_rms_deg_before"], float("nan")),
-            heldout_rms_deg_after=_number(entry["heldout_rms_deg_after"], float("nan")),
+            false_alarm_probability=number_or(entry["p"], float("nan")),
+            heldout_rms_deg_before=number_or(entry["heldout_rms_deg_before"], float("nan")),
+            heldout_rms_deg_after=number_or(entry["heldout_rms_deg_after"], float("nan")),
             indistinguishable_from=tuple(entry["indistinguishable_from"]),
         )
 
 
-def _number(value: float | None, where_none: float) -> float:
+def number_or(value: float | None, where_none: float = float("nan")) -> float:
+    """A figure of the JSON answer, in which there is no infinity and no NaN."""
     return where_none if value is None else float(value)

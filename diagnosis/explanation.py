@@ -9,7 +9,7 @@ from functools import cached_property
 from math import isnan
 from typing import TYPE_CHECKING, Any
 
-from diagnosis.changed_parameter import ChangedParameter
+from diagnosis.changed_parameter import ChangedParameter, number_or
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,9 +47,9 @@ class Estimate:
     def of(cls, parameter: Mapping[str, Any]) -> Estimate:
         """The estimate that a parameter of a JSON answer holds."""
         return cls(
-            value=_number(parameter["value"]),
-            low=_number(parameter["low"], float("-inf")),
-            high=_number(parameter["high"], float("inf")),
+            value=number_or(parameter["value"]),
+            low=number_or(parameter["low"], float("-inf")),
+            high=number_or(parameter["high"], float("inf")),
             unit=parameter["unit"],
         )
 
@@ -100,9 +100,9 @@ class Cause:
             name=entry["name"],
             stage=entry["stage"],
             parameters={name: Estimate.of(parameter) for name, parameter in entry["parameters"].items()},
-            false_alarm_probability=_number(entry["false_alarm_probability"]),
-            heldout_rms_deg_before=_number(entry["heldout_rms_deg_before"]),
-            heldout_rms_deg_after=_number(entry["heldout_rms_deg_after"]),
+            false_alarm_probability=number_or(entry["false_alarm_probability"]),
+            heldout_rms_deg_before=number_or(entry["heldout_rms_deg_before"]),
+            heldout_rms_deg_after=number_or(entry["heldout_rms_deg_after"]),
             indistinguishable_from=tuple(entry["indistinguishable_from"]),
             to_tell_apart=entry["to_tell_apart"],
             rows=tuple(entry.get("rows", ())),
@@ -315,7 +315,3 @@ def _change_row(sweep: str, entry: Mapping[str, Any]) -> dict[str, Any]:
     row |= {key: getattr(change, key) for key in _COLUMNS[3:6]}
     row |= {"indistinguishable_from": ", ".join(change.indistinguishable_from), "to_tell_apart": ""}
     return row | {"was": change.was, name: change.value, f"{name}_low": change.low, f"{name}_high": change.high}
-
-
-def _number(value: float | None, where_none: float = float("nan")) -> float:
-    return where_none if value is None else float(value)

@@ -21,6 +21,8 @@ LEAST_FIELD_RATIO = 1.1
 LEAST_TURN_RAD = 0.17
 """Turn of the sensor between two recordings, about 10 deg, from which on its errors are told from the reference's."""
 
+RPM = TAU / 60.0
+"""One revolution a minute [rad/s]."""
 NOMINAL_C = 25.0
 """Temperature [C] at which figures are stated, from which drifts count, and of readings that record none."""
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
-from diagnosis.discovery.settings import FOOTPRINTS
+from diagnosis.discovery.settings import over_footprints
 from twin.catalogue import base_name, unnamed
 from twin.each_recording import everywhere
 
@@ -53,7 +53,7 @@ class Finding:
     @property
     def false_alarm_probability(self) -> float:
         """Probability that a sweep without a cause looks as much like any, in any of the footprints (Bonferroni)."""
-        return float(np.exp(max(min(self.family_log_p + np.log(FOOTPRINTS), 0.0), -300.0)))
+        return over_footprints(self.family_log_p)
 
     @property
     def name(self) -> str:

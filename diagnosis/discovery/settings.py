@@ -28,6 +28,11 @@ UNLIKE = 0.01
 """Probability below which the measured sweep is said not to match those simulated from the extended twin."""
 
 
+def over_footprints(family_log_p: float) -> float:
+    """Probability that chance makes as much in any of the footprints, of its log probability in one (Bonferroni)."""
+    return float(np.exp(max(min(family_log_p + np.log(FOOTPRINTS), 0.0), -300.0)))
+
+
 @dataclass(frozen=True)
 class Range:
     """The numbers from ``low`` to ``high`` with which the discovery still means something; ``open``: without the last.

@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnosis.factors.gap_fit import GapFit
 from diagnosis.factors.modulus import modulus_interval
-from twin.angles import Array
+from twin.angles import Array, wrap_deg
 
 _NORMAL_95 = 1.96
 
@@ -30,7 +30,7 @@ class Displacement:
 def hull(found: Sequence[Displacement]) -> Displacement:
     """The first of several with the interval that holds all of theirs: one of them is true, and it is open which."""
     first = found[0]
-    turned = [abs((one.direction_deg - first.direction_deg + 180.0) % 360.0 - 180.0) for one in found]
+    turned = [abs(float(wrap_deg(one.direction_deg - first.direction_deg))) for one in found]
     return replace(
         first,
         low=min(one.low for one in found),

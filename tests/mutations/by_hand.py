@@ -263,8 +263,8 @@ _STAIRS = "tests/diagnosis/discovery/fitting/test_blurred_stairs.py"
 
 FITTING: tuple[Mutation, ...] = (
     Mutation(
-        "joint_fit.others_go_as_if_no_bound_were_there",
-        "diagnosis/discovery/fitting/joint_fit.py",
+        "bounded_step.others_go_as_if_no_bound_were_there",
+        "diagnosis/discovery/fitting/bounded_step.py",
         "        step, free = within, free & ~beyond\n",
         "        return within\n",
         (f"{_WITHIN}::test_at_a_bound_the_others_make_up_for_what_takes_place",),

@@ -8,12 +8,10 @@ import numpy as np
 
 from twin.angles import Array, radians
 from twin.effect import BoolArray, Effect, Forward, Line, Param, Parameters
-from twin.motion import Motion
+from twin.motion import NOMINAL_C, RPM, Motion
 
 Weight = Callable[[Motion, Parameters], Array]
 
-NEUTRAL_C = 25.0
-RAD_S_PER_RPM = np.pi / 30.0
 _AT_K = Param(
     unit="K", null=100.0, lower=1e-9, upper=1e4, role="shape", doc="distance from 25 C at which the size is stated"
 )
@@ -52,11 +50,11 @@ def _direction(motion: Motion, values: Parameters) -> Array:
 
 
 def _temperature(motion: Motion, values: Parameters) -> Array:
-    return np.asarray((motion.temperature_c - NEUTRAL_C) / np.asarray(values["at_K"]))
+    return np.asarray((motion.temperature_c - NOMINAL_C) / np.asarray(values["at_K"]))
 
 
 def _speed(motion: Motion, values: Parameters) -> Array:
-    pace = motion.speed_rad_s / (RAD_S_PER_RPM * np.asarray(values["at_rpm"]))
+    pace = motion.speed_rad_s / (RPM * np.asarray(values["at_rpm"]))
     power = np.asarray(values["power"])
     return np.asarray(
         np.where(
@@ -69,12 +67,12 @@ def _speed(motion: Motion, values: Parameters) -> Array:
 
 def _farthest(motion: Motion) -> float:
     """Largest distance of a record's temperatures from that at which there is no drift, kelvin."""
-    return max(float(np.max(np.abs(motion.temperature_c - NEUTRAL_C))), 1e-9)
+    return max(float(np.max(np.abs(motion.temperature_c - NOMINAL_C))), 1e-9)
 
 
 def _fastest(motion: Motion) -> float:
     """Highest speed of a record, rpm."""
-    return max(float(np.max(np.abs(motion.speed_rad_s))) / RAD_S_PER_RPM, 1e-9)
+    return max(float(np.max(np.abs(motion.speed_rad_s))) / RPM, 1e-9)
 
 
 def _free_limits(motion: Motion) -> tuple[float, float]:

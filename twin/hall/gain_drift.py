@@ -7,11 +7,11 @@ import numpy as np
 from twin.angles import Array
 from twin.effect import Effect, Param, Parameters
 from twin.hall.gain_mismatch import scale_y
-from twin.motion import Motion
+from twin.motion import NOMINAL_C, Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    return scale_y(signal, 1.0 + 0.01 * np.asarray(values["percent_per_K"]) * (motion.temperature_c - 25.0))
+    return scale_y(signal, 1.0 + 0.01 * np.asarray(values["percent_per_K"]) * (motion.temperature_c - NOMINAL_C))
 
 
 GAIN_DRIFT = Effect(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 
@@ -31,6 +32,20 @@ def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str,
     return {"frequency_Hz": nominal * span(uniform[:, 3], 0.995, 1.005)}
 
 
+def _amplitude(axis: str, *, mirror: Literal[-1] | None = None) -> Param:
+    return Param(
+        unit="%",
+        null=0.0,
+        lower=-50.0,
+        upper=50.0,
+        doc=f"amplitude on {axis}",
+        typical=0.2,
+        field_power=-1.0,
+        mirror=mirror,
+        owner="bench",
+    )
+
+
 MAINS_PICKUP = Effect(
     name="mains_pickup",
     stage="hall",
@@ -46,27 +61,8 @@ MAINS_PICKUP = Effect(
             typical=0.1,
             owner="recording",
         ),
-        "x_percent": Param(
-            unit="%",
-            null=0.0,
-            lower=-50.0,
-            upper=50.0,
-            doc="amplitude on x",
-            typical=0.2,
-            field_power=-1.0,
-            owner="bench",
-        ),
-        "y_percent": Param(
-            unit="%",
-            null=0.0,
-            lower=-50.0,
-            upper=50.0,
-            doc="amplitude on y",
-            typical=0.2,
-            field_power=-1.0,
-            mirror=-1,
-            owner="bench",
-        ),
+        "x_percent": _amplitude("x"),
+        "y_percent": _amplitude("y", mirror=-1),
         "phase_deg": Param(
             unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase, mid-record", role="phase", owner="recording"
         ),

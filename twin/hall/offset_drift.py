@@ -7,11 +7,11 @@ import numpy as np
 from twin.angles import Array
 from twin.effect import Effect, Param, Parameters
 from twin.hall.offset import add
-from twin.motion import Motion
+from twin.motion import NOMINAL_C, Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    warm = 0.01 * (motion.temperature_c - 25.0)
+    warm = 0.01 * (motion.temperature_c - NOMINAL_C)
     return add(signal, np.asarray(values["x_percent_per_K"]) * warm, np.asarray(values["y_percent_per_K"]) * warm)
 
 

@@ -7,11 +7,11 @@ import numpy as np
 from twin.angles import Array
 from twin.effect import Effect, Param, Parameters
 from twin.hall.phase import forward as add_phase
-from twin.motion import Motion
+from twin.motion import NOMINAL_C, Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    beta_deg = np.asarray(values["deg_per_K"]) * (motion.temperature_c - 25.0)
+    beta_deg = np.asarray(values["deg_per_K"]) * (motion.temperature_c - NOMINAL_C)
     return add_phase(signal, motion, {"beta_deg": beta_deg}, rng)
 
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
-from twin.motion import Motion
+from twin.motion import RPM, Motion
 
-KRPM_RAD_S = 1000.0 * np.pi / 30.0
+KRPM_RAD_S = 1000.0 * RPM
 """1000 rpm in rad/s."""
 
 

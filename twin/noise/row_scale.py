@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.angles import TAU, Array
-from twin.motion import Motion
+from twin.motion import NOMINAL_C, Motion
 
 _RPM = 60.0 / TAU
 
@@ -20,7 +20,7 @@ def conditions(motion: Motion, angle_rad: Array) -> dict[str, Array]:
     """
     return {
         "backward_percent": np.where(motion.direction < 0.0, 1.0, 0.0)[None],
-        "percent_per_K": (motion.temperature_c - 25.0)[None],
+        "percent_per_K": (motion.temperature_c - NOMINAL_C)[None],
         "percent_per_rpm": (_RPM * np.abs(motion.speed_rad_s))[None],
         "angle_percent": np.stack([np.cos(angle_rad), np.sin(angle_rad)]),
     }

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.projection import projected
 from twin.catalogue import find
 
 Deviations = dict[tuple[str, str], float]
@@ -60,15 +61,10 @@ def _within_joint_region(fit: Fit, key: str, away: Mapping[str, float], terms: i
     """
     from scipy.special import fdtri
 
-    residual, jacobian = fit.whitened()
-    does = np.zeros(residual.size)
+    _, jacobian = fit.whitened()
+    does = np.zeros(jacobian.shape[1])
     for column, one in zip(jacobian, fit.free, strict=True):
         if one.key == key and one.name in away:
             does = does + away[one.name] * column
-    beside = jacobian[[one.key != key for one in fit.free]].T
-    scale = np.linalg.norm(beside, axis=0)
-    beside = beside[:, scale > 0.0] / scale[scale > 0.0]
-    alone = does - beside @ np.linalg.lstsq(beside, does, rcond=None)[0]
-    freedom = max(fit.rows * fit.observations.observables - len(fit.free), 1)
-    variance = float(residual @ residual) / freedom
-    return float(alone @ alone) <= terms * float(fdtri(terms, freedom, _JOINT_95)) * variance
+    alone = projected(does, jacobian[[one.key != key for one in fit.free]])
+    return float(alone @ alone) <= terms * float(fdtri(terms, fit.freedom, _JOINT_95)) * fit.variance

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from diagnosis.discovery.fitting.bounded_step import eased, step_within
 from diagnosis.discovery.fitting.coefficients import observables_to_cosine, to_rows
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import NoiseFamily
@@ -17,6 +18,7 @@ from twin.catalogue import find
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.mechanics.zero import ZERO
+from twin.motion import NOMINAL_C
 from twin.param import Param
 
 
@@ -94,6 +96,16 @@ class Fit:
     def rows(self) -> int:
         """Rows in use."""
         return int(np.count_nonzero(self.observations.usable))
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom that the fit leaves of all observables, at least one."""
+        return max(self.rows * self.observations.observables - len(self.free), 1)
+
+    @property
+    def variance(self) -> float:
+        """Variance of the noise by the whitened residual."""
+        return _cost(self) / self.freedom
 
     @property
     def prior_residual(self) -> Array:
@@ -205,7 +217,7 @@ def radius_nuisance(observations: Observations) -> list[Array]:
     recordings = observations.motion.recordings
     columns = [usable] if recordings is None else [usable * (recordings.number == k) for k in range(len(recordings))]
     if "two temperatures" in observations.motion.provides:
-        warm = (observations.motion.temperature_c - 25.0) / 50.0
+        warm = (observations.motion.temperature_c - NOMINAL_C) / 50.0
         columns += [usable * warm, usable * warm**2]
     return columns
 
@@ -233,13 +245,18 @@ def _from_centre(chain: Chain, free: tuple[Free, ...]) -> Array:
     """How far each free parameter (P,) is from what is most likely before the sweep, in its own unit; else 0."""
     away = np.zeros(len(free))
     for place, one in enumerate(free):
-        param = find(one.key, chain.effects).params[one.name]
-        value, centre = chain.values[one.key].get(one.name, param.null), param.prior_mean
+        centre = find(one.key, chain.effects).params[one.name].prior_mean
         if one.turn is not None:
-            away[place] = float(np.asarray(value)[one.turn])
+            away[place] = float(np.asarray(chain.values[one.key][one.name])[one.turn])
         elif centre is not None:
-            away[place] = float(value) - centre
+            away[place] = value_of(chain, one) - centre
     return away
+
+
+def value_of(chain: Chain, free: Free) -> float:
+    """The value of a parameter in a chain, or its null where the chain does not give it."""
+    null = find(free.key, chain.effects).params[free.name].null
+    return float(chain.values.get(free.key, {}).get(free.name, null))
 
 
 def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
@@ -260,11 +277,12 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
         normal = a @ a.T
         gradient = a @ r
         sigma = np.sqrt(cost / max(fit.rows - len(fit.free), 1))
+        lower, upper = (room * unit for room in _room(fit))
         growth = 2.0
         improved = False
         for _ in range(6):
             system = normal + (1e-12 + damping) * np.eye(len(unit))
-            step = np.where(alive, step_within(system, gradient, *(room * unit for room in _room(fit))), 0.0)
+            step = np.where(alive, step_within(system, gradient, lower, upper), 0.0)
             # What priors hold follows from the residual: a trial is compared by those of the fit that it starts from.
             trial = evaluate(_moved(fit, step / unit), fit.free, fit.observations, fit.weighting, fit.strengths)
             new_cost = _cost(trial)
@@ -285,44 +303,6 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
     return fit
 
 
-def step_within(system: Array, gradient: Array, lower: Array, upper: Array) -> Array:
-    """The step (P,) that solves ``system @ step = gradient`` as far as bounds on it allow.
-
-    A parameter that would pass its bound is held there, and the others are solved for anew: with their steps left as
-    they were, they would go on making up for a move that does not take place.
-
-    Parameters
-    ----------
-    system : numpy.ndarray, shape (P, P)
-        Normal matrix, symmetric and positive definite.
-    gradient : numpy.ndarray, shape (P,)
-        Right-hand side.
-    lower, upper : numpy.ndarray, shape (P,)
-        What a step may be at least and at most; ``lower <= 0 <= upper``.
-
-    Returns
-    -------
-    numpy.ndarray, shape (P,)
-        The step.
-    """
-    step = np.zeros(gradient.size)
-    free = np.ones(gradient.size, dtype=bool)
-    while free.any():
-        rest = gradient[free] - system[np.ix_(free, ~free)] @ step[~free]
-        step[free] = np.linalg.solve(system[np.ix_(free, free)], rest)
-        within = np.clip(step, lower, upper)
-        beyond = free & (within != step)
-        if not beyond.any():
-            break
-        step, free = within, free & ~beyond
-    return step
-
-
-def eased(share: float) -> float:
-    """What becomes of the damping behind a step that gained this share, maybe beyond all bounds, of the expected."""
-    return max(1.0 / 3.0, 1.0 - (2.0 * min(share, 1.0) - 1.0) ** 3)
-
-
 def _room(fit: Fit) -> tuple[Array, Array]:
     """How far each free parameter may move down and up (P,), in its own unit; phases and turns' zeros go anywhere."""
     lower, upper = np.full(len(fit.free), -np.inf), np.full(len(fit.free), np.inf)
@@ -330,7 +310,7 @@ def _room(fit: Fit) -> tuple[Array, Array]:
         effect = find(free.key, fit.chain.effects)
         param = effect.params[free.name]
         if free.turn is None and param.role != "phase":
-            value = float(fit.chain.values[free.key].get(free.name, param.null))
+            value = value_of(fit.chain, free)
             least, most = _bounds(effect, param)
             lower[place], upper[place] = min(least - value, 0.0), max(most - value, 0.0)
     return lower, upper
@@ -358,7 +338,7 @@ def _moved(fit: Fit, step: Array) -> Chain:
             zeros[free.turn] += step[place]
             values[free.key][free.name] = zeros
             continue
-        moved = float(values[free.key].get(free.name, param.null)) + step[place]
+        moved = value_of(fit.chain, free) + step[place]
         # A rounding beyond its bound.
         values[free.key][free.name] = moved if param.role == "phase" else float(np.clip(moved, *_bounds(effect, param)))
     return replace(fit.chain, values=values)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.discovery.fitting.initial_fit import awake
-from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve
+from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, value_of
 from twin.angles import Array
 from twin.catalogue import find
 from twin.chain import Chain
@@ -88,12 +88,6 @@ def set_back(fit: Fit, free: Sequence[Free], twin: Chain) -> Fit:
     """The fit with these parameters held at the values that the twin has for them, all others at their optimum."""
     values = {key: dict(params) for key, params in fit.chain.values.items()}
     for one in free:
-        values[one.key][one.name] = value_in(twin, one)
+        values[one.key][one.name] = value_of(twin, one)
     kept = tuple(one for one in fit.free if one not in set(free))
     return solve(evaluate(replace(fit.chain, values=values), kept, fit.observations, fit.weighting))
-
-
-def value_in(twin: Chain, free: Free) -> float:
-    """The value of a parameter in a twin, or its null where the twin lacks the effect."""
-    effect = find(free.key, twin.effects)
-    return float({**effect.null(), **twin.values.get(free.key, {})}[free.name])

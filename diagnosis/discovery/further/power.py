@@ -19,6 +19,7 @@ from diagnosis.discovery.fitting.coefficients import to_cosine
 from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import noise_family
+from diagnosis.discovery.fitting.projection import projected
 from diagnosis.discovery.fitting.subsample import stretches
 from diagnosis.discovery.further.measurements import MENU, Measurement, Recording
 from diagnosis.discovery.settings import DiscoverySettings
@@ -146,15 +147,13 @@ def _missed(parts: Sequence[Fit], planned: tuple[Recording, ...]) -> float:
         own[:, start : start + mounting.shape[1]] = mounting
         columns.append(own)
         start += mounting.shape[1]
-    left = _projected(np.concatenate(residuals), np.concatenate(columns))
+    left = projected(np.concatenate(residuals), np.concatenate(columns))
     return float(np.linalg.norm(left))
 
 
 def _noise_rms(fit: Fit) -> float:
     """RMS [rad] of the fit's whitened residual."""
-    r, _ = fit.whitened()
-    dof = max(fit.rows * fit.observations.observables - len(fit.free), 1)
-    return max(float(np.sqrt(r @ r / dof)), 1e-12)
+    return max(float(np.sqrt(fit.variance)), 1e-12)
 
 
 def expected(fit: Fit, rival: Fit, recording: Recording) -> Fit:
@@ -224,13 +223,3 @@ def _mounting(part: Fit) -> Array:
     columns[:, 0] = to_cosine(part.observations, shapes) * weight
     size = part.prior_residual.size
     return np.concatenate([columns.reshape(len(shapes), -1), np.zeros((len(shapes), size))], axis=1)
-
-
-def _projected(residual: Array, columns: Array) -> Array:
-    """The residual (N,) less all that the columns (P, N) can do."""
-    norm = np.linalg.norm(columns, axis=1)
-    columns = columns[norm > 0.0] / norm[norm > 0.0, None]
-    size, vectors = np.linalg.eigh(columns @ columns.T)
-    kept = size > 1e-12 * size.max(initial=0.0)
-    along = (vectors[:, kept] / size[kept]) @ (vectors[:, kept].T @ (columns @ residual))
-    return np.asarray(residual - along @ columns)

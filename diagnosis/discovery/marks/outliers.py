@@ -34,8 +34,15 @@ def local_rms(residual: Array) -> float:
     neighbours; the second difference of white noise is then still the root of six times as large as the noise. It is
     counted so that both say the same of white noise.
     """
-    second = LEFT_BY_MEDIAN * np.diff(residual, 2) / np.sqrt(6.0)
-    return max(robust_rms(local_residual(residual)), robust_rms(second))
+    return max(robust_rms(local_residual(residual)), LEFT_BY_MEDIAN * rms_of_second_differences(residual))
+
+
+def rms_of_second_differences(residual: Array) -> float:
+    """RMS of white noise in a residual (n,): structure that is smooth from reading to reading has gone from it.
+
+    Mean squares of successive differences: J. von Neumann, Ann. Math. Statist. 12 (1941) 367.
+    """
+    return robust_rms(np.diff(residual, 2)) / float(np.sqrt(6.0))
 
 
 def far_out(residual: Array, settings: DiscoverySettings) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from diagnosis.discovery.fitting.joint_fit import ZERO_ANGLE, Fit, evaluate, solve
 from diagnosis.discovery.fitting.own_zeros import owner, zero_of
 from diagnosis.discovery.settings import DiscoverySettings
+from twin.angles import wrap_deg
 from twin.baseline import FACTORS
 from twin.effect import BoolArray
 
@@ -58,7 +59,7 @@ def _alone(fit: Fit, number: int, settings: DiscoverySettings) -> Alone:
         if key == ZERO_ANGLE.key or zero_of(key) == number
     )
     apart = common_deg > settings.shared_ratio * own_deg
-    return Alone(common_deg, own_deg, float((zero + 180.0) % 360.0 - 180.0), _differing(fit, own) if apart else {})
+    return Alone(common_deg, own_deg, float(wrap_deg(zero)), _differing(fit, own) if apart else {})
 
 
 def _rms_deg(fit: Fit, rows: BoolArray, parameters: float) -> float:

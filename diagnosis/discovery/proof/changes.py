@@ -16,10 +16,9 @@ import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.initial_fit import awake
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate
-from diagnosis.discovery.fitting.own_parameters import value_in
-from diagnosis.discovery.settings import FOOTPRINTS
-from twin.angles import Array
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, value_of
+from diagnosis.discovery.settings import over_footprints
+from twin.angles import Array, wrap_deg
 from twin.catalogue import find
 from twin.chain import Chain
 from twin.effect import Owner
@@ -59,7 +58,7 @@ class Change:
     @property
     def false_alarm_probability(self) -> float:
         """Probability that a recording without a change looks as much like any, in any of the footprints."""
-        return float(np.exp(max(min(self.family_log_p + np.log(FOOTPRINTS), 0.0), -300.0)))
+        return over_footprints(self.family_log_p)
 
     def with_rivals(self, names: Sequence[str]) -> Change:
         """The change with further rivals."""
@@ -86,17 +85,15 @@ class Differences:
     def of(cls, fit: Fit, twin: Chain, own: Sequence[Free], *, effects: int) -> Differences:
         """The differences of a fit in which the twin's ``own`` parameters are free, beside so many effects searched."""
         free = tuple(one for one in fit.free if one in own)
-        settings, dof = fit.settings, degrees_left(fit)
+        settings, dof = fit.settings, fit.freedom
         start = awake(twin)
         known = tuple(one for one in fit.free if one.turn is None and one.name in start.values.get(one.key, {}))
         before = evaluate(start, known, fit.observations, fit.weighting)
-        r, _ = fit.whitened()
-        variance = float(r @ r) / dof
-        free = tuple(one for one in free if not _hardly_known(before, free, one, variance))
+        free = tuple(one for one in free if not _hardly_known(before, free, one, fit.variance))
         return cls(
             free,
             np.array([_away(fit, twin, one) for one in free]),
-            _parallel(_told(fit, free), _told(before, free)) / variance,
+            _parallel(_told(fit, free), _told(before, free)) / fit.variance,
             dof,
             settings.effect_log_p(len(free) + effects),
             settings.same_fit(coarse=fit.weighting.coarse),
@@ -165,7 +162,7 @@ class Differences:
                 Change(
                     free=one,
                     owner=find(one.key, fit.chain.effects).owner(one.name),
-                    was=value_in(twin, one),
+                    was=value_of(twin, one),
                     gain=gain,
                     log_p=log_p,
                     family_log_p=log_p + float(np.log(self.family)),
@@ -173,11 +170,6 @@ class Differences:
                 )
             )
         return tuple(sorted(found, key=lambda change: -change.gain))
-
-
-def degrees_left(fit: Fit) -> int:
-    """Degrees of freedom that a fit leaves."""
-    return max(fit.rows * fit.observations.observables - len(fit.free), 1)
 
 
 def _told(fit: Fit, free: Sequence[Free]) -> Array:
@@ -201,7 +193,7 @@ def _hardly_known(twin: Fit, free: Sequence[Free], one: Free, variance: float) -
     size = np.sqrt(np.maximum(np.diag(told), 1e-300))
     place = list(free).index(one)
     spread = np.linalg.pinv(told / np.outer(size, size), rcond=1e-12, hermitian=True)[place, place] / size[place] ** 2
-    return value_in(twin.chain, one) ** 2 < twin.settings.sigma_apart**2 * variance * float(spread)
+    return value_of(twin.chain, one) ** 2 < twin.settings.sigma_apart**2 * variance * float(spread)
 
 
 def _parallel(first: Array, second: Array) -> Array:
@@ -224,9 +216,9 @@ def another_device(fit: Fit, free: Sequence[Free], changes: Sequence[Change]) ->
 
 def _away(fit: Fit, twin: Chain, one: Free) -> float:
     """How far a parameter is from the twin's; a phase by the shorter way round."""
-    away = float(fit.chain.values[one.key][one.name]) - value_in(twin, one)
+    away = value_of(fit.chain, one) - value_of(twin, one)
     phase = find(one.key, twin.effects).params[one.name].role == "phase"
-    return (away + 180.0) % 360.0 - 180.0 if phase else away
+    return float(wrap_deg(away)) if phase else away
 
 
 def _orthonormal(rows: Array) -> Array:

@@ -10,7 +10,7 @@ from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.own_parameters import set_back
-from diagnosis.discovery.proof.changes import TWIN_VARIANCE, Change, Differences, another_device, degrees_left
+from diagnosis.discovery.proof.changes import TWIN_VARIANCE, Change, Differences, another_device
 from diagnosis.discovery.search.likelihood_ratio import add
 from diagnosis.discovery.search.rivals import judge
 from diagnosis.discovery.search.screening import Base, Candidate, screen
@@ -50,7 +50,7 @@ def _leaves_more_than_chance(state: State, fit: Fit, threshold: float) -> bool:
     if not held:
         return False
     gain = _squares(state, fit) - _squares(state, state.fit)
-    dof = degrees_left(state.fit)
+    dof = state.fit.freedom
     return float(log_probability(np.array(dof * np.log1p(max(gain, 0.0) / dof)), held, dof)) < threshold
 
 
@@ -80,9 +80,8 @@ def _with(state: State, moved: Iterable[Change]) -> Fit:
 
 def _squares(state: State, fit: Fit) -> float:
     """Chi-squared of a fit by the noise of the one in which everything is free, as differences are counted."""
-    full, _ = state.fit.whitened()
     left, _ = fit.whitened()
-    return float(left @ left) / (float(full @ full) / degrees_left(state.fit)) / TWIN_VARIANCE
+    return float(left @ left) / state.fit.variance / TWIN_VARIANCE
 
 
 def _contenders(state: State, without: Fit, gain: float) -> list[Candidate]:

@@ -12,7 +12,7 @@ from diagnosis.discovery.search.screening import Base, screen_one
 from diagnosis.discovery.state import State
 from twin.catalogue import find
 from twin.chain import Chain
-from twin.effect import Effect
+from twin.effect import Effect, Parameters
 
 
 def own_parameters(state: State) -> State:
@@ -52,12 +52,11 @@ def _afresh(fit: Fit, key: str) -> Fit:
     return evaluate(_alike(found.chain, key, effect, was), fit.free, fit.observations, fit.weighting)
 
 
-def _alike(chain: Chain, key: str, effect: Effect, was: object) -> Chain:
+def _alike(chain: Chain, key: str, effect: Effect, was: Parameters) -> Chain:
     """The chain with the strengths of an effect signed as they were, its phase half a turn on for that."""
     values = dict(chain.values[key])
     phases, strengths = effect.roles("phase"), effect.roles("strength")
-    before = dict(was) if isinstance(was, dict) else {}
-    together = float(np.sum([float(values[name]) * float(before.get(name, 0.0)) for name in strengths]))
+    together = float(np.sum([float(values[name]) * float(was.get(name, 0.0)) for name in strengths]))
     if not phases or together >= 0.0:
         return chain
     values |= {name: -float(values[name]) for name in strengths}

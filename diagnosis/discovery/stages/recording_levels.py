@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import evaluate, solve
 from diagnosis.discovery.fitting.observations import Observations
-from diagnosis.discovery.marks.outliers import robust_rms
+from diagnosis.discovery.marks.outliers import rms_of_second_differences
 from diagnosis.discovery.state import State
 from twin.angles import Array
 
@@ -38,8 +38,8 @@ def _levels(observations: Observations, residual: Array) -> Array:
     """
     recordings = observations.motion.recordings
     assert recordings is not None
-    # Of second differences, in which structure that is smooth from reading to reading has gone (von Neumann, 1941).
-    own = np.array([robust_rms(np.diff(residual[rows][observations.sure[rows]], 2)) for rows in recordings.slices])
+    sure = (residual[rows][observations.sure[rows]] for rows in recordings.slices)
+    own = np.array([rms_of_second_differences(one) for one in sure])
     usual = float(np.median(own[recordings.number]))
     if usual == 0.0:
         return np.ones(len(observations))

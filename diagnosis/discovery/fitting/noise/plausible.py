@@ -13,7 +13,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.coefficients import radius_to_cosine, to_cosine
 from twin.angles import Array
-from twin.motion import Motion
+from twin.motion import NOMINAL_C, Motion
 
 if TYPE_CHECKING:
     from diagnosis.discovery.fitting.joint_fit import Fit
@@ -105,7 +105,7 @@ def locked_shapes(motion: Motion) -> Array:
     if "both directions" in motion.provides:
         series(low, motion.direction)
     if "two temperatures" in motion.provides:
-        series(low, (motion.temperature_c - 25.0) / 50.0)
+        series(low, (motion.temperature_c - NOMINAL_C) / 50.0)
     if "two speeds" in motion.provides:
         series(range(0, min(4, highest) + 1), motion.speed_rad_s / float(np.max(np.abs(motion.speed_rad_s))))
     return np.stack(shapes)

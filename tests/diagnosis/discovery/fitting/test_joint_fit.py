@@ -10,13 +10,13 @@ import pytest
 from scipy.fft import dct
 from scipy.optimize import least_squares
 
+from diagnosis.discovery.fitting.bounded_step import eased
 from diagnosis.discovery.fitting.joint_fit import (
     BASELINE,
     SMALL_GAIN,
     Fit,
     Free,
     Weighting,
-    eased,
     evaluate,
     free_of,
     solve,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import step_within
+from diagnosis.discovery.fitting.bounded_step import step_within
 
 RNG = np.random.default_rng(4)
 ROOT = RNG.standard_normal((5, 5))

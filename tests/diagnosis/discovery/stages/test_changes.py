@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from diagnosis.discovery.fitting.own_parameters import value_in
+from diagnosis.discovery.fitting.joint_fit import value_of
 from diagnosis.discovery.stages.changes import changes
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit
@@ -98,7 +98,7 @@ def test_what_has_changed_is_named_and_the_rest_stays(name: str) -> None:
     assert {free for free in state.own if free in state.fit.free} == moved
     assert state.given is not None
     for free in set(state.own) - moved:
-        assert value_in(state.fit.chain, free) == value_in(state.given, free)
+        assert value_of(state.fit.chain, free) == value_of(state.given, free)
 
 
 def test_a_slip_of_another_recording_is_gone_from_the_twin() -> None:

@@ -12,7 +12,7 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "forms.steep_structure_has_no_scatter",
             "diagnosis/discovery/marks/outliers.py",
-            "max(robust_rms(local_residual(residual)), robust_rms(second))",
+            "max(robust_rms(local_residual(residual)), LEFT_BY_MEDIAN * rms_of_second_differences(residual))",
             "robust_rms(local_residual(residual))",
             "tests/diagnosis/discovery/stages/test_row_masks.py"
             "::test_structure_that_rises_by_more_than_the_noise_masks_no_row",

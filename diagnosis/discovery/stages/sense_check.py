@@ -53,10 +53,17 @@ def _mirrored(state: State, baseline: Fit, other: Fit, here: float) -> State | N
 
 def _one_cause_beats(least: float, fit: Fit, effects: Sequence[Effect]) -> bool:
     """Whether one of the effects that no mirror leaves as they are takes the fit beyond this likelihood."""
-    base = Base.of(fit)
+    base, short = Base.of(fit), least - likelihood(fit)
     tried = (screen_one(base, effect) for effect in effects if not (effect.mirrors or effect.baseline))
-    found = [one for one in tried if one is not None]
-    return any(likelihood(Trial.of(fit, one).fit) > least + handicap(one.effect, fit) for one in found)
+    for one in tried:
+        if one is None:
+            continue
+        needed = short + handicap(one.effect, fit)
+        # Its gain to first order is twice a likelihood; an exact fit is worth its time where it may gain enough.
+        near = one.gain > fit.settings.rival_share * 2.0 * needed
+        if near and likelihood(Trial.of(fit, one).fit) > likelihood(fit) + needed:
+            return True
+    return False
 
 
 def _pruned(fit: Fit, keys: tuple[str, ...], plan: Search) -> tuple[Fit, tuple[str, ...]]:

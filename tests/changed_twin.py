@@ -1,20 +1,19 @@
 """Is what has changed since a device's twin was made named, and nothing where nothing has?
 
-    python -m tests.changed_twin --draws 10 --seed 7 -o changed.json
+    python -m tests.changed_twin --draws 10 --seed 7 -o changed.jsonl
 
 Two recordings of a device by the independent generator: the first is explained, and the second is held against the
-twin that this gives, as ``halltwin explain --twin`` does.
+twin that this gives, as ``halltwin explain --twin`` does. Each pair is kept in the file as it is done; the same command
+goes on where it was stopped.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import os
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
-from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -26,6 +25,7 @@ from rich.table import Table
 from diagnosis import explain
 from tests.hidden.changed import ANOTHER, FACTORS, KINDS, NOTHING, pair
 from tests.hidden.streams import derived_seed
+from tests.kept import Kept, share
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,17 @@ class Outcome:
     extra: tuple[str, ...]
     said: tuple[str, ...]
     other_device: bool
+
+    @property
+    def wrong(self) -> bool:
+        """Whether anything was said that is not so, or left unsaid."""
+        missed = self.kind in KINDS and not self.named
+        return missed or bool(self.extra and self.kind != ANOTHER) or self.other_device != (self.kind == ANOTHER)
+
+
+def draw_name(kind: str, number: int, *, seed: int) -> str:
+    """What the file calls a pair."""
+    return f"{kind} {number} of seed {seed}"
 
 
 def outcome(kind: str, number: int, *, seed: int) -> Outcome:
@@ -71,7 +82,7 @@ def _right(kind: str, first: Mapping[str, Any]) -> set[str]:
 def table(outcomes: Sequence[Outcome]) -> Table:
     """How often the change was named, and anything else."""
     shown = Table(box=None)
-    for head in ("changed", "draws", "named", "extra name", "another device"):
+    for head in ("changed", "named", "extra name", "another device"):
         shown.add_column(head, justify="left" if head == "changed" else "right")
     kinds = list(dict.fromkeys(one.kind for one in outcomes))
     for name, chosen in [*((kind, [kind]) for kind in kinds), ("all changes", [k for k in kinds if k in KINDS])]:
@@ -80,16 +91,10 @@ def table(outcomes: Sequence[Outcome]) -> Table:
             counts = (
                 sum(one.named for one in part),
                 sum(bool(one.extra) for one in part),
-                sum(o.other_device for o in part),
+                sum(one.other_device for one in part),
             )
-            shown.add_row(name, str(len(part)), *map(str, counts))
+            shown.add_row(name, *(share(count, len(part)) for count in counts))
     return shown
-
-
-def _wrong(one: Outcome) -> bool:
-    """Whether anything was said that is not so, or left unsaid."""
-    missed = one.kind in KINDS and not one.named
-    return missed or bool(one.extra and one.kind != ANOTHER) or one.other_device != (one.kind == ANOTHER)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -100,20 +105,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--first", type=int, default=0, help="number of the first pair")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("-o", "--output", type=Path)
+    parser.add_argument("-o", "--output", type=Path, help="keeps each pair as it is done (JSON lines)")
     options = parser.parse_args(arguments)
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     kinds = [one.strip() for one in options.only.split(",") if one.strip()] or [*KINDS, NOTHING, ANOTHER]
     todo = [(kind, number) for kind in kinds for number in range(options.first, options.first + options.draws)]
-    console, outcomes = Console(width=120), []
+    console, kept = Console(width=120), Kept.read(options.output)
+    names = {draw_name(kind, number, seed=options.seed): (kind, number) for kind, number in todo}
+    missing = {name: one for name, one in names.items() if name not in kept.lines}
     with ProcessPoolExecutor(options.jobs, mp_context=get_context("spawn")) as pool:
-        for one in pool.map(partial(outcome, seed=options.seed), *zip(*todo, strict=True)):
-            outcomes.append(one)
-            if _wrong(one):
-                console.print(f"{one.kind} {one.way} number {one.number}: {', '.join(one.said) or 'nothing'}")
+        running = {pool.submit(outcome, *one, seed=options.seed): name for name, one in missing.items()}
+        for done in as_completed(running):
+            kept.add(running[done], asdict(done.result()))
+    outcomes = [Outcome(**{key: value for key, value in kept.lines[name].items() if key != "draw"}) for name in names]
+    for one in filter(lambda outcome: outcome.wrong, outcomes):
+        console.print(f"{one.kind} {one.way} number {one.number}: {', '.join(one.said) or 'nothing'}")
     console.print(table(outcomes))
-    if options.output is not None:
-        options.output.write_text(json.dumps([asdict(one) for one in outcomes], indent=1) + "\n", encoding="utf-8")
     return 0
 
 

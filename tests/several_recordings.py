@@ -4,19 +4,25 @@ Devices are made here from definitions, without any code of the twin: a sensor o
 coupling. Each is recorded as it is, at a wider air gap with the sensor turned, and warm with the sensor turned. Every
 kind is one of a class that a single sweep of angles cannot part. Right: the cause alone is named, with no rival; open:
 it is named with rivals, or is a rival itself, or nothing is named; wrong: something else is named.
+
+    python -m tests.several_recordings --draws 25 --seed 21 -o several.jsonl
+
+Each device is kept in the file as it is done; the same command goes on where it was stopped.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from diagnosis import explain
 from diagnosis.explanation import Explanation
+from tests.kept import Kept, share
 from twin.angles import Array
 from twin.sweep import Sweep
 
@@ -62,6 +68,9 @@ KINDS = {
     "play": ("backlash", "play_deg"),
 }
 """By kind the catalogue's name, and the strength that is drawn."""
+
+
+VERDICTS = ("right", "open", "wrong")
 
 
 def field_at(gap_mm: float) -> float:
@@ -130,8 +139,8 @@ def recorded(device: Device, setup: Setup, first: Setup, name: str, rng: np.rand
     return Sweep.from_columns(columns, name=name)
 
 
-def devices(draws: int, seed: int) -> Iterator[tuple[str, str | None, list[Sweep]]]:
-    """Kind, true cause, three recordings, for so many devices of each kind."""
+def devices(draws: int, seed: int) -> Iterator[tuple[int, str, str | None, list[Sweep]]]:
+    """Number, kind, true cause, three recordings, for so many devices of each kind."""
     for draw in range(draws):
         for number, (kind, (cause, strength)) in enumerate(KINDS.items()):
             rng = np.random.default_rng([seed, draw, number])
@@ -142,7 +151,7 @@ def devices(draws: int, seed: int) -> Iterator[tuple[str, str | None, list[Sweep
             gap = float(rng.uniform(1.0, 2.0))
             turned = float(rng.uniform(60.0, 120.0))
             setups = [Setup(gap, 0.0, 25.0), Setup(gap * rng.uniform(1.5, 2.0), turned, 25.0), Setup(gap, turned, 60.0)]
-            yield kind, cause, [recorded(device, one, setups[0], f"r{k}", rng) for k, one in enumerate(setups)]
+            yield draw, kind, cause, [recorded(device, one, setups[0], f"r{k}", rng) for k, one in enumerate(setups)]
 
 
 def judged(found: Explanation, truth: str | None) -> str:
@@ -158,24 +167,34 @@ def judged(found: Explanation, truth: str | None) -> str:
     return "right" if alone and names == {truth} else "open"
 
 
+def _count(counts: Mapping[tuple[str, str], int], kind: str, word: str) -> int:
+    """How many devices of a kind, or of all, were judged so."""
+    return sum(count for (own, verdict), count in counts.items() if verdict == word and kind in (own, "all kinds"))
+
+
 def main() -> None:
-    """Print a line for each device, and the counts."""
+    """Print a line for each device, and the counts of each kind."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--draws", type=int, default=25, help="devices of each of the eight kinds")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", help="this kind alone")
+    parser.add_argument("-o", "--output", type=Path, help="keeps each device as it is done (JSON lines)")
     options = parser.parse_args()
-    counts: Counter[str] = Counter()
-    for kind, truth, sweeps in devices(options.draws, options.seed):
+    kept, counts = Kept.read(options.output), Counter[tuple[str, str]]()
+    for draw, kind, truth, sweeps in devices(options.draws, options.seed):
         if options.only not in ("", kind):
             continue
-        found = explain(sweeps)
-        verdict = judged(found, truth)
-        counts[verdict] += 1
-        named = ", ".join(f"{c.name} ({'/'.join(c.indistinguishable_from) or '-'})" for c in found.causes)
-        print(f"{verdict:6} {kind:26} {named or 'nothing'}", flush=True)
-    total = sum(counts.values())
-    print(", ".join(f"{word} {counts[word]} of {total}" for word in ("right", "open", "wrong")))
+        name = f"{kind} {draw} of seed {options.seed}"
+        if name not in kept.lines:
+            found = explain(sweeps)
+            named = ", ".join(f"{c.name} ({'/'.join(c.indistinguishable_from) or '-'})" for c in found.causes)
+            kept.add(name, {"kind": kind, "verdict": judged(found, truth), "named": named})
+        told = kept.lines[name]
+        counts[kind, told["verdict"]] += 1
+        print(f"{told['verdict']:6} {name:40} {told['named'] or 'nothing'}", flush=True)
+    for kind in [*dict.fromkeys(kind for kind, _ in counts), "all kinds"]:
+        own = Counter({word: _count(counts, kind, word) for word in VERDICTS})
+        print(f"{kind:26} " + ", ".join(f"{word} {share(n, own.total())}" for word, n in own.items()))
 
 
 if __name__ == "__main__":

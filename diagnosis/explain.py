@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from diagnosis.explanation import Explanation
-from diagnosis.input_checks import SweepLike, TwinLike, as_sweep, as_twin, checked_seed
+from diagnosis.input_checks import SweepLike, TwinLike, as_sweeps, as_twin, checked_seed
 from diagnosis.progress import Listener
 
 if TYPE_CHECKING:
@@ -148,15 +148,21 @@ def _read(sweep: SweepLike | Sequence[SweepLike], mounting: Mounting | None) -> 
     from twin.errors import UserError
 
     several = isinstance(sweep, list | tuple)
-    sweeps = [as_sweep(one) for one in (cast("Sequence[SweepLike]", sweep) if several else [cast("SweepLike", sweep)])]
+    sweeps = as_sweeps(cast("Sequence[SweepLike]", sweep) if several else [cast("SweepLike", sweep)])
     if not sweeps:
         raise UserError("found a list of no sweep; give one sweep, or several recordings of one device")
     gaps, angles = (1, 0) if mounting is None else (len(mounting.air_gap_mm), len(mounting.turned_deg))
     if gaps not in (1, len(sweeps)):
         expected = "one, that of the sweep" if len(sweeps) == 1 else "one, or one for each sweep in their order"
         raise UserError(f"found {gaps} air gaps; expected {expected}")
+    if angles and len(sweeps) == 1:
+        raise UserError(
+            "the sensor's turn (mounting) says how several recordings differ, and there is one sweep; leave it out, or "
+            "give the other recordings too"
+        )
     if angles not in (0, len(sweeps)):
-        raise UserError(f"found {angles} angles of the sensor for {len(sweeps)} sweeps; expected one for each")
+        count = f"{angles} angle{'s' if angles > 1 else ''}"
+        raise UserError(f"found {count} of the sensor for {len(sweeps)} sweeps; expected one for each")
     return sweeps
 
 

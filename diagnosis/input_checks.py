@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from numbers import Real
@@ -35,6 +35,20 @@ SweepLike: TypeAlias = "str | os.PathLike[str] | Sweep | Columns"
 """What :func:`diagnosis.explain` and :func:`diagnosis.diagnose` take as a sweep."""
 TwinLike: TypeAlias = "str | os.PathLike[str] | Chain"
 """What they take as a twin: a twin file, a preset's name, or a chain."""
+
+
+def as_sweeps(sources: Sequence[SweepLike]) -> list[Sweep]:
+    """Several sweeps, see :func:`as_sweep`; files that share a name bear as much of their paths as tells them apart."""
+    from dataclasses import replace
+
+    from twin.shown_name import distinct_names
+
+    sweeps = [as_sweep(source) for source in sources]
+    files = [place for place, source in enumerate(sources) if isinstance(source, str | os.PathLike)]
+    names = distinct_names([os.fspath(sources[place]) for place in files])  # type: ignore[arg-type]
+    for place, name in zip(files, names, strict=True):
+        sweeps[place] = replace(sweeps[place], name=name)
+    return sweeps
 
 
 def as_sweep(source: SweepLike) -> Sweep:

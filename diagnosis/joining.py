@@ -2,10 +2,7 @@
 
 The device's parameters are common to all. A recording has its own zero, its own noise, and what happens in time within
 it; what follows the magnet's field or distance is that of its air gap.
-
-The reference may have found its zero anew between two recordings, and the sensor may have been turned about the shaft:
-both move the zero between them. What was stated of the sensor's turn is taken for that; the rest is the reference's,
-and its angles are counted back, so that one place of the shaft bears one angle in all recordings.
+How the sensor stood in each is told in :mod:`diagnosis.mountings`.
 """
 
 from __future__ import annotations
@@ -20,7 +17,8 @@ from diagnosis.discovery.fitting.initial_fit import senses_of_channels
 from diagnosis.error_model.fit import fit_baseline
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.mounting import Mounting
-from twin.angles import Array, wrap_deg
+from diagnosis.mountings import own_zeros_deg, with_references
+from twin.angles import wrap_deg
 from twin.chain import Chain
 from twin.each_recording import MARK, in_each, in_one
 from twin.effect import BoolArray, Effect
@@ -30,9 +28,6 @@ from twin.mechanics.zero import ZERO
 from twin.recordings import Recordings, Setup
 from twin.sweep import Sweep
 from twin.sweep_columns import OF_SETUP
-
-SAME_PLACE_DEG = 15.0
-"""The zeros of two recordings that are nearer than this belong to a reference that was not moved."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +73,8 @@ def joined(
     stated = mounting.air_gap_mm if mounting is not None and len(mounting.air_gap_mm) == len(sweeps) else None
     gaps = list(stated) if stated is not None else _stated(sweeps, "air_gap_mm")
     turned = list(mounting.turned_deg) if mounting is not None and mounting.turned_deg else []
-    setups = _with_references(_at_gaps(sweeps, gaps, magnet), turned or _stated(sweeps, "mounting_deg"), fits)
+    stated_deg = turned or _stated(sweeps, "mounting_deg")
+    setups = with_references(_at_gaps(sweeps, gaps, magnet), stated_deg, fits, sweeps)
     chain = fits[0].chain() if given is None else given
     own = {f"{ZERO.name}{MARK}{k + 1}": {"zero_deg": _own_zero(fits, setups, k)} for k in range(1, len(sweeps))}
     start = replace(chain.with_values(own), effects=_effects(effects, setups, magnet))
@@ -109,7 +105,9 @@ def _stated(sweeps: Sequence[Sweep], column: str) -> list[float | None]:
         found.append(None if values is None else float(values[np.isfinite(values)][0]))
     if None in found and any(value is not None for value in found):
         lacking = sweeps[found.index(None)].name
-        raise SweepError(f"{lacking}: no column {column}, which another recording has; state it for all or for none")
+        raise SweepError(
+            f"{lacking}: no number in a column {column}, where another recording has one; state it for all or for none"
+        )
     return found
 
 
@@ -131,33 +129,10 @@ def _at_gaps(sweeps: Sequence[Sweep], gaps: Sequence[float | None], magnet: Magn
     ]
 
 
-def _zeros(fits: Sequence[BaselineFit]) -> Array:
-    """The zero of each recording against the first one's [deg]."""
-    zeros = np.array([fit.chain().values[ZERO.name]["zero_deg"] for fit in fits], dtype=np.float64)
-    return np.asarray(wrap_deg(zeros - zeros[0]))
-
-
-def _with_references(
-    setups: Sequence[Setup], turned: Sequence[float | None], fits: Sequence[BaselineFit]
-) -> list[Setup]:
-    """The setups with the sensor's turn, and how far the reference has counted on."""
-    sense = fits[0].senses.sensor
-    found = []
-    for setup, zero_deg, value in zip(setups, _zeros(fits), turned, strict=True):
-        by = 0.0 if value is None or turned[0] is None else float(value) - float(turned[0])
-        # A sensor that is turned with the angles it counts sees the field stand back by as much. Which way a stage
-        # counts is often not written down: the zero tells.
-        by = min((-by, by), key=lambda moved: abs(float(wrap_deg(zero_deg - moved))))
-        moved = float(wrap_deg(zero_deg - by))
-        counted_on = -sense * moved if abs(moved) > SAME_PLACE_DEG else 0.0
-        found.append(replace(setup, turned_deg=-by, reference_deg=counted_on))
-    return found
-
-
 def _own_zero(fits: Sequence[BaselineFit], setups: Sequence[Setup], place: int) -> float:
     """The zero [deg] of a recording beside the first one's, once its reference is counted back."""
     sense = fits[0].senses.sensor
-    return float(wrap_deg(_zeros(fits)[place] + sense * setups[place].reference_deg))
+    return float(wrap_deg(own_zeros_deg(fits)[place] + sense * setups[place].reference_deg))
 
 
 def _effects(effects: Sequence[Effect], setups: Sequence[Setup], magnet: Magnet) -> tuple[Effect, ...]:

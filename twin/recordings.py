@@ -27,6 +27,10 @@ class Setup:
     reference_deg : float
         By how much the reference has counted on from where it stood in the first recording [deg]: its zero was found
         anew meanwhile.
+    turn_stated_deg : float or None
+        The same turn as it was stated, in whichever sense; None where nobody has stated any.
+    turn_told : bool
+        Whether ``turned_deg`` is told by the readings alone.
     field, distance : float
         The magnet's field at the sensor, and the distance from its centre, against those of the first recording.
     """
@@ -35,6 +39,8 @@ class Setup:
     air_gap_mm: float | None = None
     turned_deg: float = 0.0
     reference_deg: float = 0.0
+    turn_stated_deg: float | None = None
+    turn_told: bool = False
     field: float = 1.0
     distance: float = 1.0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 
@@ -10,6 +11,20 @@ def shown_path(path: str | Path) -> str:
     """A path as it was given; what is no UTF-8 or cannot be printed, such as a line break, becomes U+FFFD."""
     text = os.fsencode(path).decode("utf-8", errors="replace")
     return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
+
+
+def distinct_names(paths: Sequence[str | Path]) -> list[str]:
+    """Of each path as many of its last parts as tell it from the others, as :func:`shown_path` shows them.
+
+    Of paths that are the very same, all.
+    """
+    parts = [Path(path).parts for path in paths]
+    found = []
+    for place, own in enumerate(parts):
+        others = [other for k, other in enumerate(parts) if k != place and other != own]
+        few = next((n for n in range(1, len(own)) if all(other[-n:] != own[-n:] for other in others)), len(own))
+        found.append(shown_path(Path(*own[-few:])) if own else "")
+    return found
 
 
 def shown_name(path: str | Path) -> str:

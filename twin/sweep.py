@@ -189,27 +189,27 @@ class Sweep:
         )
 
     @classmethod
-    def read(cls, path: str | Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> Self:
+    def read(cls, path: str | Path, *, max_bytes: int = LARGEST_SWEEP_BYTES, name: str | None = None) -> Self:
         """Read a sweep file and check it.
 
         Parameters
         ----------
         path : str or Path
             CSV, plain or gzip, or Parquet where pyarrow is installed; its content says which.
-        max_bytes : int, optional
-            Most bytes of the file after decompression.
+        max_bytes, name : int and str, optional
+            Most bytes of the file after decompression; what messages call it, if not by the file's name.
 
         Returns
         -------
         Sweep
-            The rows that can be used, named after the file.
+            The rows that can be used.
 
         Raises
         ------
         SweepError
             Where the file cannot be read or used: which line and column, what was found, expected, and to do.
         """
-        found = cls.from_columns(read_columns(Path(path), max_bytes=max_bytes), name=shown_name(path))
+        found = cls.from_columns(read_columns(Path(path), max_bytes=max_bytes), name=name or shown_name(path))
         columns = ", ".join(found.columns)
         LOG.info("read %s: %d rows, %d rejected; %s", found.name, found.rows, len(found.rejected), columns)
         return found

@@ -40,7 +40,8 @@ class Finding:
     intervals: Mapping[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        rivals = f", cannot be told from {', '.join(self.rivals)}" if self.rivals else ""
+        others = ", ".join(dict.fromkeys(map(everywhere, self.rivals)))
+        rivals = f", cannot be told from {others}" if others else ""
         return (
             f"Finding({', '.join(self.keys)}; held-out RMS {self.before_deg:.4g} -> {self.after_deg:.4g} deg{rivals})"
         )

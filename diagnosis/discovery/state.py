@@ -15,6 +15,7 @@ from diagnosis.discovery.watch import Watch
 from twin.angles import TAU, Array, IntArray
 from twin.catalogue import base_name
 from twin.chain import Chain
+from twin.each_recording import everywhere
 from twin.effect import BoolArray, Effect
 from twin.sweep import Sweep
 
@@ -163,8 +164,9 @@ class State:
 
     @property
     def held_causes(self) -> tuple[str, ...]:
-        """Keys of the causes found so far, in the joint fit and beside it."""
-        return tuple(dict.fromkeys([*self.keys, *(finding.keys[0] for finding in self.findings)]))
+        """The causes found so far, in the joint fit and beside it, by the keys that people read."""
+        keys = [*self.keys, *(finding.keys[0] for finding in self.findings)]
+        return tuple(dict.fromkeys(map(everywhere, keys)))
 
     def told(self, stage: Stage) -> State:
         """This state, once its watch has heard that a stage runs."""

@@ -24,8 +24,9 @@ def change_line(change: Mapping[str, Any]) -> str:
     value, half = figure(told)
     # To the digits of what it is: the two are compared.
     was, _ = figure(around(told, change["was"]) if half else {**told, **around(told, change["was"])})
-    figures = " ".join(part for part in (f"was {was}, is {value}", half, unit_shown(change["unit"])) if part)
-    return f"{figures}; it belongs to the {change['owner']}"
+    unit = unit_shown(change["unit"])
+    before, after = (" ".join(part for part in parts if part) for parts in ((was, unit), (value, half, unit)))
+    return f"was {before}, is {after}; it belongs to the {change['owner']}"
 
 
 def change_rivals_words(answer: Mapping[str, Any], change: Mapping[str, Any]) -> str:

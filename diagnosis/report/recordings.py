@@ -61,6 +61,8 @@ def _recording(found: Discovery, number: int) -> dict[str, Any]:
         "air_gap_mm": setup.air_gap_mm,
         "field_ratio": setup.field,
         "turned_deg": setup.turned_deg,
+        "turn_stated_deg": setup.turn_stated_deg,
+        "turn_told": setup.turn_told,
         "reference_counted_on_deg": setup.reference_deg,
         "temperature_c": float(np.median(part.temperature_c)) if "temperature_c" in motion.columns else None,
         "baseline_rms_deg": rms_deg(found.baseline.residual[0], rows),
@@ -80,7 +82,7 @@ def recordings_table(answer: Mapping[str, Any]) -> tuple[list[str], list[list[st
             one["name"],
             str(one["rows"]),
             _shown(one["air_gap_mm"]),
-            plain(one["turned_deg"]),
+            _turn_shown(one),
             _shown(one["temperature_c"]),
             _shown(one.get("zero_deg"), 5),
             plain(one["baseline_rms_deg"]),
@@ -105,13 +107,47 @@ def recordings_notes(answer: Mapping[str, Any]) -> list[str]:
         said.append("held out by blocks of each recording: one alone could not show the causes found")
     if answer["columns_left_out"]:
         said.append(f"not used, as only some of the recordings have it: {', '.join(answer['columns_left_out'])}")
-    said += [
-        f"the reference of {one['name']} counts from {plain(one['reference_counted_on_deg'])} deg elsewhere than "
-        f"that of {several[0]['name']}"
-        for one in several
-        if one["reference_counted_on_deg"]
-    ]
+    said += [words for one in several[1:] if (words := turn_words(one, several[0]["name"]))]
     return said + [_not_shared(one) for one in several if one.get("differ")]
+
+
+def turn_words(one: Mapping[str, Any], first: str) -> str:
+    """What its zero says of the sensor's turn in a recording, and what was made of it; empty where nothing is open."""
+    name, on_deg, stated_deg = one["name"], one["reference_counted_on_deg"], one["turn_stated_deg"]
+    if one["turn_told"]:
+        return (
+            f"the zero of {name} has moved by {_degrees(one['turned_deg'])} deg, and its errors are those of one "
+            "device only if the sensor was turned by that: taken as turned, which nobody has stated; --mounting states "
+            "it, or with 0 for each that it was not"
+        )
+    if not on_deg:
+        return ""
+    reference = f"its reference is taken to count from {_degrees(on_deg)} deg elsewhere than that of {first}"
+    if not stated_deg:
+        asked = "; if the sensor was turned, state by how much (--mounting)" if stated_deg is None else ""
+        return f"the zero of {name} has moved: {reference}{asked}"
+    return (
+        f"the turn of {_degrees(stated_deg)} deg that is stated of {name} does not agree with its zero, by "
+        f"{_degrees(on_deg)} deg: {reference}; if it does not, state the turn that was made"
+    )
+
+
+def contradictions(answer: Mapping[str, Any]) -> list[str]:
+    """The recordings whose stated turn does not agree with their zero."""
+    several = answer.get("recordings", ())
+    return [one["name"] for one in several if one["turn_stated_deg"] and one["reference_counted_on_deg"]]
+
+
+def _degrees(value: float) -> str:
+    """The size of an angle, whose sense depends on who counts."""
+    return plain(abs(value))
+
+
+def _turn_shown(one: Mapping[str, Any]) -> str:
+    """By how much the sensor was turned, as it was stated; marked where only the readings tell it."""
+    if one["turn_stated_deg"] is not None:
+        return plain(one["turn_stated_deg"])
+    return f"{_degrees(one['turned_deg'])} (not stated)" if one["turn_told"] else "0"
 
 
 def _not_shared(one: Mapping[str, Any]) -> str:

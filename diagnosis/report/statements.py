@@ -13,6 +13,7 @@ from diagnosis.discovery.result import REPEATED
 from diagnosis.discovery.settings import UNLIKE
 from diagnosis.report.change_words import other_device_words
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
+from diagnosis.report.recordings import contradictions
 from diagnosis.report.row_counts import rows_listed
 from diagnosis.report.wording import (
     around,
@@ -298,8 +299,14 @@ def verdict_words(answer: Mapping[str, Any]) -> str:
     like = "; ".join(filter(None, (lack_words(answer), likeness_words(answer))))
     names = {cause["name"] for cause in answer["causes"]}
     rest = " Part of that is structure without a name." if len(names) > 1 and "unnamed" in names else ""
-    said = f"{_gain_words(answer)}{f'; {like}' if like else ''}.{rest}{cut_words(answer)}"
+    said = f"{_gain_words(answer)}{f'; {like}' if like else ''}.{rest}{_stated_words(answer)}{cut_words(answer)}"
     return f"{other_device_words(answer)}{said}"
+
+
+def _stated_words(answer: Mapping[str, Any]) -> str:
+    """That what was stated of the sensor's turn does not agree with the zeros; empty where it does."""
+    names = contradictions(answer)
+    return f" The turn stated of {_and(names)} does not agree with the zero found there." if names else ""
 
 
 def cut_words(answer: Mapping[str, Any]) -> str:

@@ -19,6 +19,7 @@ from diagnosis.report.wording import (
     unit_shown,
 )
 from twin.catalogue import STAGES, base_name, find
+from twin.each_recording import everywhere
 from twin.effect import Effect
 
 
@@ -160,7 +161,7 @@ def chain(values: Iterable[str], new: Mapping[str, int], effects: tuple[Effect, 
         if stage == "empirical" and not here:
             continue
         title = "reference encoder" if stage == "reference" else "unnamed" if stage == "empirical" else stage
-        names = dict.fromkeys((base_name(key), new.get(key)) for key in here)
+        names = dict.fromkeys((everywhere(base_name(key)), new.get(key)) for key in here)
         items = "".join(_effect(name, place) for name, place in names)
         # The reference reads the same shaft beside the sensor: no signal of the sensor's enters it.
         kind = {"link": ' class="last"', "reference": ' class="apart"'}.get(stage, "")

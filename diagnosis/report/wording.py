@@ -34,6 +34,12 @@ def plain(value: float | None, digits: int = 3) -> str:
     return text if "e" in text else _filled(value, digits)
 
 
+def exact(value: float) -> str:
+    """A figure that somebody has stated: to six digits, without zeros that only fill up."""
+    text = plain(value, 6)
+    return text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
+
+
 def _filled(value: float, digits: int) -> str:
     decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
     return f"{value:.{decimals}f}"
@@ -72,7 +78,7 @@ def figure(parameter: Mapping[str, Any], scale: float = 1.0) -> tuple[str, str]:
         return plain(value * scale, 4), "±∞"
     value, half = value * scale, half * scale
     if half <= 0.0:
-        return plain(value, 4), ""
+        return exact(value), ""
     decimals = decimals_of(half)
     if decimals <= _MOST_DECIMALS:
         return f"{value:.{decimals}f}", f"±{half:.{decimals}f}"

@@ -60,7 +60,8 @@ def explain(
     max_size: MaxSize = "2GB",
     seed: Seed = 0,
     fail_on: Annotated[
-        list[str] | None, fail_on_option("cause, the NAME of one, unexplained, or rejected (rows)")
+        list[str] | None,
+        fail_on_option("cause, the NAME of one, unexplained, changed or other-device (--twin), or rejected (rows)"),
     ] = None,
 ) -> None:
     """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""

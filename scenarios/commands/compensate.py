@@ -139,7 +139,7 @@ def _read(paths: Sequence[Path], max_bytes: int) -> SweepsRead:
 
 def _rejected(others: SweepsRead) -> list[str]:
     """Which sweeps of ``--check`` hold rows that could not be used."""
-    counts = [(shown_name(one.name), counts_of(one, ())) for one in others.sweeps if one.rejected]
+    counts = [(one.name, counts_of(one, ())) for one in others.sweeps if one.rejected]
     return [f"{name}: {told['rows']} readings; {rejected_words(told)}" for name, told in counts]
 
 

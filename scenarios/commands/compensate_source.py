@@ -13,7 +13,6 @@ from diagnosis.correction.compensation import Correction, correction_of, correct
 from diagnosis.correction.cross_validation import Shaft
 from diagnosis.thermal.recording import SMALLEST_SPAN_K, Recording, joined, over_temperature
 from twin.errors import UserError
-from twin.shown_name import shown_name
 from twin.sweep import Sweep
 
 
@@ -92,7 +91,7 @@ def readings_of(sweeps: Sequence[Sweep], *, tolerance_deg: float, seed: int) -> 
         for sweep in sweeps:
             if sweep.temperature_c is None:
                 raise UserError(
-                    f"{shown_name(sweep.name)}: several sweeps make one correction over temperature, and this one has "
+                    f"{sweep.name}: several sweeps make one correction over temperature, and this one has "
                     "no temperature_c; add the column, or give one sweep"
                 )
         raise UserError(

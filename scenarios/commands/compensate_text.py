@@ -22,7 +22,6 @@ from diagnosis.report.temperature_text import lines
 from diagnosis.report.wording import decimals_of, rms_shown
 from scenarios.commands.compensate_source import Readings
 from scenarios.commands.terminal import terminal_width
-from twin.shown_name import shown_name
 
 Rows = Sequence[tuple[str, BeforeAfter]]
 _HEADS = ("RMS / deg", "largest / deg")
@@ -51,7 +50,7 @@ def made_of(readings: Readings | None, name: str, tolerance_deg: float) -> MadeO
     for sweep in readings.sweeps:
         start, end = end, end + len(sweep)
         gross = sweep.numbers[readings.calibration.gross[start:end]].tolist()
-        counts.append({"sweep": shown_name(sweep.name), **counts_of(sweep, gross)})
+        counts.append({"sweep": sweep.name, **counts_of(sweep, gross)})
     rows, fitted = (sum(one[key] for one in counts) for key in ("rows", "fitted"))
     told = diagnosed_rows(counts[0]) if len(counts) == 1 else left_out_words(counts) or "all fitted"
     # Of the mean of so many readings; and no better than the orders that were left out.

@@ -22,6 +22,7 @@ from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.files import twin_text
 from twin.presets import read_twin_or_preset
+from twin.shown_name import distinct_names
 from twin.sweep import Sweep
 
 EACH = "halltwin.explain_each/1"
@@ -65,7 +66,8 @@ def run(
     # Before a long recording is read: a name that is none needs no waiting for.
     held = None if known.twin is None else read_twin_or_preset(known.twin, effects=effects)
     given = {"twin": held, "mounting": known.mounting(), "effects": effect_files, "seed": seed}
-    read = [Sweep.read(path, max_bytes=sweeps.max_bytes) for path in paths]
+    names = distinct_names(paths)
+    read = [Sweep.read(p, max_bytes=sweeps.max_bytes, name=name) for p, name in zip(paths, names, strict=True)]
     if one_by_one:
         _one_by_one(read, given, files=files, json=outputs.json, command=command, words=words)
         return

@@ -12,7 +12,7 @@ from scenarios.commands.fail_on import FoundError
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.ending import ending_of
 from twin.errors import SweepError, UserError
-from twin.shown_name import shown_name
+from twin.shown_name import distinct_names
 from twin.sweep import Sweep
 
 ENDINGS = (".csv", ".csv.gz", ".parquet")
@@ -96,7 +96,7 @@ def the_same(sweeps: Sequence[Sweep]) -> list[list[str]]:
     groups: dict[bytes, list[str]] = {}
     for sweep in sweeps:
         key = hashlib.sha256(sweep.reference_deg.tobytes() + sweep.measured_deg.tobytes()).digest()
-        groups.setdefault(key, []).append(shown_name(sweep.name))
+        groups.setdefault(key, []).append(sweep.name)
     return [names for names in groups.values() if len(names) > 1]
 
 
@@ -128,12 +128,11 @@ def read_sweeps(paths: Sequence[Path], *, max_bytes: int = LARGEST_SWEEP_BYTES) 
     """Read these files; one that is no sweep is left out and listed. Raises SweepError where none can be used."""
     sweeps, unusable = [], []
     first: SweepError | None = None
-    for path in paths:
+    for path, name in zip(paths, distinct_names(paths), strict=True):
         try:
-            sweeps.append(Sweep.read(path, max_bytes=max_bytes))
+            sweeps.append(Sweep.read(path, max_bytes=max_bytes, name=name))
         except SweepError as error:
             first = first or error
-            name = shown_name(path)
             unusable.append(Unusable(name, str(error).removeprefix(f"{path}: ").removeprefix(f"{name}: ")))
     if first is not None and not sweeps:
         more = f" (and none of the other {len(paths) - 1} files can be used)" if len(paths) > 1 else ""

@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from scenarios.commands.protocol import numbers
+from twin.errors import UserError
+from twin.shown import shown
 
 if TYPE_CHECKING:
     from diagnosis import Mounting
@@ -49,13 +51,15 @@ class Known:
         if self.air_gap is not None:
             given = replace(given, air_gap_mm=tuple(numbers("air_gap", self.air_gap)), gap_error_mm=GAP_ERROR_MM)
         if self.turned is not None:
-            given = replace(given, turned_deg=tuple(numbers("mounting", self.turned)))
+            turned_deg = tuple(numbers("mounting", self.turned))
+            if not turned_deg:
+                raise UserError(f"mounting is {shown(self.turned)}; expected the sensor's turn in each, e.g. 0,90")
+            given = replace(given, turned_deg=turned_deg)
         return given if self.air_gap_error_mm is None else replace(given, gap_error_mm=self.air_gap_error_mm)
 
 
 def magnet_of(text: str) -> Magnet:
     """The magnet of a text such as ``shape=ring,diameter_mm=10,bore_mm=4,height_mm=3``. Raises UserError."""
-    from twin.errors import UserError
     from twin.magnet.magnet import Magnet
     from twin.tables import from_table
 

@@ -17,7 +17,6 @@ from scenarios.commands.inputs import SweepFiles, SweepsRead, the_same
 from scenarios.commands.monitor_text import show, way
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, json_text
 from twin.errors import UserError
-from twin.shown_name import shown_name
 from twin.sweep import Sweep
 
 SCHEMA = "halltwin.monitor/1"
@@ -61,7 +60,7 @@ def run(
 def readings_of(sweeps: Sequence[Sweep], found: MonitoredSeries) -> list[dict[str, Any]]:
     """What became of the readings of each sweep of the series, as plain values."""
     return [
-        {"sweep": shown_name(sweep.name), **counts_of(sweep, sweep.numbers[fit.outliers].tolist())}
+        {"sweep": sweep.name, **counts_of(sweep, sweep.numbers[fit.outliers].tolist())}
         for sweep, fit in zip(sweeps, found.fits, strict=True)
     ]
 
@@ -70,7 +69,7 @@ def _rejected_of_turns(read: SweepsRead, sweeps: Sequence[Sweep]) -> Iterator[st
     """Rows that could not be used of a sweep whose turns are the series: they belong to none of them."""
     whole = read.sweeps[0]
     if len(sweeps) > len(read.sweeps) and whole.rejected:
-        yield f"{shown_name(whole.name)}: {rejected_words(counts_of(whole, ()))}"
+        yield f"{whole.name}: {rejected_words(counts_of(whole, ()))}"
 
 
 def _charts(found: MonitoredSeries) -> Any:

@@ -12,6 +12,7 @@ import pytest
 
 from diagnosis import explain
 from diagnosis.explanation import Explanation
+from diagnosis.factors.mounting import Mounting
 from tests.command_line import halltwin
 from twin.angles import Array
 from twin.chain import Chain
@@ -96,10 +97,34 @@ def test_a_turned_sensor_parts_the_reference_from_the_sensor() -> None:
     offset = found.to_dict()["extended"]["parameters"]["Vx_over_Ax"]
     assert offset["low"] <= 0.008 <= offset["high"]
     assert found.to_dict()["held_out_by"] == "blocks"
-    # With no word of the sensor's turn, the reference has found another zero, and nothing is parted.
-    alike = explain([replace(upright, mounting_deg=None), replace(turned, mounting_deg=None)])
-    assert abs(alike.to_dict()["recordings"][1]["reference_counted_on_deg"]) == pytest.approx(90.0, abs=1.0)
-    assert "reference_eccentricity" in alike.to_dict()["not_visible"]
+    # With no word of the sensor's turn the errors tell it: nothing else makes one device of both recordings.
+    untold = explain([replace(upright, mounting_deg=None), replace(turned, mounting_deg=None)])
+    assert [one.name for one in untold.causes] == [cause.name]
+    setup = untold.to_dict()["recordings"][1]
+    assert setup["turn_told"]
+    assert setup["turn_stated_deg"] is None
+    assert abs(setup["turned_deg"]) == pytest.approx(90.0, abs=1.0)
+    assert "taken as turned, which nobody has stated" in " ".join(untold.summary().split())
+
+
+def test_a_zero_that_has_moved_is_the_references_where_nothing_tells_otherwise() -> None:
+    """The errors of a sensor alone are the same function of the angle however either of the two has been moved."""
+    first = recorded(DEVICE, "first.csv", zero_deg=20.0)
+    found = explain([first, recorded(DEVICE, "later.csv", zero_deg=-70.0)])
+    setup = found.to_dict()["recordings"][1]
+    assert not setup["turn_told"]
+    assert abs(setup["reference_counted_on_deg"]) == pytest.approx(90.0, abs=1.0)
+    assert "if the sensor was turned, state by how much (--mounting)" in " ".join(found.summary().split())
+
+
+def test_a_stated_turn_that_the_zero_contradicts_is_said() -> None:
+    first = recorded(DEVICE, "first.csv", zero_deg=20.0, mounting_deg=0.0)
+    found = explain([first, recorded(DEVICE, "turned.csv", zero_deg=-25.0, mounting_deg=90.0)])
+    said = " ".join(found.summary().split())
+    assert "The turn stated of turned.csv does not agree with the zero found there." in said
+    assert re.search(r"turn of 90 deg that is stated of turned.csv does not agree with its zero, by 45.0 deg", said)
+    # The table shows it as it was stated, and not as the sensor's axes count.
+    assert re.search(r"turned.csv 360 90 ", said)
 
 
 def test_recordings_of_two_devices_are_told() -> None:
@@ -117,8 +142,10 @@ def test_recordings_of_two_devices_are_told() -> None:
 def test_what_cannot_belong_together_is_refused() -> None:
     sweep = recorded(DEVICE, "a.csv", zero_deg=0.0)
     gapped = recorded(DEVICE, "b.csv", zero_deg=1.0, air_gap_mm=2.0)
-    with pytest.raises(UserError, match=r"a\.csv: no column air_gap_mm"):
+    with pytest.raises(UserError, match=r"a\.csv: no number in a column air_gap_mm"):
         explain([sweep, gapped])
+    with pytest.raises(UserError, match="there is one sweep"):
+        explain(sweep, mounting=Mounting(turned_deg=(90.0,)))
     with pytest.raises(UserError, match="list of no sweep"):
         explain([])
 
@@ -135,6 +162,20 @@ def test_commands_line_of_several(tmp_path: Path) -> None:
     assert "--json alone" in halltwin("explain", "--each", one, two, "--plot", tmp_path / "e.png").err
     assert "the same readings" in halltwin("explain", one, one).err
     assert "found 3 angles of the sensor for 2 sweeps" in halltwin("explain", one, two, "--mounting", "0,9,8").err
+    for options in (("--mounting", "10"), ("--each", "--mounting", "10")):
+        assert "there is one sweep" in halltwin("explain", one, *options).err
+    for several in ((one,), (one, two)):
+        assert "mounting is ','" in halltwin("explain", *several, "--mounting", ",").err
+
+
+def test_files_of_one_name_bear_as_much_of_their_paths_as_tells_them_apart(tmp_path: Path) -> None:
+    paths = [tmp_path / folder / "s.csv" for folder in ("near", "far")]
+    for k, path in enumerate(paths):
+        path.parent.mkdir()
+        recorded(DEVICE, f"s{k}.csv", zero_deg=float(k)).write(path)
+    assert "near/s.csv, far/s.csv" in halltwin("explain", *paths).out
+    assert [one["name"] for one in explain(paths).to_dict()["recordings"]] == ["near/s.csv", "far/s.csv"]
+    assert "near/s.csv" in halltwin("diagnose", *paths).out
 
 
 def test_what_happened_in_one_recording_is_named_with_it() -> None:

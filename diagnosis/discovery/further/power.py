@@ -26,6 +26,7 @@ from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array
 from twin.catalogue import find
 from twin.chain import Chain
+from twin.each_recording import everywhere
 
 MOST_PLANNED = 4_000
 """Rows of a plan; a longer one is planned on a part of itself."""
@@ -62,7 +63,11 @@ def options(fit: Fit, rivals: Mapping[str, Fit], menu: Sequence[Measurement] = M
     for entry in sorted(menu, key=lambda entry: entry.cost):
         planned = entry.plan(part)
         if planned is not None and any(_worth_it(fit, rival, planned) for rival in rivals.values()):
-            parted = {name: longer * _least_sigma(fit, rival, planned) for name, rival in rivals.items()}
+            parted: dict[str, float] = {}
+            for name, rival in rivals.items():
+                # The same effect in one recording and in another is one rival to whoever reads of it.
+                sigma = longer * _least_sigma(fit, rival, planned)
+                parted[everywhere(name)] = min(sigma, parted.get(everywhere(name), sigma))
             found.append(Option(entry.name, entry.words, min(parted.values()), entry.cost, parted))
     return tuple(found)
 

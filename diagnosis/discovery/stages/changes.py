@@ -16,6 +16,7 @@ from diagnosis.discovery.search.rivals import judge
 from diagnosis.discovery.search.screening import Base, Candidate, screen
 from diagnosis.discovery.state import State
 from twin.catalogue import base_name, unnamed
+from twin.each_recording import everywhere
 from twin.effect import Effect
 
 
@@ -123,5 +124,5 @@ def _with_rivals(state: State, found: Sequence[Change], fit: Fit, same: float) -
             trial, _ = add(without, candidate)
             if _squares(state, trial) < with_changes + same:
                 for change in group:
-                    rivals.setdefault(change.name, []).append(candidate.effect.name)
+                    rivals.setdefault(change.name, []).append(everywhere(candidate.effect.name))
     return tuple(change.with_rivals(rivals.get(change.name, ())) for change in found)

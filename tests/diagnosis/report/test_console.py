@@ -216,7 +216,7 @@ def test_beside_a_given_twin_it_is_said_what_has_changed_and_what_was_held() -> 
     for width in (100, 44):
         words = " ".join(shown(answer, width).split())
         assert "What has changed since the twin" in words
-        assert "was 0.751, is 1.750 ±0.010 %; it belongs to the device" in words
+        assert "was 0.751 %, is 1.750 ±0.010 %; it belongs to the device" in words
         assert "hysteresis lag" in words
         assert "cannot be told from: backlash" in words
         assert "All else of the given twin has not changed beyond chance, and stays as it was" in words

@@ -58,7 +58,9 @@ def test_over_temperature_is_its_real_output(tmp_path: Path, monkeypatch: pytest
         assert told == pytest.approx(found, rel=0.1, abs=3e-4)
 
 
-@pytest.mark.parametrize(("name", "path"), [("own", OWN), ("latency", ROOT / "twin/link/latency.py")])
+@pytest.mark.parametrize(
+    ("name", "path"), [("own", OWN), ("thermal_zero_shift", ROOT / "twin/mechanics/thermal_zero_shift.py")]
+)
 def test_shown_declaration_is_the_shipped_file(name: str, path: Path) -> None:
     assert path.read_text(encoding="utf-8").endswith(f"\n{block(OWN_PAGE, name, 'python')}\n")
     assert "import" not in block(OWN_PAGE, name, "python")

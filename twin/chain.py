@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from twin.known_names import nearest
 from twin.limits import OutOfRangeError
 from twin.magnet.assembly import Assembly
 from twin.motion import Motion
+from twin.operations import operations_of
 from twin.parameter_values import aligned, numbers
 from twin.parts import Parts
 from twin.reference.encoder import Encoder
@@ -204,15 +206,13 @@ class Chain:
         for key in sorted(self.values):
             present.setdefault(base_name(key), []).append(key)
         parts = [part for part in self.described if part.acts_on == acts_on]
-        for effect in self.effects:
-            if effect.acts_on != acts_on:
-                continue
+        for effect in (one for one in self.operations if one.acts_on == acts_on):
             while parts and STAGES.index(parts[0].stage) <= STAGES.index(effect.stage):
                 part = parts.pop(0)
                 yield part.name, part, {}
             for key in present.get(effect.name, ()):
                 values = {**effect.null(), **self.values[key]}
-                if not effect.is_null(values):
+                if effect.acts(values):
                     yield key, effect, {name: aligned(value, effect, name) for name, value in values.items()}
         yield from ((part.name, part, {}) for part in parts)
 
@@ -221,17 +221,22 @@ class Chain:
         """The described parts as operations on the chain's signals, in order."""
         return self.parts.acting(self.nominal_mT)
 
-    def places(self) -> dict[str, float]:
-        """Where everything acts, by name: effects by their number, a part half a number ahead of its stage's."""
-        found = {effect.name: float(place) for place, effect in enumerate(self.effects)}
+    @cached_property
+    def operations(self) -> tuple[Effect, ...]:
+        """All that the effects do, one signal each, in order."""
+        return operations_of(self.effects)
+
+    def places(self) -> dict[tuple[str, str], float]:
+        """Where everything acts, by name and signal: by its number, a part half a number ahead of its stage's."""
+        found = {(effect.name, str(effect.acts_on)): float(place) for place, effect in enumerate(self.operations)}
         for part in self.described:
             behind = (
                 place
-                for place, one in enumerate(self.effects)
+                for place, one in enumerate(self.operations)
                 if (ACTS_ON.index(one.acts_on), STAGES.index(one.stage))
                 >= (ACTS_ON.index(part.acts_on), STAGES.index(part.stage))
             )
-            found[part.name] = next(behind, len(self.effects)) - 0.5
+            found[part.name, part.acts_on] = next(behind, len(self.operations)) - 0.5
         return found
 
     def steps(self, motion: Motion, rng: np.random.Generator | None = None) -> Iterator[Step]:
@@ -244,7 +249,7 @@ class Chain:
         for acts_on in SIGNALS:
             for key, effect, values in self.active(acts_on):
                 after = effect.forward(signal, motion, values, rng)
-                yield Step(key, effect, values, signal, after)
+                yield Step(f"{key} in {acts_on}" if effect.acting else key, effect, values, signal, after)
                 signal = after
             if acts_on == "shaft":
                 after = self.sensor_sense * signal

@@ -10,7 +10,7 @@ from typing import Any, get_args
 import numpy as np
 
 from twin.catalogue import STAGES
-from twin.effect import ActsOn, Effect, Footprint, Line, Marks, Owner, Param, Role
+from twin.effect import ActsOn, Behind, Effect, Footprint, Line, Marks, Owner, Param, Role
 from twin.shown import shown
 
 NEEDS = frozenset(
@@ -65,6 +65,7 @@ _TYPES: tuple[tuple[tuple[str, ...], Callable[[Any], bool], str], ...] = (
         lambda value: value is None or callable(value),
         "a function, or None",
     ),
+    (("behind",), lambda value: value is None or isinstance(value, Behind), "a Behind, or None"),
     (("line",), lambda value: value is None or isinstance(value, Line), "a Line, or None"),
     (("marks",), lambda value: value is None or isinstance(value, Marks), "Marks, or None"),
     (

@@ -19,6 +19,7 @@ from twin.magnet.assembly import Assembly
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement
 from twin.motion import Motion
+from twin.operations import with_forwards
 from twin.recordings import Setup
 
 MARK = "@"
@@ -69,16 +70,15 @@ def in_each(effect: Effect, setups: Sequence[Setup], magnet: Magnet) -> Effect:
     """
     if effect.roles("per turn"):
         return effect
-    return replace(effect, forward=InEach(effect, tuple(_at_gap(effect, magnet, setup) for setup in setups)))
+    return with_forwards(effect, lambda one: InEach(one, tuple(_at_gap(one, magnet, setup) for setup in setups)))
 
 
 def in_one(effect: Effect, number: int) -> Effect:
     """The effect in one recording alone (counted from 0), with parameters of that recording's own."""
     line = effect.line
     return replace(
-        effect,
+        with_forwards(effect, lambda one: InOne(one, number)),
         name=f"{effect.name}{MARK}{number + 1}",
-        forward=InOne(effect, number),
         shapes=_of_part(effect.shapes, number),
         line=None if line is None else replace(line, limits=_of_part(line.limits, number)),
     )

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -134,6 +135,20 @@ class Marks:
         return self.find(measured, residual, noise, step, motion)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Behind:
+    """What an effect also does to a signal behind the one that it acts on.
+
+    ``forward`` is given all of the effect's parameters; where those named in ``params`` are at their nulls it does
+    nothing. ``record_wide`` is as in :class:`Effect`.
+    """
+
+    acts_on: ActsOn
+    forward: Forward
+    params: tuple[str, ...]
+    record_wide: bool = False
+
+
 def _one_shape(motion: Motion) -> Sequence[Mapping[str, float]]:
     return ({},)
 
@@ -172,6 +187,10 @@ class Effect:
         Its parameters; names end in their units.
     forward : Forward
         What it does to its signal.
+    behind : Behind, optional
+        What it also does to a signal behind that one.
+    acting : tuple of str
+        Of an operation of :attr:`operations`: the parameters at whose nulls it does nothing; none: the strengths.
     source, signature : str
         Where its definition can be looked up; what it does to the error, to leading order.
     needs : frozenset of str
@@ -236,6 +255,8 @@ class Effect:
     forward: Forward
     source: str
     signature: str
+    behind: Behind | None = None
+    acting: tuple[str, ...] = ()
     needs: frozenset[str] = frozenset()
     footprint: Footprint = "mean"
     baseline: bool = False
@@ -265,6 +286,26 @@ class Effect:
     def roles(self, role: Role) -> tuple[str, ...]:
         """Names of the parameters with this role, in the order of the declaration."""
         return tuple(name for name, param in self.params.items() if param.role == role)
+
+    @cached_property
+    def operations(self) -> tuple[Effect, ...]:
+        """The effect as operations on one signal each, in the order of the chain: itself, and what it does behind."""
+        if self.behind is None:
+            return (self,)
+        one = self.behind
+        second = replace(self, acts_on=one.acts_on, forward=one.forward, record_wide=one.record_wide)
+        return self, replace(second, behind=None, acting=one.params)
+
+    def acts(self, values: Parameters) -> bool:
+        """Whether it does anything with these parameters."""
+        if self.acting:
+            return any(np.any(np.asarray(values[name]) != self.params[name].null) for name in self.acting)
+        return not self.is_null(values)
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """Names of the parameters that a fit moves from their nulls only where that pays."""
+        return tuple(name for name, param in self.params.items() if param.detail)
 
     def null(self) -> dict[str, float]:
         """The parameters at which the effect vanishes exactly."""

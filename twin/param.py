@@ -78,6 +78,8 @@ class Param:
         What is most likely before any sweep: it pulls the fit, as one more reading would. Not given: nothing is.
     aside : bool
         Whether an answer gives it only where it is not at null: a detail that no search sets.
+    detail : bool
+        Whether a fit moves it from its null only where the readings call for it, as they must for a cause.
     scatter : float
         Half width of the range over which devices of one kind differ in it.
     owner : str, optional
@@ -99,6 +101,7 @@ class Param:
     prior_sd: float = 0.0
     prior_mean: float | None = None
     aside: bool = False
+    detail: bool = False
     scatter: float = 0.0
     owner: Owner | None = None
 

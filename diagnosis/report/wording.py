@@ -14,7 +14,7 @@ from twin.catalogue import CATALOGUE
 _MOST_DECIMALS = 7
 _FIFTY = 50
 """Readings of which an RMS is known to a tenth."""
-_ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT|mm|mm2|lsb|Hz|s)$")
+_ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT|mm|mm2|ms2|ms3|lsb|Hz|s)$")
 _NUMBERED = re.compile(r"^(?P<name>.*?)(?:_(?P<number>\d+))?$")
 
 

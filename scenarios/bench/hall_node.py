@@ -21,8 +21,9 @@ from twin.link.frames import COUNT_BITS, SPI_WORD_BITS, Bytes, angle_words, spi_
 
 def check_playable(chain: Chain) -> None:
     """Raise UserError for a twin whose readings depend on the length of the record."""
-    for key in chain.values:
-        if find(key, chain.effects).record_wide:
+    for key, values in chain.values.items():
+        effect = find(key, chain.effects)
+        if any(one.record_wide and one.acts({**one.null(), **values}) for one in effect.operations):
             raise UserError(
                 f"{key}: is defined over a whole record, which a node on the bus does not know; "
                 "leave it out of the twin (faults of the bus: --fault)"

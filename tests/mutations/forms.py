@@ -59,5 +59,26 @@ FORMS: tuple[Mutation, ...] = tuple(
             "",
             f"{_FORMS}::test_a_drive_has_one_order_and_its_multiples",
         ),
+        (
+            "forms.no_detail_is_freed",
+            "diagnosis/discovery/search/exchange.py",
+            "detailed(retuned(fit, held), held, plan.threshold)",
+            "retuned(fit, held)",
+            f"{_FORMS}::test_plays_on_each_axis_are_one_hysteresis",
+        ),
+        (
+            "forms.details_cost_nothing",
+            "diagnosis/discovery/search/details.py",
+            "return wide if _log_p(gain, fit) < level else plain",
+            "return wide",
+            "tests/diagnosis/discovery/search/test_details.py::test_a_detail_that_says_nothing_goes_back_to_its_null",
+        ),
+        (
+            "forms.nothing_is_done_behind",
+            "diagnosis/discovery/fitting/linearised_chain.py",
+            "changed = changed + self._changed(one, old, new, batch, None)",
+            "pass",
+            f"{_FORMS}::test_a_tracking_loop_is_one_latency",
+        ),
     )
 )

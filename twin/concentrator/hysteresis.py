@@ -1,14 +1,18 @@
-"""hysteresis: the concentrator's remanence makes the field angle lag the direction of turning."""
+"""hysteresis: the concentrator's remanence makes the field angle lag the direction of turning.
+
+What lags is the field's angle, each of the two axes by itself, or a share of either.
+"""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from twin.angles import Array, radians
 from twin.drawing import log_span
-from twin.effect import Effect, Param, Parameters
+from twin.effect import Behind, Effect, Param, Parameters
 from twin.motion import Motion
 
 
@@ -29,7 +33,42 @@ def lag(motion: Motion, lag_rad: Array, memory_rad: Array) -> Array:
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     memory = radians(np.maximum(values["memory_deg"], 1e-3))
-    return signal + lag(motion, np.atleast_1d(radians(values["lag_deg"])), np.atleast_1d(memory))
+    of_angle = radians(values["lag_deg"]) * (1.0 - np.asarray(values.get("on_axes", 0.0)))
+    return signal + lag(motion, np.atleast_1d(of_angle), np.atleast_1d(memory))
+
+
+def axis_lag(value: Array, lag: Array, memory: Array) -> Array:
+    """By how much one axis lags (..., n), in amplitudes: dL/d|c| = (-sign(dc) h - L)/memory.
+
+    ``value`` (n,) is the path c of the axis, of amplitude 1; ``lag`` h and ``memory`` (..., 1) are in amplitudes too.
+    Before the first row the field has come from the end of the axis.
+    """
+    step = np.diff(value)
+    moving = np.where(step != 0.0, np.arange(step.size), -1)
+    last = np.maximum.accumulate(moving)
+    # A row at rest goes on as the one before it, the first ones as the first that moves.
+    way = np.sign(step[np.where(last >= 0, last, np.argmax(moving >= 0))]) if step.size else np.zeros(0)
+    way = np.concatenate([way[:1], way]) if way.size else np.zeros(value.size)
+    cuts = [0, *(np.flatnonzero(np.diff(way)) + 1).tolist(), value.size]
+    out = np.empty((*np.broadcast_shapes(lag.shape, memory.shape)[:-1], value.size))
+    state, before = way[:1] * lag, -way[:1]
+    for first, end in itertools.pairwise(cuts):
+        target = -way[first] * lag
+        path = np.abs(value[first:end] - before)
+        out[..., first:end] = target + (state - target) * np.exp(-path / memory)
+        state, before = out[..., end - 1 : end], value[end - 1 : end]
+    return out
+
+
+def on_axes(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    """Each axis with its own lag: over a turn the angle lags by 4 / pi of it in the mean, and ripples about that."""
+    height = np.reshape(np.pi / 4.0 * radians(values["lag_deg"]) * np.asarray(values["on_axes"]), (-1, 1))
+    memory = np.reshape(radians(np.maximum(values["memory_deg"], 1e-3)), (-1, 1))
+    if signal.ndim == 2:
+        lags = np.stack([axis_lag(axis, height, memory) for axis in signal], axis=-2)
+        return signal + (lags if len(lags) > 1 else lags[0])
+    each = zip(signal, *np.broadcast_arrays(height, memory, np.empty((len(signal), 1)))[:2], strict=True)
+    return signal + np.stack([[axis_lag(axis, high, path) for axis in one] for one, high, path in each])
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -64,13 +103,24 @@ HYSTERESIS = Effect(
             role="shape",
             typical=10.0,
         ),
+        "on_axes": Param(
+            unit="1",
+            null=0.0,
+            lower=0.0,
+            upper=1.0,
+            doc="share of the lag that each axis has by itself; 0: the field's angle lags",
+            role="shape",
+            aside=True,
+            detail=True,
+        ),
     },
     forward=forward,
+    behind=Behind(acts_on="channels", forward=on_axes, params=("on_axes",)),
     needs=frozenset({"both directions"}),
     shapes=shapes,
     zoomed=("memory_deg",),
     fitted_shapes=("memory_deg",),
     drawing=drawing,
-    source="first-order return-point memory in the angle (Dahl's friction model, 1968, in angular form)",
+    source="first-order return-point memory (Dahl's friction model, 1968) in the angle, or in each axis",
     signature="-h d, relaxing exponentially after a reversal",
 )

@@ -75,7 +75,7 @@ class Linear:
         points: list[tuple[float, Insertion]] = []
         for step in reversed(steps):
             place = (
-                bounds[step.key.removeprefix("after ")] + 0.5 if step.effect is None else self._order[step.effect.name]
+                bounds[step.key.removeprefix("after ")] + 0.5 if step.effect is None else self._place_of(step.effect)
             )
             if step.effect is None and step.key == "after channels":
                 points.append((place, Insertion(step.after, sense)))
@@ -118,14 +118,17 @@ class Linear:
                 signal = effect.forward(signal, self.motion, values, None)
         return np.asarray(self.chain.output_sense * signal[0])
 
+    def _place_of(self, effect: Effect) -> float:
+        return self._order[effect.name, effect.acts_on]
+
     def at(self, effect: Effect) -> Insertion:
         """The point behind the effect's own place: the signal it made, or would be given were it not at null."""
-        place = self._order[effect.name]
+        place = self._place_of(effect)
         return [point for where, point in self._points if where <= place][-1]
 
     def before(self, effect: Effect) -> Insertion:
         """The point ahead of the effect's own place."""
-        place = self._order[effect.name]
+        place = self._place_of(effect)
         return [point for where, point in self._points if where < place][-1]
 
     def change(
@@ -135,6 +138,17 @@ class Linear:
 
         ``before`` is the signal that the effect makes with the old ones, where it is known already.
         """
+        first, *behind = effect.operations
+        changed = self._changed(first, old, new, batch, before)
+        for one in behind:
+            if one.acts({**effect.null(), **old}) or one.acts({**effect.null(), **new}):
+                changed = changed + self._changed(one, old, new, batch, None)
+        return changed
+
+    def _changed(
+        self, effect: Effect, old: Parameters, new: Parameters, batch: int | None, before: Array | None
+    ) -> Array:
+        """The same of one operation."""
         before = self.made(effect, old) if before is None else before
         moved = effect.forward(self._given(effect), self.motion, new, None) - before
         if effect.acts_on == "reference":
@@ -250,7 +264,7 @@ def is_staircase(effect: Effect) -> bool:
 def _last_places(chain: Chain) -> dict[str, float]:
     """By signal the place in the chain's order of the last effect that acts on it or on a signal ahead of it."""
     last = dict.fromkeys((str(name) for name in SIGNALS), -1.0)
-    for place, effect in enumerate(chain.effects):
+    for place, effect in enumerate(chain.operations):
         if effect.acts_on in last:
             last[effect.acts_on] = float(place)
     return dict(zip(last, itertools.accumulate(last.values(), max), strict=True))

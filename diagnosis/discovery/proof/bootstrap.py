@@ -59,7 +59,7 @@ def _behind_stairs(fit: Fit, noise: Array) -> Array:
         places = chain.places()
         signal = turned(linear.at(find(NOISE.name, chain.effects)).signal, noise)
         for _, effect, values in chain.active("channels"):
-            if places[effect.name] > places[NOISE.name]:
+            if places[effect.name, "channels"] > places[NOISE.name, "channels"]:
                 signal = effect.forward(signal, linear.motion, values, None)
         signal = np.arctan2(signal[:, 1:], signal[:, :1])
     for _, effect, values in chain.active("angle"):

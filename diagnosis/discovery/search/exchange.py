@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.noise.plausible import either, plausible_members
+from diagnosis.discovery.search.details import detailed
 from diagnosis.discovery.search.forward_step import best_addition, candidates, retuned
 from diagnosis.discovery.search.likelihood_ratio import (
     Trial,
@@ -62,7 +63,7 @@ def improve(fit: Fit, keys: Sequence[str], plan: Search) -> tuple[Fit, list[str]
     held = list(keys)
     for _ in range(fit.settings.most_rounds):
         before = list(held)
-        fit = retuned(fit, held)
+        fit = detailed(retuned(fit, held), held, plan.threshold)
         for key in before:
             if key in held and len(held) > 1:
                 fit, held, plan = _held_or_exchanged(fit, key, held, plan)

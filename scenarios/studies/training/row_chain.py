@@ -7,14 +7,15 @@ from one stream for all, so that a sweep would depend on its neighbours.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from twin.angles import Array
 from twin.chain import Chain, Step
-from twin.effect import BoolArray, Effect, Parameters
+from twin.effect import BoolArray, Effect, Forward, Parameters
 from twin.motion import Motion
+from twin.operations import with_forwards
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -50,6 +51,10 @@ def row_chain(
 
 
 def _by_row(effect: Effect, streams: Sequence[np.random.Generator]) -> Effect:
+    return with_forwards(effect, lambda one: _forward_by_row(one, streams))
+
+
+def _forward_by_row(effect: Effect, streams: Sequence[np.random.Generator]) -> Forward:
     batch = len(streams)
     random = effect.footprint in ("spread", "sequence") or bool(effect.roles("random"))
 
@@ -65,7 +70,7 @@ def _by_row(effect: Effect, streams: Sequence[np.random.Generator]) -> Effect:
             out[row] = effect.forward(out[row : row + 1], motion, _of_rows(values, np.array([row])), streams[row])[0]
         return out
 
-    return replace(effect, forward=forward)
+    return forward
 
 
 def _acting(effect: Effect, values: Parameters, batch: int) -> BoolArray:

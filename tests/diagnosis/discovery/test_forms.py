@@ -88,6 +88,65 @@ def test_a_stack_of_plays_is_one_hysteresis() -> None:
     assert found["hysteresis"]["lag_deg"]["value"] == pytest.approx(steady, rel=0.1)
 
 
+def played(axis: Array, radius: float) -> Array:
+    """What a play of this radius makes of the path (n,) of one axis, which it has run along before."""
+    state, out = axis[0] - np.sign(axis[1] - axis[0]) * radius, np.empty_like(axis)
+    for row, at in enumerate(axis):
+        state = out[row] = np.clip(state, at - radius, at + radius)
+    return out
+
+
+def test_plays_on_each_axis_are_one_hysteresis() -> None:
+    """Over a turn the lag ripples four and eight times, and the axes fall short at their ends as if they saturated."""
+    up = turns(180, 2)
+    shaft = np.concatenate([up, up[::-1]])
+    axes = np.stack([np.cos(shaft + 0.7), np.sin(shaft + 0.7)])
+    radii = (0.03, 0.08, 0.15)
+    lagging = np.stack([(0.985 * axis + sum(0.005 * played(axis, radius) for radius in radii)) for axis in axes])
+    direction = np.repeat([1.0, -1.0], up.size)
+    columns = sweep(shaft, lagging * np.array([[1.0], [1.004]]) + np.array([[0.006], [-0.004]]), 5, direction=direction)
+    found = named(columns)
+    assert list(found) == ["hysteresis"]
+    # while an axis turns round its play rests: an arc of sqrt(4 r) or so, of the four quarters of a turn
+    assert found["hysteresis"]["lag_deg"]["value"] == pytest.approx(
+        np.degrees(0.005 * sum(radii) * 4.0 / np.pi), rel=0.1
+    )
+    assert found["hysteresis"]["on_axes"]["value"] == pytest.approx(1.0, abs=0.15)
+
+
+def test_a_tracking_loop_is_one_latency() -> None:
+    """A loop of type 2 adds no delay, but raises each order with the speed; behind it the word is 20 us old."""
+    natural_rad_s, damping, delay_s = 2000.0, 0.8, 20e-6
+    turn = turns(180, 1)
+    x, y = channels(turn)
+    error = np.fft.fft(np.angle((x + 1.09j * y) * np.exp(-1j * (turn + 0.7)))) / turn.size
+    order = np.fft.fftfreq(turn.size, 1.0 / turn.size)
+    shaft, measured, rpm = [], [], []
+    for speed, way in itertools.product((100.0, 600.0, 1800.0), (1.0, -1.0)):
+        rate, angle = way * speed * 2.0 * np.pi / 60.0, way * turns(180, 2)
+        s = 1j * order * rate
+        proportional = 2.0 * damping * natural_rad_s * s + natural_rad_s**2
+        old = angle - rate * delay_s
+        passed = np.exp(1j * np.outer(old, order)) @ (error * proportional / (s**2 + proportional))
+        shaft.append(angle)
+        measured.append(old + 0.7 + passed.real)
+        rpm.append(np.full(angle.size, speed * way))
+    noise = np.radians(NOISE_DEG) * np.random.default_rng(4).standard_normal(6 * 360)
+    found = named(
+        {
+            "reference_deg": np.degrees(np.concatenate(shaft)) % 360.0,
+            "measured_deg": np.degrees(np.concatenate(measured) + noise) % 360.0,
+            "speed_rpm": np.concatenate(rpm),
+        }
+    )
+    assert list(found) == ["latency"]
+    told = found["latency"]
+    # the fastest turns tell order 0 to 0.02 deg / sqrt(720) each way, at 10800 deg/s: four sigma
+    assert told["delay_us"]["value"] == pytest.approx(1e6 * delay_s, abs=4e6 * NOISE_DEG / np.sqrt(1440.0) / 10800.0)
+    # ln H = -s^2 / natural^2 + ...
+    assert told["variance_ms2"]["value"] == pytest.approx(-2e6 / natural_rad_s**2, rel=0.1)
+
+
 @pytest.mark.parametrize("seed", [1, 2])
 def test_what_physics_forbids_has_no_name(seed: int) -> None:
     """A curve that runs ahead of the field, and a sensor ahead of the direction: `saturation` and lags lie at zero."""

@@ -1,0 +1,51 @@
+"""Details: freed from their nulls where the readings call for them, put back where they do not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diagnosis.discovery.fitting.joint_fit import Fit, Free
+from diagnosis.discovery.search.details import detailed
+from diagnosis.discovery.search.likelihood_ratio import refit
+from diagnosis.discovery.stages.stepwise import stepwise
+from tests.diagnosis.discovery.searches import with_cause
+from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
+from twin.catalogue import find
+
+BACK = Made(points=180, bits=30, back=True)
+SHARE = Free("hysteresis", "on_axes")
+LEVEL = -10.0
+
+
+def held(share: float) -> Fit:
+    """A fit that holds a hysteresis of 0.1 deg, of which this share is the axes' own."""
+    state = before(stepwise, BACK)
+    chain = state.fit.chain.with_effect("hysteresis", lag_deg=0.1, memory_deg=8.0, on_axes=share)
+    shape = chain.readings(state.fit.observations.motion) - state.fit.linear.angle
+    state = with_residual(state, shape + noise(len(state.sweep)))
+    return with_cause(state, "hysteresis", lag_deg=0.1, memory_deg=8.0).fit
+
+
+def test_a_detail_that_pays_is_free() -> None:
+    found = detailed(held(1.0), ["hysteresis"], LEVEL)
+    assert SHARE in found.free
+    assert found.chain.values["hysteresis"]["on_axes"] > 0.8
+
+
+@pytest.mark.parametrize("freed", [False, True])
+def test_a_detail_that_says_nothing_goes_back_to_its_null(freed: bool) -> None:
+    fit = held(0.0)
+    if freed:
+        chain = fit.chain.with_effect("hysteresis", on_axes=0.3)
+        fit = refit(chain, (*fit.free, SHARE), fit)
+    found = detailed(fit, ["hysteresis"], LEVEL)
+    assert SHARE not in found.free
+    assert found.chain.values["hysteresis"]["on_axes"] == 0.0
+
+
+def test_a_cause_without_details_is_left_alone() -> None:
+    fit = with_cause(before(stepwise, BACK), "saturation", k_percent=0.2).fit
+    assert find("saturation").details == ()
+    assert detailed(fit, ["saturation"], LEVEL) is fit
+    assert np.all(np.isfinite(fit.residual))

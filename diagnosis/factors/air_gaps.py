@@ -7,16 +7,25 @@ is named; where none does, nothing is.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from diagnosis.error_model.model import QUAD
-from diagnosis.factors.displacement import MEASURED, Displacement, hull, magnet_displacement
+from diagnosis.factors.displacement import MEASURED, Displacement, hull, tilt_on_axis
 from diagnosis.factors.gap_fit import GapFit, Problem
-from diagnosis.factors.gap_model import CAUSES, GapSweep, causes_of, expected
+from diagnosis.factors.gap_fits import GapFits
+from diagnosis.factors.gap_model import GapSweep
+from diagnosis.factors.gap_sets import (
+    BESIDE_SENSOR,
+    OF_ORDER_2,
+    ORDER_2,
+    CauseSet,
+    go_together,
+    joined,
+    most_of_an_order,
+)
 from diagnosis.factors.mounting import Mounting
 from twin.angles import Array
 
@@ -24,24 +33,18 @@ SURE = 6.3e-5
 """Probability by chance below which a simpler set of causes is rejected: four standard deviations."""
 MISFIT = 1e-3
 """Probability of a chi2 as large below which no set of causes is said to hold the readings."""
-SEEN_SIGMA = 5.0
-"""Standard errors of a sensor's displacement from which a magnet's can be looked for: it shows in their product."""
 MOST_SWEEPS = 64
 """More are not fitted together: the work goes with the square of their number."""
 HELD_SHARE = 0.1
 """Of the field's change over the gaps, in logarithms: channels that change by less do not follow the field."""
 SMALLEST_CHANGE = 0.1
 """Relative change of the field from which sweeps count as different air gaps."""
-_GAPS_TRIED = 60
+_GAPS_TRIED = 15
 _PARTED_SIGMA = 6.0
-"""By how many standard errors two causes are to differ at a further gap: four are asked for, and either may be off."""
-BOTH = ("electronics", "sensor")
-TILTED = ("electronics", "sensor", "tilt")
-ORDER_1: tuple[tuple[str, ...], ...] = ((), ("voltage",), ("reference",), ("voltage", "reference"))
-ORDER_2: tuple[tuple[str, ...], ...] = ((), ("electronics",), ("sensor",), BOTH, ("sensor", "tilt"), TILTED)
-OF_ORDER_2 = frozenset(TILTED)
-BESIDE_SENSOR = frozenset({"magnet", "tilt"})
-WITH_MAGNET = ("voltage", "magnet")
+"""Standard errors by which a further gap is to tell two causes apart: four are asked for, and its own noise may take
+away two."""
+
+Pair = tuple[CauseSet, CauseSet]
 
 
 @dataclass(frozen=True)
@@ -63,20 +66,29 @@ class AirGaps:
 
     mounting: Mounting
     names: tuple[str, ...]
-    order_1: tuple[tuple[str, ...], ...]
-    """The simplest sets of causes that hold the offsets, equally good ones side by side."""
-    order_2: tuple[tuple[str, ...], ...]
-    """The same for gain ratio and phase."""
+    pairs: tuple[Pair, ...]
+    """The simplest sets of causes of the offsets, and of gain ratio and phase: equally good ones, the best first."""
     fullest: GapFit
     """With every cause that could be told from the others."""
-    full_2: tuple[str, ...]
+    full_2: CauseSet
     """The causes of order 2 that could be told from one another."""
-    fits: Mapping[tuple[str, ...], GapFit] = field(repr=False)
-    quadratic: Law
-    parting_mm: float | None
-    """The nearest air gap that would part electronics from a sensor off the axis; None where there is none in reach."""
+    fits: GapFits = field(repr=False)
+    parting_mm: float | None = None
+    """The nearest air gap that would part the two best of several sets of ``order_2``; None: there is none in reach."""
+    order_1_parting_mm: float | None = None
+    """The same for ``order_1``."""
     amplitudes_held: bool = False
     """Whether the channels are of one size at all stated gaps, so that they gauge no gap."""
+
+    @property
+    def order_1(self) -> tuple[CauseSet, ...]:
+        """The simplest sets of causes that hold the offsets, equally good ones side by side."""
+        return tuple(dict.fromkeys(one for one, _ in self.pairs))
+
+    @property
+    def order_2(self) -> tuple[CauseSet, ...]:
+        """The same for gain ratio and phase."""
+        return tuple(dict.fromkeys(two for _, two in self.pairs))
 
     @property
     def misfit(self) -> bool:
@@ -91,12 +103,17 @@ class AirGaps:
     @property
     def best(self) -> GapFit:
         """The fit of the simplest sets; of several equally good ones, that with the smallest chi2."""
-        return min((self.fit_of(one, two) for one in self.order_1 for two in self.order_2), key=lambda fit: fit.chi2)
+        return self.equally_good[0]
+
+    @property
+    def equally_good(self) -> tuple[GapFit, ...]:
+        """The fits of the simplest sets of both orders, the best first."""
+        return tuple(self.fits[joined(*pair)] for pair in self.pairs)
 
     @property
     def simpler(self) -> GapFit:
         """The best fit whose causes some reading is left to check."""
-        few = (fit for fit in self.fits.values() if _most_of_an_order(fit.causes) < len(self.names))
+        few = (fit for fit in self.fits.values() if most_of_an_order(fit.causes) < len(self.names))
         return min(few, key=lambda fit: fit.chi2)
 
     @property
@@ -106,31 +123,50 @@ class AirGaps:
             return self.best
         return self.fullest if self.fullest.p < MISFIT else self.simpler
 
-    def fit_of(self, order_1: tuple[str, ...], order_2: tuple[str, ...]) -> GapFit:
-        """The fit of a set of causes."""
-        return self.fits[joined(order_1, order_2)]
+    def best_with(self, order_2: CauseSet) -> GapFit:
+        """The best fit of those that have this set of order 2."""
+        return next(self.fits[joined(*pair)] for pair in self.pairs if pair[1] == order_2)
 
     def displaced(self, cause: str) -> Displacement | None:
-        """The displacement [mm] of ``sensor`` or ``magnet``, or the ``tilt`` [deg]; None where it is not named.
+        """The displacement [mm] of ``sensor`` or ``magnet``, or their tilts [deg]; None where it is not named.
+
+        ``tilt`` is the sensor's, ``magnet_tilt`` the magnet's.
 
         Of several equally good sets the interval holds what each of them says.
         """
         if cause not in self.named:
             return None
-        fits = sorted((self.fit_of(one, two) for one in self.order_1 for two in self.order_2), key=lambda fit: fit.chi2)
-        return hull([found for fit in fits if (found := MEASURED[cause](fit)) is not None])
+        return hull([found for fit in self.equally_good if (found := MEASURED[cause](fit)) is not None])
 
     @property
-    def magnet_bound_mm(self) -> float | None:
-        """Upper end of the magnet's displacement [mm] where none is named; None where none can be told."""
-        fullest = self.fits.get(joined(WITH_MAGNET, self.full_2))
-        if fullest is None or "sensor" not in self.named or "magnet" in self.named:
+    def tilt_alone(self) -> Displacement | None:
+        """The tilt [deg] of a sensor on the axis that would do what the electronics do.
+
+        None where these are not named, or where a tilt beside the sensor's displacement was held against the gaps too.
+        """
+        if "electronics" not in self.named or ("sensor" in self.named and "tilt" in self.full_2):
             return None
-        found = magnet_displacement(fullest)
+        return hull([found for fit in self.equally_good if (found := tilt_on_axis(fit)) is not None])
+
+    def magnet_bound(self, cause: str) -> float | None:
+        """Upper end of the magnet's displacement ``magnet`` [mm] or tilt ``magnet_tilt`` [deg], were it that alone.
+
+        None where either is named, or where the sensor is not seen off the axis: then none can be told.
+        """
+        if "sensor" not in self.named or any(BESIDE_SENSOR & set(one) for one in self.order_1):
+            return None
+        found = MEASURED[cause](self.fits[joined(("voltage", cause), self.full_2)])
         return None if found is None else found.high
 
+    @cached_property
+    def quadratic(self) -> Law:
+        """How the quadratic term goes, without what the field's own order 3 adds to it."""
+        problem = self.fits.problem
+        errors = np.array([sweep.quad_error for sweep in problem.sweeps])
+        return quadratic_law(problem.quadratic(self.told), errors, self.mounting.field_mT(self.told.gap_mm))
+
     @property
-    def named(self) -> tuple[str, ...]:
+    def named(self) -> CauseSet:
         """The causes that every one of the simplest sets has; none where nothing fits."""
         if self.misfit:
             return ()
@@ -144,61 +180,34 @@ def air_gaps(sweeps: Sequence[GapSweep], names: Sequence[str], mounting: Mountin
     if start is None:
         return None
     sweeps, held = without_held_amplitudes(sweeps, mounting)
-    fits = _Fits(Problem(tuple(sweeps), mounting, start), freedom)
+    fits = GapFits(Problem(tuple(sweeps), mounting, start), freedom)
     full_2, sets_1 = fits.full_2(), fits.order_1()
-    order_1 = _simplest(fits, [(one, full_2) for one in sets_1])
-    first = order_1[0]
-    sets_2 = [two for two in ORDER_2 if set(two) <= set(full_2) and ("magnet" not in first or "sensor" in two)]
-    order_2 = _simplest(fits, [(first, two) for two in sets_2])
-    for one in order_1:
-        for two in order_2:
-            fits[joined(one, two)]
-    full = [fits[joined(one, full_2)] for one in sets_1]
+    first = [one for one, _ in _simplest(fits, [(one, full_2) for one in sets_1])]
+    sets_2 = [two for two in ORDER_2 if set(two) <= set(full_2)]
+    pairs = _simplest(fits, [(one, two) for one in first for two in sets_2 if go_together(one, two)])
+    full = [fits[joined(one, full_2)] for one in sets_1 if joined(one, full_2) in fits]
     most = max(len(fit.causes) for fit in full)
-    either = {("electronics",), ("sensor",)} <= set(order_2)
-    return AirGaps(
+    found = AirGaps(
         mounting=mounting,
         names=tuple(names),
-        order_1=order_1,
-        order_2=order_2,
+        pairs=pairs,
         full_2=full_2,
         fullest=min((fit for fit in full if len(fit.causes) == most), key=lambda fit: fit.chi2),
         fits=fits,
-        quadratic=quadratic_law([sweep.point[QUAD] for sweep in sweeps], _errors(sweeps), mounting.field_mT(start)),
-        parting_mm=_parting_mm(sweeps[0], fits, first) if either else None,
         amplitudes_held=held,
     )
-
-
-class _Fits(dict[tuple[str, ...], GapFit]):
-    """Fits by their causes, made when they are first asked for, from the best simpler one that is there."""
-
-    def __init__(self, problem: Problem, freedom: int) -> None:
-        super().__init__()
-        self.problem, self.freedom = problem, freedom
-
-    def __missing__(self, causes: tuple[str, ...]) -> GapFit:
-        # What stands in a product beside the sensor's displacement has no slope where that is still none, and one of
-        # two such causes may lead the other astray.
-        simpler = [self[tuple(other for other in causes if other != name)] for name in causes if name in BESIDE_SENSOR]
-        simpler += [fit for one, fit in self.items() if set(one) < set(causes)]
-        start = min(simpler, key=lambda fit: fit.chi2) if simpler else None
-        self[causes] = found = self.problem.fitted(causes, self.freedom, start=start)
+    if found.misfit:
         return found
+    return replace(found, parting_mm=_parts(found, 1), order_1_parting_mm=_parts(found, 0))
 
-    @cached_property
-    def sees_sensor(self) -> bool:
-        """Whether a sensor off the axis stands out: what shows in a product with it can then be looked for."""
-        value, error = self[joined(("voltage",), BOTH)].pair("sensor")
-        return abs(value) > SEEN_SIGMA * error
 
-    def full_2(self) -> tuple[str, ...]:
-        """The causes of order 2 that can be looked for together: each takes a gap."""
-        return TILTED if self.sees_sensor and len(self.problem.sweeps) >= len(TILTED) else BOTH
-
-    def order_1(self) -> tuple[tuple[str, ...], ...]:
-        """The sets of causes of order 1 that can be looked for."""
-        return (*ORDER_1, WITH_MAGNET) if self.sees_sensor else ORDER_1
+def _parts(found: AirGaps, order: int) -> float | None:
+    """The further gap that would tell the best pair from the best that differs in its first or second set."""
+    best = found.pairs[0]
+    other = next((pair for pair in found.pairs if pair[order] != best[order]), None)
+    if other is None:
+        return None
+    return _parting_mm(found.fits, found.fits[joined(*best)], found.fits[joined(*other)])
 
 
 def start_gaps(sweeps: Sequence[GapSweep], mounting: Mounting) -> Array | None:
@@ -231,7 +240,7 @@ def without_held_amplitudes(sweeps: Sequence[GapSweep], mounting: Mounting) -> t
     return [replace(sweep, log_amplitude=None) for sweep in sweeps], True
 
 
-def quadratic_law(values: Sequence[float], errors: Array, field_mT: Array) -> Law:
+def quadratic_law(values: Sequence[float] | Array, errors: Array, field_mT: Array) -> Law:
     """How the quadratic term goes: q = K1 mag / K2 grows with the field where it is the sensor's."""
     value, weight = np.asarray(values), 1.0 / errors**2
     shapes = {"none": 0.0 * field_mT, "stays": np.ones_like(field_mT), "grows with the field": field_mT}
@@ -252,10 +261,9 @@ def laws(found: AirGaps) -> tuple[Law, ...]:
     """The law of each part of the factors, in words of a line."""
     best = found.best
 
-    def law(part: str, sets: Iterable[tuple[str, ...]], stays: tuple[str, ...]) -> Law:
+    def law(part: str, sets: Iterable[CauseSet], stays: CauseSet) -> Law:
         words = " or ".join(" and ".join(_LAWS[name] for name in one) or "none" for one in sets)
-        worse = found.fits.get(stays)
-        change = 0.0 if worse is None else float(np.sqrt(max(worse.chi2 - best.chi2, 0.0)))
+        change = float(np.sqrt(max(found.fits[stays].chi2 - best.chi2, 0.0)))
         told, fit = "none fits" if found.misfit else words, found.told
         return Law(part, told, change, fit.chi2, fit.degrees_of_freedom, fit.p)
 
@@ -274,55 +282,47 @@ _LAWS = {
     "sensor": "follows the field off the axis",
     "magnet": "follows the field off the axis",
     "tilt": "follows the tilted field off the axis",
+    "magnet_tilt": "follows the tilted magnet's field off the axis",
+    "tilt_and_magnet": "follows the upright field of a magnet off the shaft",
+    "both_tilts": "follows the upright field of a tilted magnet",
 }
 
 
-def joined(one: Iterable[str], two: Iterable[str]) -> tuple[str, ...]:
-    """The causes of both sets, in the order of CAUSES."""
-    held = {*one, *two}
-    return tuple(name for name in CAUSES if name in held)
+def _simplest(fits: GapFits, candidates: Sequence[Pair]) -> tuple[Pair, ...]:
+    """Of pairs of sets of the orders 1 and 2 the smallest that are not rejected against larger ones, the best first.
 
-
-def _most_of_an_order(causes: Sequence[str]) -> int:
-    second = sum(name in OF_ORDER_2 for name in causes)
-    return max(second, len(causes) - second)
-
-
-def _simplest(
-    fits: _Fits, candidates: Sequence[tuple[tuple[str, ...], tuple[str, ...]]]
-) -> tuple[tuple[str, ...], ...]:
-    """Of sets of causes of the orders 1 and 2 the smallest that are not rejected against the largest, the best first.
-
-    The sets differ in one order; what they have in that order is returned.
+    Once the misses of a pair are so few that two numbers more could not take away enough of them, no larger one is
+    fitted.
     """
-    sets = {each: joined(*each) for each in candidates}
-    most = max(map(len, sets.values()))
-    largest = min((fits[one] for one in sets.values() if len(one) == most), key=lambda fit: fit.chi2)
-    held = {
-        each: one
-        for each, one in sets.items()
-        if fits[one].chi2 - largest.chi2 < _limit(2 * max(most - len(one), 1), largest.readings)
-    }
-    fewest = min(map(len, held.values()))
-    kept = sorted((each for each, one in held.items() if len(one) == fewest), key=lambda each: fits[held[each]].chi2)
-    varied = 0 if len({two for _, two in candidates}) == 1 else 1
-    return tuple(each[varied] for each in kept)
+    fitted: dict[Pair, GapFit] = {}
+    for size in sorted({len(one) + len(two) for one, two in candidates}):
+        same = {pair: fits[joined(*pair)] for pair in candidates if len(joined(*pair)) == size}
+        fitted |= same
+        largest = min(same.values(), key=lambda fit: fit.chi2)
+        if largest.chi2 < _limit(2, largest.readings) and largest.p >= MISFIT:
+            break
+    held = [
+        pair
+        for pair, fit in fitted.items()
+        if fit.chi2 - largest.chi2 < _limit(2 * max(size - len(fit.causes), 1), largest.readings)
+    ]
+    fewest = min(len(joined(*pair)) for pair in held)
+    return tuple(sorted((pair for pair in held if len(joined(*pair)) == fewest), key=lambda pair: fitted[pair].chi2))
 
 
-def _parting_mm(sweep: GapSweep, fits: _Fits, order_1: tuple[str, ...]) -> float | None:
-    """The air gap nearest to those measured at which the electronics and a sensor off the axis differ for certain."""
-    rivals = [fits[joined(order_1, one)] for one in (("electronics",), ("sensor",))]
-    known, magnet = rivals[0].gap_mm, fits.problem.mounting.magnet
-    gaps = np.geomspace(0.3 * known.min(), 3.0 * known.max(), _GAPS_TRIED)
-    told = []
-    for fit in rivals:
-        causes = causes_of(fit.causes, np.tile(fit.numbers, (_GAPS_TRIED, 1)))
-        told.append(expected([sweep], magnet, causes, gaps[:, None])[0][:, 0])
-    whitened = (told[0] - told[1]) @ np.linalg.inv(np.linalg.cholesky(sweep.covariance)).T
-    enough = gaps[np.linalg.norm(whitened, axis=1) > _PARTED_SIGMA]
-    if not enough.size:
-        return None
-    return float(enough[np.argmin(np.min(np.abs(np.log(enough[:, None] / known)), axis=1))])
+def _parting_mm(fits: GapFits, first: GapFit, second: GapFit) -> float | None:
+    """The air gap nearest to those measured whose sweep would reject the second fit, were the first true.
+
+    None where there is no such gap in reach.
+    """
+    known = first.gap_mm
+    tried = np.geomspace(0.3 * known.min(), 3.0 * known.max(), _GAPS_TRIED)
+    for gap in tried[np.argsort(np.min(np.abs(np.log(tried[:, None] / known)), axis=1))]:
+        problem = fits.problem.with_sweep(float(gap), first)
+        again = problem.fitted(second.causes, fits.freedom, start=second.with_gap(float(gap)))
+        if again.chi2 - second.chi2 > _PARTED_SIGMA**2:
+            return float(gap)
+    return None
 
 
 def _limit(numbers: int, freedom: int) -> float:
@@ -336,7 +336,3 @@ def _chance(chi2: float, freedom: int) -> float:
     from scipy.special import chdtrc
 
     return float(chdtrc(freedom, chi2)) if freedom > 0 else 1.0
-
-
-def _errors(sweeps: Sequence[GapSweep]) -> Array:
-    return np.array([sweep.quad_error for sweep in sweeps])

@@ -1,4 +1,4 @@
-"""Displacements of sensor and magnet and the sensor's tilt, as a joint fit of several air gaps finds them."""
+"""Displacements and tilts of sensor and magnet, as a joint fit of several air gaps finds them."""
 
 from __future__ import annotations
 
@@ -45,11 +45,10 @@ def sensor_displacement(fit: GapFit) -> Displacement | None:
         return None
     squared, error = fit.pair("sensor")
     low, high = modulus_interval(abs(squared), error)
-    direction = float(np.degrees(np.angle(squared)))
     half = _half_angle(squared, _covariance(fit, "sensor"))
     # The square turns twice as far.
     value, low, high = (float(np.sqrt(one)) for one in (abs(squared), low, high))
-    return Displacement(value, low, high, 0.5 * direction, 0.5 * half)
+    return Displacement(value, low, high, 0.5 * _towards(squared), 0.5 * half)
 
 
 def magnet_displacement(fit: GapFit) -> Displacement | None:
@@ -60,6 +59,58 @@ def magnet_displacement(fit: GapFit) -> Displacement | None:
 def sensor_tilt(fit: GapFit) -> Displacement | None:
     """The sensor's tilt [deg], towards where its normal leans; None where the fit holds none."""
     return _beside_sensor(fit, "tilt", float(np.degrees(1.0))) if "tilt" in fit.causes else None
+
+
+def magnet_tilt(fit: GapFit) -> Displacement | None:
+    """The magnet's tilt [deg], towards where its axis leans at a = 0; None where the fit holds none."""
+    return _beside_sensor(fit, "magnet_tilt", float(np.degrees(1.0))) if "magnet_tilt" in fit.causes else None
+
+
+def tilt_on_axis(fit: GapFit) -> Displacement | None:
+    """The tilt [deg] of a sensor on the axis with the share of order 2 of the electronics; None where there is none.
+
+    The field lies in the plane there. A tilt by t shortens it by cos t along the direction in which the normal leans,
+    which is a share of tan(t/2)^2 against that direction, at every gap and before every magnet.
+    """
+    if "electronics" not in fit.causes:
+        return None
+    pair, _ = fit.pair("electronics")
+    # To first order 1 - g and beta make the share ((1 - g) + i beta) / 2.
+    share = complex(-0.5 * pair.real, 0.5 * pair.imag)
+    slopes = np.diag([-0.5, 0.5])
+    covariance = slopes @ _covariance(fit, "electronics") @ slopes.T
+    error = float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
+    value, low, high = (
+        float(np.degrees(2.0 * np.arctan(np.sqrt(size)))) for size in (abs(share), *modulus_interval(abs(share), error))
+    )
+    return Displacement(value, low, high, 0.5 * _towards(-share), 0.5 * _half_angle(share, covariance))
+
+
+@dataclass(frozen=True)
+class Product:
+    """The sensor's tilt times the magnet's displacement or tilt along its magnetisation, with the 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+    unit: str
+
+
+def upright_product(fit: GapFit, cause: str) -> Product | None:
+    """The product that ``tilt_and_magnet`` or ``both_tilts`` stands for; None where the fit holds none."""
+    if cause not in fit.causes:
+        return None
+    value, error = fit.pair(cause)
+    scale, unit = {
+        "tilt_and_magnet": (float(np.degrees(1.0)), "mm deg"),
+        "both_tilts": (float(np.degrees(1.0)) ** 2, "deg^2"),
+    }[cause]
+    low, high = modulus_interval(abs(value), error)
+    return Product(scale * abs(value), scale * low, scale * high, unit)
+
+
+def _towards(value: complex) -> float:
+    return float(np.degrees(np.angle(value)))
 
 
 def _beside_sensor(fit: GapFit, cause: str, scale: float) -> Displacement:
@@ -75,7 +126,7 @@ def _beside_sensor(fit: GapFit, cause: str, scale: float) -> Displacement:
     along = np.array([value.real, value.imag]) / max(abs(value), 1e-300)
     low, high = modulus_interval(abs(value), float(np.sqrt(along @ covariance @ along)))
     half = min(_half_angle(value, covariance), 180.0)
-    return Displacement(abs(value), low, high, float(np.degrees(np.angle(value))), half)
+    return Displacement(abs(value), low, high, _towards(value), half)
 
 
 def _covariance(fit: GapFit, *causes: str) -> Array:
@@ -100,5 +151,6 @@ MEASURED: Mapping[str, Callable[[GapFit], Displacement | None]] = {
     "sensor": sensor_displacement,
     "magnet": magnet_displacement,
     "tilt": sensor_tilt,
+    "magnet_tilt": magnet_tilt,
 }
 """By the cause."""

@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from diagnosis.factors.gap_model import CAUSES, ROWS, GapSweep, causes_of, expected
+from diagnosis.error_model.model import QUAD
+from diagnosis.factors.gap_model import CAUSES, ROWS, GapSweep, causes_of, expected, imagined
 from diagnosis.factors.mounting import Mounting
 from twin.angles import Array
 
-_SIZE = {"voltage": 0.1, "reference": 1e-3, "electronics": 1e-3, "sensor": 0.1, "magnet": 0.1, "tilt": 0.01}
+_SIZE = {
+    "voltage": 0.1,
+    "reference": 1e-3,
+    "electronics": 1e-3,
+    "sensor": 0.1,
+    "magnet": 0.1,
+    "tilt": 0.01,
+    "magnet_tilt": 0.01,
+    "tilt_and_magnet": 0.01,
+    "both_tilts": 1e-3,
+}
 """Steps in which the causes are counted, in their own unit; differences are taken over a hundredth."""
+_LENGTHS = {"sensor": 2, "magnet": 2, "tilt": 1, "magnet_tilt": 1, "tilt_and_magnet": 1, "both_tilts": 0}
+"""How many lengths stand in a product: none of them is longer than the magnet's reach, no angle larger than 1 rad."""
 _STEP = 0.01
 LOG_AMPLITUDE_ERROR = 2e-3
 """Of the channels' amplitude beside the fit's own: two kelvin of a magnet of rare earth."""
@@ -45,6 +58,10 @@ class GapFit:
         if self.degrees_of_freedom < 1:
             return 1.0
         return float(fdtrc(self.degrees_of_freedom, self.readings, self.chi2 / self.degrees_of_freedom))
+
+    def with_gap(self, gap_mm: float) -> GapFit:
+        """The same numbers with a further gap behind the others, to start another fit from."""
+        return replace(self, numbers=np.insert(self.numbers, 2 * len(self.causes) + self.gap_mm.size, gap_mm))
 
     def pair(self, cause: str) -> tuple[complex, float]:
         """A cause's two numbers as a complex one, and its standard error along itself; zeros where it is absent."""
@@ -83,13 +100,10 @@ class Problem:
         names = tuple(name for name in CAUSES if name in causes)
         size = self._sizes(names)
         begin = self._begin(names, start) / size
-        reach = float(self.mounting.magnet.reach_mm) ** 2
         wide = np.full(size.size, np.inf)
         for k, name in enumerate(names):
-            if name in ("sensor", "magnet"):
-                wide[2 * k : 2 * k + 2] = reach / size[2 * k]
-            if name == "tilt":
-                wide[2 * k : 2 * k + 2] = float(self.mounting.magnet.reach_mm) / size[2 * k]
+            if name in _LENGTHS:
+                wide[2 * k : 2 * k + 2] = float(self.mounting.magnet.reach_mm) ** _LENGTHS[name] / size[2 * k]
         low, high = -wide, wide.copy()
         gaps = slice(2 * len(names), 2 * len(names) + len(self.sweeps))
         low[gaps] = 0.2 * self.start_mm / size[gaps]
@@ -131,9 +145,8 @@ class Problem:
         out[2 * len(names) :][: len(self.sweeps)] = self.start_mm
         if start is None:
             if self.has_amplitudes:
-                _, logs = expected(
-                    self.sweeps, self.mounting.magnet, causes_of((), np.zeros((1, 0))), self.start_mm[None]
-                )
+                none = causes_of((), np.zeros((1, 0)))
+                logs = expected(self.sweeps, self.mounting.magnet, none, self.start_mm[None]).log_amplitude
                 out[-1] = float(np.mean([s.log_amplitude or 0.0 for s in self.sweeps]) - logs.mean())
             return out
         for k, name in enumerate(names):
@@ -145,14 +158,33 @@ class Problem:
     def _differences(self, names: Sequence[str], numbers: Array) -> Array:
         """Fitted factors minus expected ones (sweeps, 4)."""
         gaps = numbers[2 * len(names) :][: len(self.sweeps)]
-        factors, _ = expected(self.sweeps, self.mounting.magnet, causes_of(names, numbers[None]), gaps[None])
-        return np.asarray(np.array([sweep.point[list(ROWS)] for sweep in self.sweeps]) - factors[0])
+        told = expected(self.sweeps, self.mounting.magnet, causes_of(names, numbers[None]), gaps[None])
+        return np.asarray(np.array([sweep.point[list(ROWS)] for sweep in self.sweeps]) - told.factors[0])
+
+    def quadratic(self, fit: GapFit) -> Array:
+        """The quadratic terms (sweeps,) without what the field's own order 3 adds to them by this fit."""
+        numbers = fit.numbers[None]
+        told = expected(self.sweeps, self.mounting.magnet, causes_of(fit.causes, numbers), fit.gap_mm[None])
+        return np.asarray(np.array([sweep.point[QUAD] for sweep in self.sweeps]) - told.quad[0])
+
+    def with_sweep(self, gap_mm: float, fit: GapFit) -> Problem:
+        """These sweeps and a further one at this air gap, as this fit expects it without noise."""
+        nearest = self.sweeps[int(np.argmin(np.abs(np.log(gap_mm / fit.gap_mm))))]
+        causes = causes_of(fit.causes, fit.numbers[None])
+        told = expected([nearest], self.mounting.magnet, causes, np.array([[gap_mm]]))
+        if self.has_amplitudes:
+            told = told._replace(log_amplitude=told.log_amplitude + fit.numbers[-1])
+        stated = self.mounting.air_gap_mm
+        place = (
+            replace(self.mounting, air_gap_mm=(*stated, gap_mm)) if len(stated) == len(self.sweeps) else self.mounting
+        )
+        return Problem((*self.sweeps, imagined(nearest, told)), place, np.append(self.start_mm, gap_mm))
 
     def _misses(self, names: Sequence[str], numbers: Array) -> Array:
         """The whitened misses (batch, rows) of factors, amplitudes and stated gaps."""
         count = len(self.sweeps)
         gaps = numbers[:, 2 * len(names) :][:, :count]
-        factors, logs = expected(self.sweeps, self.mounting.magnet, causes_of(names, numbers), gaps)
+        factors, logs, _ = expected(self.sweeps, self.mounting.magnet, causes_of(names, numbers), gaps)
         points = np.array([sweep.point[list(ROWS)] for sweep in self.sweeps])
         rows = [np.einsum("kij,bkj->bki", self.whitening, points - factors).reshape(len(numbers), -1)]
         if self.has_amplitudes:

@@ -14,14 +14,21 @@ over the gap of its own:
 
 - ``tilt``: a sensor off the axis and tilted by t senses a share of the upright field too, which makes an order 2 of
   s t a'/(2 a), with a the field on the axis over the height; and t^2/4 at every gap, which a tilt alone makes.
+- ``magnet_tilt``: the magnet leaning by w at a = 0 is off the shaft by w z at the height z of the sensor over its
+  centre, and its upright field leans too: beside a sensor off the axis an order 1 of -2 s w z S'/S and of
+  s Im(w) a'/a. Alone it makes no error of the angle, as the magnet's displacement does not.
+- ``tilt_and_magnet``, ``both_tilts``: the upright field of a magnet off the shaft is -m_x a' on the axis, that of a
+  leaning one -w_x (a + z a'), the same over the turn: a tilted sensor has offsets of t m_x a'/a and t w_x (1 + z a'/a)
+  by them, with m_x and w_x along the magnetisation. With a sensor off the axis they are part of the field.
 
-So s^2, s m and s t are the coordinates of displacements and tilt: of s, m and t all signs, or none, are known.
+So s^2, s m, s t and s w are the coordinates of displacements and tilts: of s, m, t and w all signs, or none, are known.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,11 +43,23 @@ from twin.magnet.placement import LARGEST_GAP_MM, SMALLEST_GAP_MM
 
 ROWS = (VX, VY, GAIN, BETA)
 """The factors that are held against the field; zero and quadratic term are left free at each gap."""
-CAUSES = ("voltage", "reference", "electronics", "sensor", "magnet", "tilt")
-"""Two numbers each: mT; rad; share and rad; mm^2; mm^2; mm rad."""
+CAUSES = (
+    "voltage",
+    "reference",
+    "electronics",
+    "sensor",
+    "magnet",
+    "tilt",
+    "magnet_tilt",
+    "tilt_and_magnet",
+    "both_tilts",
+)
+"""Two numbers each: mT; rad; share and rad; mm^2; mm^2; mm rad; mm rad; mm rad; rad^2."""
 _MOST_ANGLES = 240
 _LARGEST_TILT_RAD = 0.175
-"""Ten degrees: no sensor is mounted more askew, and a larger tilt would make up for a magnet that is another one."""
+"""Ten degrees: nothing is mounted more askew, and a larger tilt would make up for a magnet that is another one."""
+_SLOPE_STEP_MM = 1e-3
+"""Over which the slope of the field on the axis is taken: its relative error is of the square, some 1e-6."""
 _ROUNDING = 1e-8
 """Standard error that a factor has at least: a simulated sweep without noise leaves none."""
 _LARGEST_ERROR = 0.3
@@ -62,6 +81,8 @@ class GapSweep:
     """atan2(y, x) of the fitted factors there (n,)."""
     to_factors: Array
     """Least squares from a change of the angles to one of the factors ROWS (4, n)."""
+    to_quad: Array
+    """The same to the quadratic term (n,)."""
     quad_error: float
     """Standard error of the quadratic term."""
     log_amplitude: float | None = None
@@ -88,10 +109,22 @@ class GapSweep:
             shaft_rad=shaft,
             curve_rad=-residual,
             to_factors=back[list(ROWS)],
+            to_quad=back[QUAD],
             quad_error=float(fit.standard_errors[QUAD]),
             log_amplitude=None if amplitude is None else float(np.log(max(amplitude[0], 0.0) or np.nan)),
             log_amplitude_error=0.0 if amplitude is None else amplitude[1],
         )
+
+
+def imagined(sweep: GapSweep, told: Expected) -> GapSweep:
+    """A sweep like this one as the first of these expected ones would be, with the same errors."""
+    point = sweep.point.copy()
+    point[list(ROWS)] = told.factors[0, 0]
+    turned = np.sin(sweep.angle_rad + point[BETA])
+    x, y = (part + point[QUAD] * part**2 for part in (np.cos(sweep.angle_rad), turned))
+    curve = np.arctan2(point[GAIN] * (y + point[VY]), x + point[VX])
+    amplitude = None if sweep.log_amplitude is None else float(told.log_amplitude[0, 0])
+    return replace(sweep, point=point, curve_rad=curve, log_amplitude=amplitude)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +137,9 @@ class Causes:
     sensor: Array
     magnet: Array
     tilt: Array
+    magnet_tilt: Array
+    tilt_and_magnet: Array
+    both_tilts: Array
 
 
 def causes_of(names: Sequence[str], numbers: Array) -> Causes:
@@ -113,8 +149,18 @@ def causes_of(names: Sequence[str], numbers: Array) -> Causes:
     return Causes(**{name: given.get(name, none) for name in CAUSES})
 
 
-def expected(sweeps: Sequence[GapSweep], magnet: Magnet, causes: Causes, gap_mm: Array) -> tuple[Array, Array]:
-    """The factors ROWS (batch, sweeps, 4) and the logarithm of the channels' amplitude (batch, sweeps), up to a scale.
+class Expected(NamedTuple):
+    """What causes make of sweeps: the factors ROWS (batch, sweeps, 4) and two numbers (batch, sweeps)."""
+
+    factors: Array
+    log_amplitude: Array
+    """Of the channels, up to a scale."""
+    quad: Array
+    """What the field's own order 3 adds to a fitted quadratic term."""
+
+
+def expected(sweeps: Sequence[GapSweep], magnet: Magnet, causes: Causes, gap_mm: Array) -> Expected:
+    """What these causes make of the sweeps.
 
     ``gap_mm`` (batch, sweeps) are the air gaps. One pass of the field's series over all gaps and the whole batch.
     """
@@ -124,6 +170,7 @@ def expected(sweeps: Sequence[GapSweep], magnet: Magnet, causes: Causes, gap_mm:
     # A trial step of the fit may ask for a magnet far off the shaft; none is off by more than its radius.
     centre = _beside(causes.magnet, sensor, most=float(magnet.reach_mm))
     tilt = _beside(causes.tilt, sensor, most=_LARGEST_TILT_RAD) * np.degrees(1.0)
+    lean = _beside(causes.magnet_tilt, sensor, most=_LARGEST_TILT_RAD) * np.degrees(1.0)
     placed = {
         "sensor_x_mm": sensor.real,
         "sensor_y_mm": sensor.imag,
@@ -132,13 +179,20 @@ def expected(sweeps: Sequence[GapSweep], magnet: Magnet, causes: Causes, gap_mm:
         # Leaning towards x is a turn about y, leaning towards y one backwards about x.
         "sensor_tilt_x_deg": -tilt.imag,
         "sensor_tilt_y_deg": tilt.real,
+        "magnet_tilt_x_deg": -lean.imag,
+        "magnet_tilt_y_deg": lean.real,
     }
     flat = {name: np.repeat(value, count) for name, value in placed.items()}
     field = coefficients(magnet, gap_mm.ravel(), **flat).reshape(batch, count, 3, -1)
     nominal = coefficients(magnet, gap_mm.ravel()).reshape(batch, count, 3, -1)[:, :, 0, 1]
-    factors = np.stack([_factors(sweep, field[:, k], nominal[:, k], causes) for k, sweep in enumerate(sweeps)], axis=1)
+    upright = _upright(magnet, causes, gap_mm, nominal)
+    factors, quad = (np.empty((batch, count, size)) for size in (len(ROWS), 1))
+    for k, sweep in enumerate(sweeps):
+        change = _change(sweep, field[:, k], causes, nominal_mT=nominal[:, k], upright=upright[:, k])
+        factors[:, k] = sweep.point[list(ROWS)] + change @ sweep.to_factors.T
+        quad[:, k, 0] = change @ sweep.to_quad
     forwards = 0.5 * np.hypot(field[:, :, 0, 1] + field[:, :, 1, 2], field[:, :, 1, 1] - field[:, :, 0, 2])
-    return factors, np.log(forwards)
+    return Expected(factors, np.log(forwards), quad[..., 0])
 
 
 def _beside(pair: Array, sensor: NDArray[np.complex128], *, most: float) -> NDArray[np.complex128]:
@@ -148,8 +202,26 @@ def _beside(pair: Array, sensor: NDArray[np.complex128], *, most: float) -> NDAr
     return np.asarray(found * np.minimum(1.0, most / np.maximum(np.abs(found), 1e-300)))
 
 
-def _factors(sweep: GapSweep, field_mT: Array, nominal_mT: Array, causes: Causes) -> Array:
-    """The factors (batch, 4) of one sweep in a field (batch, 3, terms)."""
+def _upright(magnet: Magnet, causes: Causes, gap_mm: Array, nominal_mT: Array) -> Array:
+    """Offsets (batch, sweeps, 2) that a tilted sensor on the axis has by the upright field, in nominal amplitudes."""
+    out = np.zeros((*gap_mm.shape, 2))
+    if not (np.any(causes.tilt_and_magnet) or np.any(causes.both_tilts)):
+        return out
+    near, far = np.maximum(gap_mm - _SLOPE_STEP_MM, SMALLEST_GAP_MM), gap_mm + _SLOPE_STEP_MM
+    before, behind = (coefficients(magnet, gap.ravel())[:, 0, 1].reshape(gap.shape) for gap in (near, far))
+    slope = (behind - before) / ((far - near) * nominal_mT)
+    height = gap_mm + 0.5 * float(magnet.height_mm)
+    return np.asarray(
+        causes.tilt_and_magnet[:, None] * slope[..., None]
+        + causes.both_tilts[:, None] * (1.0 + height * slope)[..., None]
+    )
+
+
+def _change(sweep: GapSweep, field_mT: Array, causes: Causes, *, nominal_mT: Array, upright: Array) -> Array:
+    """What one sweep's angles (batch, n) are beyond its fitted curve in a field (batch, 3, terms).
+
+    ``upright`` (batch, 2) are the offsets by the upright field.
+    """
     orders = (field_mT.shape[-1] - 1) // 2
     table = basis(sweep.angle_rad, orders)
     scale = nominal_mT[:, None]
@@ -157,10 +229,9 @@ def _factors(sweep: GapSweep, field_mT: Array, nominal_mT: Array, causes: Causes
     gain, phase = 1.0 + causes.electronics[:, :1], causes.electronics[:, 1:]
     turned = across * np.cos(phase) + along * np.sin(phase)
     quad = sweep.point[QUAD]
-    offset = causes.voltage / scale
+    offset = causes.voltage / scale + upright
     x = along + quad * along**2 + offset[:, :1]
     y = gain * (turned + quad * turned**2 + offset[:, 1:])
     angle = np.arctan2(y, x)
     angle += causes.reference[:, :1] * np.cos(sweep.shaft_rad) + causes.reference[:, 1:] * np.sin(sweep.shaft_rad)
-    change = np.angle(np.exp(1j * (angle - sweep.curve_rad)))
-    return np.asarray(sweep.point[list(ROWS)] + change @ sweep.to_factors.T)
+    return np.asarray(np.angle(np.exp(1j * (angle - sweep.curve_rad))))

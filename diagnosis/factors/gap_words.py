@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from diagnosis.factors.air_gaps import MISFIT, AirGaps
-from diagnosis.factors.displacement import Displacement, sensor_displacement, sensor_tilt
+from diagnosis.factors.displacement import Displacement, sensor_displacement, sensor_tilt, upright_product
 from diagnosis.factors.gap_fit import GapFit
 from diagnosis.factors.gap_model import ROWS
+from diagnosis.factors.gap_sets import ON_AXIS
 from diagnosis.factors.mounting import Mounting
 from twin.baseline import FACTORS
 
 _MOST_PLACES = 3
 _CLEAR_SIGMA = 3.0
 _ALTERNATIVES = {
-    "voltage": "a constant voltage or a stray field",
+    "voltage": "a constant voltage or stray field",
     "reference": "an eccentric reference",
-    "magnet": "a magnet off the shaft beside the sensor",
+    "magnet": "a magnet off the shaft",
+    "magnet_tilt": "a tilted magnet",
+    "tilt_and_magnet": "a sensor tilted on the axis, before a magnet off the shaft",
+    "both_tilts": "a sensor tilted on the axis, before a tilted magnet",
 }
 
 
@@ -48,8 +52,8 @@ def _misfit(found: AirGaps) -> Iterator[str]:
     if found.fullest.p < MISFIT:
         fit = found.fullest
         yield (
-            "air gaps: neither the electronics nor a displacement of sensor and magnet explains how offset, gain ratio "
-            f"and phase go over the gaps: {_goodness(fit)}; no cause is named"
+            "air gaps: neither the electronics nor displacements and tilts of sensor and magnet explain how offset, "
+            f"gain ratio and phase go over the gaps: {_goodness(fit)}; no cause is named"
         )
     else:
         fit = found.simpler
@@ -101,56 +105,72 @@ def _order_2(found: AirGaps) -> Iterator[str]:
     if not causes:
         yield "air gaps: gain ratio and phase are compatible with none at every gap"
     if "electronics" in causes:
-        part = "part of gain ratio and phase" if "sensor" in causes else "gain ratio and phase"
-        value, error = found.best.pair("electronics")
-        yield (
-            f"air gaps: {part} (gain ratio {1.0 + value.real:.5f}, phase {np.degrees(value.imag):+.3f} deg, "
-            f"±{1.96 * error:.2g} and ±{np.degrees(1.96 * error):.2g} deg) keep their share: the electronics, or a "
-            "tilted sensor; mounting the sensor anew parts the two"
-        )
-    off = sensor_displacement(found.best)
+        yield _electronics(found)
+    off = found.displaced("sensor")
     if off is not None:
         yield (
             "air gaps: gain ratio and phase follow this magnet's field off its axis: the sensor is "
             f"{_length(off)} off the shaft's axis, towards {_direction(off)} or opposite"
         )
-    tilt = sensor_tilt(found.best)
+    tilt = found.displaced("tilt")
     if tilt is not None:
         yield (
-            f"air gaps: the sensor is tilted by {tilt.value:.2f} deg ({tilt.low:.2f} .. {tilt.high:.2f}) too, its "
-            f"normal leaning towards {_direction(tilt)}, or opposite where the sensor is"
+            f"air gaps: the sensor is tilted by {_angle(tilt)} too, its normal leaning towards {_direction(tilt)}, or "
+            "opposite where the sensor is"
         )
+
+
+def _electronics(found: AirGaps) -> str:
+    """What keeps its share at every gap: the electronics, or a tilt of the sensor by so much."""
+    part = "part of gain ratio and phase" if "sensor" in found.named else "gain ratio and phase"
+    value, error = found.best.pair("electronics")
+    tilt = found.tilt_alone
+    other = (
+        ""
+        if tilt is None
+        else f", or a sensor tilted by {_angle(tilt)} towards {_direction(tilt)} or opposite; mounting the sensor anew "
+        "parts the two"
+    )
+    return (
+        f"air gaps: {part} (gain ratio {1.0 + value.real:.5f}, phase {np.degrees(value.imag):+.3f} deg, "
+        f"±{1.96 * error:.2g} and ±{np.degrees(1.96 * error):.2g} deg) keep their share: the electronics{other}"
+    )
 
 
 def _tilted_or_not(found: AirGaps) -> str:
     """A sensor off the axis, and beside it the electronics or a tilt."""
     ways = []
     for two in found.order_2:
-        off = sensor_displacement(found.fit_of(found.order_1[0], two))
+        fit = found.best_with(two)
+        off, tilt = sensor_displacement(fit), sensor_tilt(fit)
         assert off is not None
-        ways.append(f"{_length(off)} with {'a tilt of the sensor' if 'tilt' in two else 'the electronics'}")
+        ways.append(f"{_length(off)} with {'the electronics' if tilt is None else f'a tilt of {_angle(tilt)}'}")
     return (
         "air gaps: the sensor is off the shaft's axis, and not that alone: "
-        f"{', or '.join(ways)}; these gaps cannot tell, one more would"
+        f"{', or '.join(ways)}; these gaps cannot tell, {_further(found.parting_mm)} would"
     )
 
 
 def _either(found: AirGaps) -> str:
     """Electronics or displacement, and what would part them."""
-    off = sensor_displacement(found.fit_of(found.order_1[0], ("sensor",)))
+    off = sensor_displacement(found.best_with(("sensor",)))
     assert off is not None
-    further = "a wider range of gaps" if found.parting_mm is None else f"a sweep at {found.parting_mm:.2g} mm"
     return (
         f"air gaps: gain ratio and phase are the electronics', or those of a sensor {_length(off)} off the axis: these "
-        f"gaps cannot tell, {further} would"
+        f"gaps cannot tell, {_further(found.parting_mm)} would"
     )
+
+
+def _further(gap_mm: float | None) -> str:
+    return "a wider range of gaps" if gap_mm is None else f"a sweep at {gap_mm:.2g} mm"
 
 
 def _order_1(found: AirGaps) -> Iterator[str]:
     """The offsets."""
     if len(found.order_1) > 1:
-        ways = ", or ".join(" with ".join(_ALTERNATIVES[name] for name in one) for one in found.order_1)
-        yield f"air gaps: the offsets are those of {ways}: these gaps cannot tell"
+        ways = "; or of ".join(_beside([_ALTERNATIVES[name] for name in one]) or "none" for one in found.order_1)
+        which = "" if len(found.order_1) == 2 else " tell the first two apart"
+        yield f"air gaps: the offsets are those of {ways}: these gaps cannot tell, {_parts_offsets(found)} would{which}"
         return
     (causes,) = found.order_1
     if not causes:
@@ -165,23 +185,61 @@ def _order_1(found: AirGaps) -> Iterator[str]:
     if "reference" in causes:
         size = float(np.degrees(abs(found.best.pair("reference")[0])))
         yield f"air gaps: {size:.3g} deg of order 1 keep their size at every gap: an eccentric reference"
+    for cause in causes:
+        if cause in ON_AXIS:
+            yield _upright(found, cause)
+
+
+def _beside(parts: Sequence[str]) -> str:
+    return f"{', '.join(parts[:-1])} and {parts[-1]}" if len(parts) > 1 else "".join(parts)
+
+
+def _parts_offsets(found: AirGaps) -> str:
+    """The measurement that parts the sets of causes of the offsets."""
+    if found.order_1_parting_mm is None and any("reference" in one for one in found.order_1[:2]):
+        return "setting the reference anew, turned on the shaft,"
+    return _further(found.order_1_parting_mm)
+
+
+def _upright(found: AirGaps, cause: str) -> str:
+    """A sensor tilted on the axis, which senses the upright field of a magnet off the shaft or tilted."""
+    product = upright_product(found.best, cause)
+    assert product is not None
+    displaced = product.unit == "mm deg"
+    of_magnet, way = ("off the shaft", "displacement") if displaced else ("tilted", "tilt")
+    return (
+        f"air gaps: the offset follows the upright field of a magnet that is {of_magnet} along its magnetisation, "
+        f"before a sensor tilted on the axis: the sensor's tilt times the magnet's {way} is {product.value:.3g} "
+        f"{product.unit} ({product.low:.3g} .. {product.high:.3g}); sweeps with the sensor shifted on purpose tell "
+        "each by itself"
+    )
 
 
 def _magnet(found: AirGaps) -> Iterator[str]:
-    """The magnet, which shows in the offsets beside the sensor's displacement alone."""
-    bound = found.magnet_bound_mm
-    centre = found.displaced("magnet")
+    """The magnet, which shows in the offsets beside the sensor's displacement or tilt alone."""
+    centre, lean = found.displaced("magnet"), found.displaced("magnet_tilt")
     if centre is not None:
         yield (
             f"air gaps: the magnet is {_length(centre)} off the shaft too, towards {_direction(centre)} where the "
             "field points along the sensor's x axis, or opposite where the sensor is"
         )
-    elif bound is not None:
-        yield f"air gaps: the magnet is off the shaft by less than {bound:.2g} mm (97.5 %)"
-    elif len(found.order_1) == 1:
+    if lean is not None:
         yield (
-            "air gaps: a magnet off the shaft makes no error while the sensor is on the axis: sweeps with the sensor "
-            "shifted on purpose, by half a millimetre, would show it"
+            f"air gaps: the magnet is tilted by {_angle(lean)}, its axis leaning towards {_direction(lean)} where the "
+            "field points along the sensor's x axis, or opposite where the sensor is"
+        )
+    if centre is not None or lean is not None or len(found.order_1) > 1:
+        return
+    off_mm, tilted_deg = found.magnet_bound("magnet"), found.magnet_bound("magnet_tilt")
+    if off_mm is not None and tilted_deg is not None:
+        yield (
+            f"air gaps: the magnet, were it upright, is off the shaft by less than {off_mm:.2g} mm, and were it "
+            f"centred, tilted by less than {tilted_deg:.2g} deg (97.5 % each); beside each other the two may be larger"
+        )
+    elif not set(ON_AXIS) & set(found.named):
+        yield (
+            "air gaps: a magnet off the shaft or tilted makes no error while the sensor is upright on the axis: sweeps "
+            "with the sensor shifted on purpose, by half a millimetre, would show it"
         )
 
 
@@ -199,6 +257,10 @@ def _quadratic(found: AirGaps) -> str:
 
 def _length(found: Displacement) -> str:
     return f"{found.value:.3f} mm ({found.low:.3f} .. {found.high:.3f})"
+
+
+def _angle(found: Displacement) -> str:
+    return f"{found.value:.2f} deg ({found.low:.2f} .. {found.high:.2f})"
 
 
 def _direction(found: Displacement) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from diagnosis.factors.air_gaps import AirGaps
-from diagnosis.factors.displacement import Displacement
+from diagnosis.factors.displacement import Displacement, upright_product
 from diagnosis.factors.gap_fit import GapFit
 from diagnosis.factors.gap_model import ROWS
 from diagnosis.factors.gap_words import farthest, sentences
@@ -26,8 +26,14 @@ def gap_answer(found: AirGaps) -> dict[str, Any]:
         "sensor_off_axis": _displacement(found.displaced("sensor")),
         "magnet_off_shaft": _displacement(found.displaced("magnet")),
         "sensor_tilt": _displacement(found.displaced("tilt"), "deg"),
-        "magnet_bound_mm": found.magnet_bound_mm,
+        "magnet_tilt": _displacement(found.displaced("magnet_tilt"), "deg"),
+        "sensor_tilt_on_axis": _displacement(found.tilt_alone, "deg"),
+        "tilt_times_displacement": _product(found, "tilt_and_magnet", "mm_deg"),
+        "tilt_times_tilt": _product(found, "both_tilts", "deg2"),
+        "magnet_bound_mm": found.magnet_bound("magnet"),
+        "magnet_tilt_bound_deg": found.magnet_bound("magnet_tilt"),
         "parting_mm": found.parting_mm,
+        "order_1_parting_mm": found.order_1_parting_mm,
         **_goodness(best),
         "sets": [{"set": list(causes), **_goodness(fit)} for causes, fit in sorted(found.fits.items())],
         "farthest": [_place(found, best, *place) for place in farthest(best)],
@@ -48,6 +54,14 @@ def _displacement(found: Displacement | None, unit: str = "mm") -> dict[str, flo
         "direction_deg": found.direction_deg,
         "direction_half_deg": found.direction_half_deg,
     }
+
+
+def _product(found: AirGaps, cause: str, unit: str) -> dict[str, float] | None:
+    """The sensor's tilt times what is wrong with the magnet, where that is named."""
+    product = upright_product(found.best, cause) if cause in found.named else None
+    if product is None:
+        return None
+    return {f"{name}_{unit}": getattr(product, name) for name in ("value", "low", "high")}
 
 
 def _place(found: AirGaps, fit: GapFit, sweep: int, row: int) -> dict[str, Any]:

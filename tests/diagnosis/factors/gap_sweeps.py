@@ -23,6 +23,8 @@ class Truth:
     stray: complex = 0j
     tilt: complex = 0j
     """Of the sensor in deg: towards where its normal leans."""
+    magnet_tilt: complex = 0j
+    """Of the magnet about its centre in deg: towards where its axis leans at a = 0."""
     eccentric_rad: float = 0.0
     quad_per_mT: float = 0.0
     diameter_mm: float = 6.0
@@ -50,10 +52,7 @@ class Truth:
     @property
     def axes(self) -> Array:
         """The sensor's axes as rows, turned so that its normal leans by the tilt."""
-        from scipy.spatial.transform import Rotation
-
-        # Leaning towards x is a turn about y; towards y, backwards about x.
-        return Rotation.from_rotvec([-self.tilt.imag, self.tilt.real, 0.0], degrees=True).as_matrix().T
+        return _leaning(self.tilt).T
 
     def field_mT(self, angle_rad: Array, gap_mm: float) -> Array:
         """The field (3, n) at the sensor while the magnet turns by the angle, its centre going round with it."""
@@ -62,9 +61,18 @@ class Truth:
         body = magpylib.magnet.Cylinder(polarization=(-1.21, 0.0, 0.0), dimension=(self.diameter_mm, self.height_mm))
         seen = self.sensor * np.exp(-1j * angle_rad) - self.magnet
         height = np.full(angle_rad.size, gap_mm + 0.5 * self.height_mm)
-        own = 1e3 * body.getB(np.stack([seen.real, seen.imag, height], axis=-1)).reshape(-1, 3)
+        axes = _leaning(self.magnet_tilt)
+        own = 1e3 * body.getB(np.stack([seen.real, seen.imag, height], axis=-1) @ axes).reshape(-1, 3) @ axes.T
         plane = (own[:, 0] + 1j * own[:, 1]) * np.exp(1j * angle_rad)
         return np.stack([plane.real, plane.imag, own[:, 2]])
+
+
+def _leaning(tilt_deg: complex) -> Array:
+    """Columns: axes that were turned until their third leans by this tilt."""
+    from scipy.spatial.transform import Rotation
+
+    # Leaning towards x is a turn about y; towards y, backwards about x.
+    return Rotation.from_rotvec([-tilt_deg.imag, tilt_deg.real, 0.0], degrees=True).as_matrix()
 
 
 CASES: dict[str, tuple[Truth, frozenset[str]]] = {
@@ -85,6 +93,25 @@ CASES: dict[str, tuple[Truth, frozenset[str]]] = {
         frozenset({"voltage", "electronics", "sensor", "magnet"}),
     ),
     "sensor off and tilted": (Truth(sensor=0.4 + 0.2j, tilt=2.0 + 1.0j), frozenset({"sensor", "tilt"})),
+    "sensor and magnet": (Truth(sensor=0.6 + 0.3j, magnet=0.1 - 0.25j), frozenset({"sensor", "magnet"})),
+    "sensor and tilted magnet": (
+        Truth(sensor=0.6 + 0.3j, magnet_tilt=2.0 - 1.5j),
+        frozenset({"sensor", "magnet_tilt"}),
+    ),
+    "sensor, tilted magnet and voltage": (
+        Truth(sensor=0.6 + 0.3j, magnet_tilt=-1.0 + 3.0j, voltage=0.3 - 0.2j),
+        frozenset({"voltage", "sensor", "magnet_tilt"}),
+    ),
+    "sensor tilted on the axis": (Truth(tilt=4.0 + 2.0j), frozenset({"electronics"})),
+    "tilted on the axis, magnet off": (
+        Truth(tilt=4.0 + 2.0j, magnet=0.3 - 0.2j),
+        frozenset({"electronics", "tilt_and_magnet"}),
+    ),
+    "both tilted on the axis": (
+        Truth(tilt=4.0 + 2.0j, magnet_tilt=3.0 - 1.0j),
+        frozenset({"electronics", "both_tilts"}),
+    ),
+    "tilted magnet alone": (Truth(magnet_tilt=3.0 + 2.0j), frozenset()),
     "magnet alone": (Truth(magnet=0.3 + 0.2j), frozenset()),
     "eccentric reference": (Truth(eccentric_rad=0.004), frozenset({"reference"})),
 }

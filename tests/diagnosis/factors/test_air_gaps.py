@@ -8,15 +8,22 @@ import numpy as np
 import pytest
 
 from diagnosis import Mounting, diagnose, diagnose_many
+from diagnosis.error_model.model import QUAD
 from diagnosis.factors.air_gaps import AirGaps, quadratic_law
-from diagnosis.factors.displacement import MEASURED
-from diagnosis.factors.gap_model import CAUSES, ROWS, GapSweep, causes_of, expected
+from diagnosis.factors.displacement import MEASURED, upright_product
+from diagnosis.factors.gap_model import ROWS, GapSweep, causes_of, expected
 from diagnosis.factors.gap_words import sentences
 from diagnosis.factors.modulus import modulus_interval
+from diagnosis.report.gap_answer import gap_answer
 from tests.diagnosis.factors.gap_study import asked
 from tests.diagnosis.factors.gap_sweeps import CASES, OPEN, Truth
+from twin.angles import wrap_deg
+from twin.chain import Chain
 from twin.errors import UserError
+from twin.magnet.assembly import Assembly
 from twin.magnet.magnet import Magnet
+from twin.magnet.placement import Placement
+from twin.motion import Motion
 
 
 def joint(
@@ -35,28 +42,52 @@ def joint(
     return found
 
 
-def test_expected_factors_are_those_of_magpylibs_field() -> None:
-    """Sensor, magnet, electronics and a voltage together, nearly without noise.
+RAD = np.radians(1.0)
+EVERYTHING = replace(CASES["sensor, magnet and electronics"][0], tilt=1.5 - 1.0j, magnet_tilt=-1.0 + 2.0j)
+ON_AXIS = Truth(tilt=2.0 - 1.0j, magnet=0.2 + 0.1j, magnet_tilt=1.5 + 1.0j)
 
-    Offsets and shares are of some per cent, and what the fit neglects is of their third order: 1e-5.
+
+@pytest.mark.parametrize(
+    ("truth", "values"),
+    [
+        (
+            EVERYTHING,
+            {
+                "voltage": EVERYTHING.voltage,
+                "electronics": complex(EVERYTHING.gain - 1.0, EVERYTHING.beta),
+                "sensor": EVERYTHING.sensor**2,
+                "magnet": EVERYTHING.sensor * EVERYTHING.magnet,
+                "tilt": EVERYTHING.sensor * EVERYTHING.tilt * RAD,
+                "magnet_tilt": EVERYTHING.sensor * EVERYTHING.magnet_tilt * RAD,
+            },
+        ),
+        (
+            ON_AXIS,
+            {
+                # A tilt t shortens the field by t^2/2 along itself: a share of -t^2/4 that runs against it.
+                "electronics": (ON_AXIS.tilt * RAD).conjugate() ** 2 / 2.0,
+                "tilt_and_magnet": ON_AXIS.tilt * RAD * ON_AXIS.magnet.real,
+                "both_tilts": ON_AXIS.tilt * RAD * ON_AXIS.magnet_tilt.real * RAD,
+            },
+        ),
+    ],
+    ids=["off the axis", "on the axis"],
+)
+def test_expected_factors_are_those_of_magpylibs_field(truth: Truth, values: dict[str, complex]) -> None:
+    """Displacements, tilts, electronics and a voltage together, nearly without noise.
+
+    Offsets and shares are of some per cent, and what the fit neglects is of their third order: 2e-5.
     """
-    truth = replace(CASES["sensor, magnet and electronics"][0], tilt=1.5 - 1.0j)
     rng = np.random.default_rng(0)
     gaps = np.array([1.0, 2.0, 3.0])
     made = [truth.sweep(gap, rng, noise_deg=1e-6, channels=False) for gap in gaps]
     found = [diagnose(columns, output_sense=1).findings for columns in made]
     sweeps = [GapSweep.of(one.fit, np.radians(one.sweep.reference_deg)) for one in found]
-    values = {
-        "voltage": truth.voltage,
-        "reference": 0j,
-        "electronics": complex(truth.gain - 1.0, truth.beta),
-        "sensor": truth.sensor**2,
-        "magnet": truth.sensor * truth.magnet,
-        "tilt": truth.sensor * truth.tilt * np.radians(1.0),
-    }
-    numbers = np.array([[part for name in CAUSES for part in (values[name].real, values[name].imag)]])
-    factors, _ = expected(sweeps, Magnet(), causes_of(CAUSES, numbers), gaps[None])
-    np.testing.assert_allclose(factors[0], [sweep.point[list(ROWS)] for sweep in sweeps], atol=1e-5)
+    numbers = np.array([[part for name in values for part in (values[name].real, values[name].imag)]])
+    told = expected(sweeps, Magnet(), causes_of(tuple(values), numbers), gaps[None])
+    np.testing.assert_allclose(told.factors[0], [sweep.point[list(ROWS)] for sweep in sweeps], atol=2e-5)
+    # Truth has no quadratic term: what is fitted as one is the field's own order 3.
+    np.testing.assert_allclose(told.quad[0], [sweep.point[QUAD] for sweep in sweeps], atol=2e-5)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -74,10 +105,17 @@ def test_causes_are_named_and_displacements_come_back(name: str) -> None:
         if displacement is not None:
             half = 0.5 * (displacement.high - displacement.low)
             assert abs(displacement.value - abs(true)) < 2.0 * half
-    bound = found.magnet_bound_mm
-    assert (bound is not None) == ("sensor" in causes and "magnet" not in causes)
-    if bound is not None and abs(truth.sensor) > 0.5:
-        assert bound < 0.05
+    bounds = [found.magnet_bound(name) for name in ("magnet", "magnet_tilt")]
+    wanted = "sensor" in causes and not {"magnet", "magnet_tilt"} & causes
+    assert [bound is not None for bound in bounds] == 2 * [wanted]
+    if wanted and abs(truth.sensor) > 0.5:
+        off_mm, tilted_deg = bounds
+        assert off_mm is not None
+        assert off_mm < 0.05
+        assert tilted_deg is not None
+        assert tilted_deg < 1.0
+    # None of the cases has a quadratic term; off the axis the field itself has an order 3.
+    assert found.quadratic.best == "none"
 
 
 @pytest.mark.parametrize(
@@ -127,15 +165,16 @@ def test_channels_that_an_automatic_gain_holds_at_one_size_gauge_no_gap() -> Non
 
 
 @pytest.mark.parametrize(
-    ("truth", "magnet"),
-    [
-        (Truth(sensor=0.6 + 0.3j), Magnet(diameter_mm=10.0, height_mm=3.0)),
-        (Truth(sensor=0.6 + 0.3j, magnet=0.4 + 0.2j, tilt=3.0 + 4.0j, gain=1.01, eccentric_rad=0.005), Magnet()),
-    ],
-    ids=["another magnet", "everything at once"],
+    ("askew", "magnet"),
+    [(0.0, Magnet(diameter_mm=10.0, height_mm=3.0)), (0.1 - 0.1j, Magnet())],
+    ids=["another magnet", "a stage that runs askew to the shaft"],
 )
-def test_what_nothing_explains_is_said_to_fit_nothing(truth: Truth, magnet: Magnet) -> None:
-    found = joint(truth, (1.0, 2.0, 3.0, 4.0), Mounting(magnet=magnet, air_gap_mm=(1.0,)))
+def test_what_nothing_explains_is_said_to_fit_nothing(askew: complex, magnet: Magnet) -> None:
+    """``askew``: by how much further off the axis the sensor is at each millimetre of the gap [mm]."""
+    rng, gaps = np.random.default_rng(0), (1.0, 2.0, 3.0, 4.0)
+    sweeps = [Truth(sensor=0.6 + 0.3j + askew * gap).sweep(gap, rng) for gap in gaps]
+    found = diagnose_many(sweeps, output_sense=1, mounting=Mounting(magnet=magnet, air_gap_mm=gaps[:1])).air_gap_fit
+    assert found is not None
     assert found.misfit
     assert found.named == ()
     said = " ".join(sentences(found))
@@ -162,6 +201,93 @@ def test_a_fourth_gap_tells_a_tilt_beside_the_electronics() -> None:
     assert tilt.value == pytest.approx(5.0, abs=tilt.high - tilt.low)
     assert off.value == pytest.approx(0.5, abs=off.high - off.low)
     assert "the sensor is tilted by" in " ".join(sentences(four))
+
+
+@pytest.mark.parametrize("channels", [True, False])
+def test_tilts_of_a_twin_come_back(channels: bool) -> None:
+    """The twin's own field, and in the next test magpylib's: both are asked what the fit says of them."""
+    gaps = (1.0, 2.0, 3.0)
+    tilted = {"magnet_tilt_x_deg": 1.5, "magnet_tilt_y_deg": 2.0, "sensor_x_mm": 0.5, "sensor_y_mm": -0.4}
+    found = of_twin(gaps, channels, **tilted)
+    assert found.named == ("sensor", "magnet_tilt")
+    lean, off = found.displaced("magnet_tilt"), found.displaced("sensor")
+    assert lean is not None
+    assert off is not None
+    assert lean.value == pytest.approx(2.5, abs=lean.high - lean.low)
+    assert off.value == pytest.approx(np.hypot(0.5, 0.4), abs=off.high - off.low)
+    # A turn about x leans backwards along y. Sensor and magnet may both be the other way round.
+    turned = 0.0 if abs(wrap_deg(off.direction_deg - np.degrees(np.arctan2(-0.4, 0.5)))) < 90.0 else 180.0
+    away = wrap_deg(lean.direction_deg + turned - np.degrees(np.arctan2(-1.5, 2.0)))
+    assert abs(away) < 2.0 * lean.direction_half_deg
+    assert "the magnet is tilted by" in " ".join(sentences(found))
+
+
+def test_a_tilt_of_the_sensor_alone_is_told_as_what_the_electronics_may_be() -> None:
+    found = of_twin((1.0, 2.0, 3.0), True, sensor_tilt_x_deg=-3.0, sensor_tilt_y_deg=2.0)
+    assert found.named == ("electronics",)
+    tilt = found.tilt_alone
+    assert tilt is not None
+    assert tilt.value == pytest.approx(np.hypot(3.0, 2.0), abs=tilt.high - tilt.low)
+    away = (tilt.direction_deg - np.degrees(np.arctan2(3.0, 2.0)) + 90.0) % 180.0 - 90.0
+    assert abs(away) < 2.0 * tilt.direction_half_deg
+    said = " ".join(sentences(found))
+    assert "the electronics, or a sensor tilted by" in said
+    assert "mounting the sensor anew parts the two" in said
+
+
+def of_twin(gaps_mm: tuple[float, ...], channels: bool, **placed: float) -> AirGaps:
+    """What the fit says of a twin of this placement, at these gaps."""
+    motion = Motion.from_angle(np.radians(np.arange(0.0, 360.0)), has_channels=channels)
+    sweeps = []
+    for seed, gap in enumerate(gaps_mm):
+        device = Chain(magnet=Assembly(Magnet(), Placement(air_gap_mm=gap, **placed)))
+        made = device.with_effect("noise", rms_deg=0.02).simulate(motion, seed=seed)
+        columns = {"reference_deg": made.reference_deg, "measured_deg": made.measured_deg}
+        if channels:
+            columns |= {"vx": np.asarray(made.vx), "vy": np.asarray(made.vy)}
+        sweeps.append(columns)
+    found = diagnose_many(sweeps, output_sense=1, mounting=Mounting(air_gap_mm=gaps_mm)).air_gap_fit
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("name", ["tilted on the axis, magnet off", "both tilted on the axis"])
+def test_a_tilted_sensor_senses_the_upright_field(name: str) -> None:
+    """The product of tilt and what is wrong with the magnet along its magnetisation lies within twice its interval."""
+    truth = CASES[name][0]
+    found = joint(truth, (1.0, 2.0, 3.0), Mounting(air_gap_mm=(1.0, 2.0, 3.0)))
+    cause = "tilt_and_magnet" if truth.magnet else "both_tilts"
+    product = upright_product(found.best, cause)
+    assert product is not None
+    true = abs(truth.tilt) * abs((truth.magnet or truth.magnet_tilt).real)
+    assert product.value == pytest.approx(true, abs=product.high - product.low)
+    assert f"{product.value:.3g} {product.unit}" in " ".join(sentences(found))
+    answer = gap_answer(found)
+    assert (answer["tilt_times_displacement"] is None) != (answer["tilt_times_tilt"] is None)
+
+
+def test_offsets_that_the_gaps_cannot_part_are_given_with_the_measurement_that_would() -> None:
+    """Half a degree of a magnet's tilt makes an order 1 of 0.06 deg, whose change over these gaps is of their noise."""
+    truth = Truth(sensor=0.4 + 0.2j, magnet_tilt=0.5 + 0.0j)
+    narrow, wide = (2.4, 3.3), (0.7, 1.5, 2.4, 3.3)
+    near = joint(truth, narrow, Mounting(air_gap_mm=narrow), noise_deg=0.1, channels=False)
+    assert {("magnet_tilt",), ("magnet",), ("reference",)} <= set(near.order_1)
+    assert near.named == ()
+    said = " ".join(sentences(near))
+    further = near.order_1_parting_mm
+    assert "an eccentric reference" in said
+    assert "a tilted magnet" in said
+    assert "would tell the first two apart" in said
+    assert further is None or f"these gaps cannot tell, a sweep at {further:.2g} mm would" in said
+    told = joint(truth, wide, Mounting(air_gap_mm=wide), channels=False)
+    assert told.named == ("sensor", "magnet_tilt")
+
+
+def test_a_tilt_is_looked_for_where_narrow_gaps_hardly_tell_electronics_from_a_displacement() -> None:
+    truth, gaps = Truth(sensor=0.4 + 0.2j, magnet_tilt=1.0 + 0.5j), (2.0, 2.5, 3.0)
+    found = joint(truth, gaps, Mounting(air_gap_mm=gaps), noise_deg=0.05, channels=False)
+    assert not found.fits.sees_sensor
+    assert found.named == ("sensor", "magnet_tilt")
 
 
 def test_a_stated_gap_that_the_readings_contradict_is_named() -> None:

@@ -1,0 +1,56 @@
+"""The fits of sets of causes over several air gaps, each made when it is asked for."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from diagnosis.factors.gap_fit import GapFit, Problem
+from diagnosis.factors.gap_sets import BESIDE_SENSOR, BOTH, TILTED, CauseSet, joined, order_1_sets
+
+SEEN_SIGMA = 5.0
+"""Standard errors of a sensor's displacement from which a magnet's can be looked for: it shows in their product."""
+CLEAR_CHI2 = SEEN_SIGMA**2
+"""By how much worse electronics or sensor alone fit than the other for certain."""
+
+
+class GapFits(dict[CauseSet, GapFit]):
+    """Fits by their causes, made when they are first asked for, from the best simpler one that is there."""
+
+    def __init__(self, problem: Problem, freedom: int) -> None:
+        super().__init__()
+        self.problem, self.freedom = problem, freedom
+
+    def __missing__(self, causes: CauseSet) -> GapFit:
+        # What stands in a product beside the sensor's displacement has no slope where that is still none, and one of
+        # two such causes may lead the other astray.
+        simpler = [self[tuple(other for other in causes if other != name)] for name in causes if name in BESIDE_SENSOR]
+        simpler += [fit for one, fit in self.items() if set(one) < set(causes)]
+        start = min(simpler, key=lambda fit: fit.chi2) if simpler else None
+        self[causes] = found = self.problem.fitted(causes, self.freedom, start=start)
+        return found
+
+    @cached_property
+    def sees_sensor(self) -> bool:
+        """Whether a sensor off the axis stands out: what shows in a product with it can then be looked for."""
+        return _stands_out(self[joined(("voltage",), BOTH)], "sensor")
+
+    def full_2(self) -> CauseSet:
+        """The causes of order 2 that can be looked for together: each takes a gap."""
+        return TILTED if self.sees_sensor and len(self.problem.sweeps) >= len(TILTED) else BOTH
+
+    def order_1(self) -> tuple[CauseSet, ...]:
+        """The sets of causes of order 1 that can be looked for.
+
+        What shows beside a sensor off the axis where there may be one; what a tilted sensor on the axis senses where
+        the electronics, whose share a tilt has, fit as well as or better than a sensor off the axis.
+        """
+        sensor, electronics = (self[("voltage", name)] for name in ("sensor", "electronics"))
+        worse = sensor.chi2 - electronics.chi2
+        off_axis = self.sees_sensor or (_stands_out(sensor, "sensor") and worse < CLEAR_CHI2)
+        tilted = not self.sees_sensor and _stands_out(electronics, "electronics") and -worse < CLEAR_CHI2
+        return order_1_sets(len(self.problem.sweeps), off_axis=off_axis, tilted=tilted)
+
+
+def _stands_out(fit: GapFit, cause: str) -> bool:
+    value, error = fit.pair(cause)
+    return abs(value) > SEEN_SIGMA * error

@@ -245,6 +245,8 @@ class Diagnoses:
     def plot(self) -> Figure:
         """Draw the measured error over the turn and the fitted curve, one panel a sweep.
 
+        Of sweeps at several air gaps the factors over the gap stand below, with the curve of the causes that are told.
+
         Returns
         -------
         matplotlib.figure.Figure
@@ -257,7 +259,7 @@ class Diagnoses:
         """
         from diagnosis.report.diagnose_plot import fitted_figure
 
-        return fitted_figure(self._findings)
+        return fitted_figure(self._findings, self.air_gap_fit)
 
     def plot_convergence(self) -> Figure:
         """Draw how the swarm converged: RMS error of its best and of the particles' own bests over the iterations.

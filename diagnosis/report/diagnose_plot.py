@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from diagnosis.error_model.model import ZERO
+from diagnosis.factors.air_gaps import AirGaps
 from diagnosis.factors.findings import Findings, curve_deg
+from diagnosis.report.gap_plot import draw_over_gaps
 from diagnosis.report.plotting import CURVE, DIRECTIONS, drawing
 from twin.angles import Array, wrap_deg
 from twin.errors import UserError
@@ -17,31 +19,49 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_PANELS = 16
+_GAPS_HEIGHT = 0.6
+"""Of the panels over the air gap, against the picture's width."""
 _MOST_POINTS = 20000
 _POINT, _CURVE = "#4477aa", "#cc3311"
 
 
-def fitted_figure(found: Sequence[Findings]) -> Figure:
+def fitted_figure(found: Sequence[Findings], over_gaps: AirGaps | None = None) -> Figure:
     """One panel a sweep: measured angle error over the turn, and the curve of the fitted parameters.
 
-    Raises UserError without matplotlib, or for more sweeps than can be seen in one picture.
+    Below them the factors over the air gap, where the sweeps were recorded at several. Raises UserError without
+    matplotlib, or for more sweeps than can be seen in one picture.
     """
     if len(found) > MOST_PANELS:
         raise UserError(f"{len(found)} sweeps do not fit in one picture; plot at most {MOST_PANELS}")
     columns = int(np.ceil(np.sqrt(len(found))))
     rows = -(-len(found) // columns)
+    width, height = max(4.2 * columns, 6.5), max(2.9 * rows, 3.8)
     with drawing() as new_figure:
-        figure = new_figure(figsize=(max(4.2 * columns, 6.5), max(2.9 * rows, 3.8)), layout="constrained")
-        axes = figure.subplots(rows, columns, squeeze=False)
-        for axis, item in zip(axes.flat, found, strict=False):
-            _panel(axis, item)
-        for axis in axes.flat[len(found) :]:
-            axis.set_visible(False)
-        # A sweep that turned one way only has fewer symbols than the legend names.
-        shown = [axis.get_legend_handles_labels() for axis in axes.flat]
-        named = {label: handle for pair in shown for handle, label in zip(*pair, strict=True)}
-        figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=3, frameon=False)
+        if over_gaps is None:
+            figure = new_figure(figsize=(width, height), layout="constrained")
+            _draw_sweeps(figure, found, rows, columns)
+            return figure
+        below = _GAPS_HEIGHT * width
+        figure = new_figure(figsize=(width, height + below), layout="constrained")
+        parts: Any = figure.subfigures(2, 1, height_ratios=(height, below))
+        _draw_sweeps(parts[0], found, rows, columns)
+        axes = parts[1].subplots(2, 2, sharex=True)
+        draw_over_gaps(axes.flat, over_gaps)
+        parts[1].legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
     return figure
+
+
+def _draw_sweeps(figure: Any, found: Sequence[Findings], rows: int, columns: int) -> None:
+    """The panels of the sweeps with their common legend."""
+    axes = figure.subplots(rows, columns, squeeze=False)
+    for axis, item in zip(axes.flat, found, strict=False):
+        _panel(axis, item)
+    for axis in axes.flat[len(found) :]:
+        axis.set_visible(False)
+    # A sweep that turned one way only has fewer symbols than the legend names.
+    shown = [axis.get_legend_handles_labels() for axis in axes.flat]
+    named = {label: handle for pair in shown for handle, label in zip(*pair, strict=True)}
+    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=3, frameon=False)
 
 
 def _panel(axis: Any, item: Findings) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from diagnosis.factors.air_gaps import AirGaps, Law
-    from diagnosis.factors.findings import Findings
+    from diagnosis.factors.findings import Findings, OneSense
     from diagnosis.report.provenance import Provenance
     from diagnosis.thermal.over_temperature import OverTemperature
     from twin.chain import Chain
@@ -191,9 +191,15 @@ class Diagnoses:
         sweeps = [item.sweep for item in self.items]
         if not over_temperature(sweeps) or len({counts_as(sweep) for sweep in sweeps}) > 1:
             return None
-        senses = self.items[0].findings.fit.senses
         with one_blas_thread():
-            return find_laws(joined(sweeps), rng=np.random.default_rng(0), senses=(senses.sensor, senses.output))
+            return find_laws(joined(sweeps), rng=np.random.default_rng(0), senses=self.one_sense.senses)
+
+    @cached_property
+    def one_sense(self) -> OneSense:
+        """The senses in which the sweeps count, taken as those of one sensor, and who decides between the two pairs."""
+        from diagnosis.factors.findings import one_sense
+
+        return one_sense(self._findings)
 
     def summary(self, width: int = 80) -> str:
         """The text that ``halltwin diagnose`` prints: all about a single sweep, or one line each.

@@ -88,10 +88,16 @@ class Calibration:
         return chain
 
 
-def calibrate(reference_rad: Array, measured_rad: Array, *, rng: np.random.Generator) -> Calibration:
-    """The twin with the error curve of readings (n,), n >= 8; isolated gross errors are left out where n is large."""
+def calibrate(
+    reference_rad: Array, measured_rad: Array, *, rng: np.random.Generator, senses: tuple[int, int] | None = None
+) -> Calibration:
+    """The twin with the error curve of readings (n,), n >= 8; isolated gross errors are left out where n is large.
+
+    ``senses`` in which sensor and output count; None: both are tried. Where the quadratic term is too small to tell,
+    either gives the same curve: order 3, in which the two differ, is fitted beside it.
+    """
     n = reference_rad.size
-    fit = fit_baseline(reference_rad, measured_rad, rng=rng, robust=n >= _FEWEST_ROBUST)
+    fit = fit_baseline(reference_rad, measured_rad, rng=rng, senses=senses, robust=n >= _FEWEST_ROBUST)
     span, used = Span(NOMINAL_C, NOMINAL_C), ~fit.outliers
     if used.sum() < _FEWEST_ROWS:
         return Calibration(fit, span, fit.point[:, None], np.zeros(2 * ORDERS.size))
@@ -101,9 +107,14 @@ def calibrate(reference_rad: Array, measured_rad: Array, *, rng: np.random.Gener
     return Calibration(fit, span, coefficients, orders)
 
 
-def calibrate_over_temperature(recording: Recording, *, rng: np.random.Generator) -> Calibration:
-    """The twin with the error curve of readings at several temperatures: factors follow it that are sensitive to it."""
-    over = find_laws(recording, rng=rng)
+def calibrate_over_temperature(
+    recording: Recording, *, rng: np.random.Generator, senses: tuple[int, int] | None = None
+) -> Calibration:
+    """The twin with the error curve of readings at several temperatures: factors follow it that are sensitive to it.
+
+    ``senses`` in which sensor and output count; None: both are tried.
+    """
+    over = find_laws(recording, rng=rng, senses=senses)
     beside = Beside(ORDERS, directed=beside_of(over.model.recording).directed)
     coefficients, orders = _with_orders(over.model, over.coefficients, beside)
     # What a zero that was set anew did on the way is no drift of the sensor's.

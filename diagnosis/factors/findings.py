@@ -180,6 +180,23 @@ def _of_one_sense(found: Sequence[Findings]) -> list[BaselineFit]:
     ]
 
 
+@dataclass(frozen=True)
+class OneSense:
+    """The senses (sensor, output) in which sweeps of one sensor count, and who decides; None: nobody does."""
+
+    senses: Senses
+    by: By | None
+
+
+def one_sense(found: Sequence[Findings]) -> OneSense:
+    """The senses of one sensor, by the sweeps that decide between the mirror solutions; else those told first."""
+    first = _of_one_sense(found)[0].senses
+    by = next(
+        (item.mirror.by for item in found if item.mirror.decided and item.fit.senses.output == first.output), None
+    )
+    return OneSense((first.sensor, first.output), by)
+
+
 def curve_deg(fit: BaselineFit, shaft_deg: Array) -> Array:
     """The fitted angle error (n,) [deg] at shaft angles (n,) [deg], in the sense that sensor and shaft count together.
 

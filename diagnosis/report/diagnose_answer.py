@@ -10,7 +10,7 @@ import numpy as np
 from diagnosis.error_model.model import NAMES
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.air_gaps import AirGaps, laws
-from diagnosis.factors.findings import Findings
+from diagnosis.factors.findings import Findings, one_sense
 from diagnosis.report import temperature_answer
 from diagnosis.report.gap_answer import gap_answer
 from diagnosis.report.provenance import Provenance
@@ -31,8 +31,12 @@ def to_json(
         "sweeps": [one_sweep(item) for item in found],
         "air_gaps": [] if over_gaps is None else [dict(vars(law)) for law in laws(over_gaps)],
         "air_gap_fit": None if over_gaps is None else gap_answer(over_gaps),
-        "temperature": None if thermal is None else temperature_answer.to_dict(thermal, sweeps=len(found)),
+        "temperature": None if thermal is None else _over_temperature(thermal, found),
     }
+
+
+def _over_temperature(thermal: OverTemperature, found: Sequence[Findings]) -> dict[str, Any]:
+    return temperature_answer.to_dict(thermal, sweeps=len(found), decided_by=one_sense(found).by)
 
 
 def one_sweep(found: Findings) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.factors.mirror import By
 from diagnosis.thermal.laws import FROM_C, FactorLaw, Figure
 from diagnosis.thermal.over_temperature import OverTemperature
 from twin.angles import Array, wrap_deg
@@ -15,8 +16,12 @@ POWERS = ("per_K", "per_K2")
 """Names of the coefficients of T - 25 C and of its square."""
 
 
-def to_dict(found: OverTemperature, *, sweeps: int) -> dict[str, Any]:
-    """The laws over the temperatures of so many sweeps of one sensor; what is not finite is None."""
+def to_dict(found: OverTemperature, *, sweeps: int, decided_by: By | None) -> dict[str, Any]:
+    """The laws over the temperatures of so many sweeps of one sensor; what is not finite is None.
+
+    ``decided_by``: who knows the senses in which the laws are told; None: the mirror solution fits as well.
+    """
+    sensor, output = found.model.senses
     return {
         "recordings": sweeps,
         "readings": len(found.model.recording),
@@ -29,6 +34,12 @@ def to_dict(found: OverTemperature, *, sweeps: int) -> dict[str, Any]:
         "from_c": FROM_C,
         "noise_floor_deg": float(np.degrees(found.noise_rad)),
         "own_zeros": found.own_zeros,
+        "senses": {
+            "sensor": sensor,
+            "output": output,
+            "decided": decided_by is not None,
+            "decided_by": decided_by,
+        },
         "factors": {
             factor.name: _law(factor, law, zero=place == len(FACTORS) - 1)
             for place, (factor, law) in enumerate(zip(FACTORS, found.factors, strict=True))

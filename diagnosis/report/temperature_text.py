@@ -78,6 +78,12 @@ def sentences(answer: Mapping[str, Any]) -> list[str]:
             f"{', '.join(scattered)}: the values stand farther from any law than their noise allows; the intervals "
             "follow that scatter"
         )
+    if not answer["senses"]["decided"]:
+        said.append(
+            "which way the output counts is open: counted the other way offset y, phase and zero have the opposite "
+            "sign, at 25 C and per kelvin, and all else stays; vx and vy decide, or halltwin diagnose with --twin or "
+            "--output-sense"
+        )
     if answer["recordings"] > 1:
         said.append(
             f"all {answer['recordings']} sweeps count as recordings of one sensor; a mount that was touched between "

@@ -217,14 +217,10 @@ def _write(
 def _toml(correction: Correction, readings: Readings | None) -> str:
     import tomli_w
 
-    from diagnosis.report.temperature_answer import to_dict as laws
-
     content = to_dict(correction)
-    if readings is not None and readings.calibration.over is not None:
-        content["factors"] = {
-            name: law["verdict"]
-            for name, law in laws(readings.calibration.over, sweeps=len(readings.sweeps))["factors"].items()
-        }
+    laws = {} if readings is None else readings.laws()
+    if laws:
+        content["factors"] = {name: law["verdict"] for name, law in laws["factors"].items()}
     return tomli_w.dumps(content)
 
 

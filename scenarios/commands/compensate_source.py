@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from diagnosis import diagnose_many
 from diagnosis.correction.calibration import Calibration, calibrate, calibrate_over_temperature
 from diagnosis.correction.compensation import Correction, correction_of, correction_over
 from diagnosis.correction.cross_validation import Shaft
+from diagnosis.factors.findings import OneSense
+from diagnosis.report.temperature_answer import to_dict
 from diagnosis.thermal.recording import SMALLEST_SPAN_K, Recording, joined, over_temperature
 from twin.errors import UserError
 from twin.sweep import Sweep
@@ -41,6 +45,14 @@ class Readings:
         return over_temperature(self.sweeps)
 
     @cached_property
+    def one_sense(self) -> OneSense:
+        """In which senses sensor and output count, as ``halltwin diagnose`` finds it.
+
+        The correction is the same for both pairs; the factors that are told beside it are not.
+        """
+        return diagnose_many(self.sweeps, seed=self.seed).one_sense
+
+    @cached_property
     def calibration(self) -> Calibration:
         """The calibration by all readings."""
         return self.calibrated(self.recording)
@@ -64,7 +76,7 @@ class Readings:
         """The calibration by some of the readings."""
         rng = np.random.default_rng(self.seed)
         if self.over_temperature:
-            return calibrate_over_temperature(recording, rng=rng)
+            return calibrate_over_temperature(recording, rng=rng, senses=self.one_sense.senses)
         return calibrate(recording.reference_rad, recording.measured_rad, rng=rng)
 
     def corrected(self, found: Calibration) -> Correction:
@@ -72,6 +84,11 @@ class Readings:
         if found.over is None or not found.over.followed.any():
             return correction_of(found.chain, tolerance_deg=self.tolerance_deg)
         return correction_over(found.at, found.span.low_c, found.span.high_c, tolerance_deg=self.tolerance_deg)
+
+    def laws(self) -> dict[str, Any]:
+        """The laws of the factors over temperature as plain values; empty where there is none."""
+        over = self.calibration.over
+        return {} if over is None else to_dict(over, sweeps=len(self.sweeps), decided_by=self.one_sense.by)
 
     @property
     def temperature_words(self) -> str | None:

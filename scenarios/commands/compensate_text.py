@@ -17,7 +17,6 @@ from rich.text import Text
 from diagnosis.correction.compensation import Correction
 from diagnosis.correction.cross_validation import BeforeAfter
 from diagnosis.report.row_counts import counts_of, diagnosed_rows, left_out_words
-from diagnosis.report.temperature_answer import to_dict
 from diagnosis.report.temperature_text import lines
 from diagnosis.report.wording import decimals_of, rms_shown
 from scenarios.commands.compensate_source import Readings
@@ -95,7 +94,7 @@ def _of_temperature(readings: Readings) -> list[str]:
     """What the readings say of the temperature."""
     over = readings.calibration.over
     if over is not None:
-        said = lines(to_dict(over, sweeps=len(readings.sweeps)), terminal_width())
+        said = lines(readings.laws(), terminal_width())
         return said if over.followed.any() else [*said, "- the correction is the same at every temperature"]
     words = readings.temperature_words
     return [] if words is None else [words]

@@ -98,6 +98,23 @@ FACTORS: tuple[Mutation, ...] = (
         ("tests/diagnosis/factors/test_band_check.py::test_a_device_keeps_its_own_band_and_particles_are_discarded",),
     ),
     Mutation(
+        "compensate.signs_told_as_certain",
+        "diagnosis/report/temperature_text.py",
+        'if not answer["senses"]["decided"]:',
+        "if False:",
+        (
+            "tests/diagnosis/correction/test_over_temperature.py::"
+            "test_factors_that_the_mirror_solution_turns_are_told_as_open",
+        ),
+    ),
+    Mutation(
+        "compensate.nothing_of_order_3_beside",
+        "diagnosis/correction/calibration.py",
+        "ORDERS = np.arange(3, 33)",
+        "ORDERS = np.arange(4, 33)",
+        ("tests/diagnosis/correction/test_compensation.py::test_either_mirror_solution_makes_the_same_correction",),
+    ),
+    Mutation(
         "air_gaps.misfit_passes",
         _GAPS,
         "return self.fullest.p < MISFIT or self.unchecked",

@@ -14,13 +14,17 @@ from diagnosis.correction.compensation import Correction, Drift, correction_of, 
 from diagnosis.correction.compensation_c import header
 from diagnosis.correction.correction_file import from_dict, to_dict
 from diagnosis.correction.cross_validation import between, cross_validated
+from diagnosis.error_model.model import VY
 from diagnosis.thermal.laws import SENSITIVE
 from diagnosis.thermal.levels import levels_of
 from diagnosis.thermal.recording import joined
+from scenarios.commands import compensate
 from scenarios.commands.compensate_table import table
+from scenarios.commands.protocol import Protocol
 from tests.diagnosis.correction.c_program import run_header
 from tests.diagnosis.thermal.devices import COLD_ROOM_HOT, over, warm
 from twin.angles import TAU, Array, wrap
+from twin.chain import Chain
 from twin.errors import UserError
 from twin.motion import Motion
 from twin.sweep import Sweep
@@ -179,3 +183,36 @@ def test_held_out_blocks_and_a_held_out_temperature() -> None:
     # Five folds of four fifths of the readings, and one of two thirds.
     assert counted[0] == 6
     assert counted[-1] == 0
+
+
+def mirrored_words(sensor: Chain, *, channels: bool, capsys: pytest.CaptureFixture[str], folder: Path) -> str:
+    motion = Protocol(turns=1, points=72, temperatures_c=COLD_ROOM_HOT, channels=channels).motion()
+    sensor.simulate(motion, seed=1).write(folder / "warm.csv")
+    compensate.run([folder / "warm.csv"], outputs=compensate.Outputs(toml=folder / "c.toml", force=True))
+    return " ".join(capsys.readouterr().out.split())
+
+
+def test_factors_that_the_mirror_solution_turns_are_told_as_open(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Beside the correction stand laws of the factors, of which two have a sign that no quadratic term tells here."""
+    plain = warm().without("quadratic_nonlinearity")
+    assert "which way the output counts is open" in mirrored_words(
+        plain, channels=False, capsys=capsys, folder=tmp_path
+    )
+    for sensor, channels in ((plain, True), (warm(), False)):
+        shown = mirrored_words(sensor, channels=channels, capsys=capsys, folder=tmp_path)
+        assert "offset y, % immune -0.7" in shown
+        assert "is open" not in shown
+
+
+def test_either_mirror_solution_makes_the_same_correction_over_temperature() -> None:
+    """They differ by what noise makes of order 3: 0.02 deg sqrt(2/540) of an order's amplitude, four of them."""
+    made = joined([warm().without("quadratic_nonlinearity").simulate(over(COLD_ROOM_HOT), seed=1)])
+    found = [calibrate_over_temperature(made, rng=rng(), senses=(way, way)) for way in (1, -1)]
+    fresh = TAU * np.arange(500) / 500
+    for temperature in COLD_ROOM_HOT:
+        shafts = [correction_of(one.at(temperature)).shaft(fresh) for one in found]
+        assert np.degrees(np.max(np.abs(wrap(shafts[0] - shafts[1])))) < 4 * 0.0012
+    laws = [one.over.factors for one in found if one.over is not None]
+    assert laws[0][VY].at_25.value == pytest.approx(-laws[1][VY].at_25.value, abs=1e-4)

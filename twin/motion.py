@@ -109,10 +109,8 @@ class Motion:
         wrapped = np.asarray(shaft_rad, dtype=np.float64)
         n = wrapped.size
         shaft = wrapped if n == 0 else np.concatenate([wrapped[:1], wrapped[0] + np.cumsum(wrap(np.diff(wrapped)))])
-        way = _way(shaft, direction, speed_rad_s)
+        way = _as_reached(shaft, _way(shaft, direction, speed_rad_s))
         speed = _speed(shaft, way, time_s, speed_rad_s)
-        if not np.any(speed):
-            way = _as_reached(shaft, way)
         temperature = _without_gaps(temperature_c)
         recorded = {
             "time_s": time_s is not None,
@@ -295,9 +293,10 @@ def _way(shaft_rad: Array, direction: Array | None, speed_rad_s: Array | None) -
 
 
 def _as_reached(shaft_rad: Array, way: Array) -> Array:
-    """Direction (n,) in which each stop was reached.
+    """Direction (n,) in which the shaft came to each reading.
 
-    A record may name the stop at which the shaft turns round by the way in which it leaves it.
+    A record may name the row at which the shaft turns round by the way in which it leaves it; but what lags, lags as on
+    the way to it.
     """
     step = np.diff(shaft_rad)
     usual = np.median(np.abs(step[step != 0.0])) if np.any(step) else 0.0

@@ -12,9 +12,9 @@ def all_columns(setup: Bench, readings: Readings) -> dict[str, Array]:
     """Every column that the motion has something to say in."""
     motion = setup.motion
     columns = {"time_s": motion.time_s, "reference_deg": readings.reference_deg, "measured_deg": readings.word_deg}
-    columns |= {"direction": motion.direction, "turn": motion.turn.astype(float)}
+    columns |= {"direction": motion.named, "turn": motion.turn.astype(float)}
     if motion.moving:
-        columns["speed_rpm"] = motion.speed_rpm
+        columns["speed_rpm"] = np.abs(motion.speed_rpm) * motion.named
     if np.ptp(motion.temperature_c) > 0:
         columns["temperature_c"] = motion.temperature_c
     return columns | ({"vx": readings.x, "vy": readings.y} if setup.channels else {})
@@ -40,9 +40,9 @@ def written_columns(
     both = bool(np.ptp(motion.direction) > 0)
     several = len(np.unique(np.abs(motion.speed_rpm))) > 1
     if both and not rng.random() < omit:
-        columns["direction"] = motion.direction
+        columns["direction"] = motion.named
     if motion.moving and not rng.random() < omit * (1.0 if several else 1.5):
-        columns["speed_rpm"] = motion.speed_rpm
+        columns["speed_rpm"] = np.abs(motion.speed_rpm) * motion.named
     heated = bool(np.ptp(motion.temperature_c) > 0)
     if demands.turn_column or heated or rng.random() < (0.25 if hard else 0.3):
         columns["turn"] = motion.turn.astype(float)

@@ -24,6 +24,9 @@ class Motion:
     shaft_deg: Array
     """True shaft angle, unwrapped."""
     direction: Array
+    """In which the shaft came to the reading."""
+    named: Array
+    """The direction that the bench writes down: that of the leg, also where the shaft turns at its first reading."""
     speed_rpm: Array
     """Signed; zero where the bench stops to measure."""
     turn: Rows
@@ -143,12 +146,15 @@ def run(protocol: str, layout: Layout, rng: np.random.Generator) -> Motion:
 
     legs = layout.legs
     rpm = np.array([one.rpm for one in legs])[leg]
-    direction = np.array([float(one.direction) for one in legs])[leg]
+    named = np.array([float(one.direction) for one in legs])[leg]
     moving = bool(np.any(rpm > 0))
     with np.errstate(divide="ignore"):
         each_s = np.where(rpm > 0, step_deg / (6.0 * rpm), layout.dwell_s * layout.repeats)
     before = layout.start_s + np.concatenate([[0.0], np.cumsum(each_s)[:-1]])
     first = np.diff(leg, prepend=-1) > 0
+    # one step further: reached before the shaft turns
+    turned = first & (np.diff(named, prepend=named[0]) != 0) & (layout.reversal == "overrun")
+    direction = np.where(turned, -named, named)
     before += np.cumsum(np.where(first, np.array([one.pause_s for one in legs])[leg], 0.0))
     if moving and layout.uneven > 0:
         # a shaft at constant speed is early or late by the angle it is off
@@ -171,6 +177,7 @@ def run(protocol: str, layout: Layout, rng: np.random.Generator) -> Motion:
         time_s=np.repeat(before, again) + within,
         shaft_deg=np.repeat(layout.start_deg + step * step_deg + wander, again),
         direction=np.repeat(direction, again),
+        named=np.repeat(named, again),
         speed_rpm=np.repeat(rpm * direction, again),
         turn=np.repeat(revolution, again),
         temperature_c=np.repeat(np.array([one.temperature_c for one in legs])[leg], again),

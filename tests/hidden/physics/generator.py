@@ -103,9 +103,9 @@ def _columns(settled: Settled, motion: Motion, read: Record, rng: np.random.Gene
     columns["reference_deg"] = np.mod(read.reference_deg, 360.0) if wrapped else read.reference_deg
     columns["measured_deg"] = read.word_deg
     if np.ptp(motion.direction) > 0:
-        columns["direction"] = motion.direction
+        columns["direction"] = motion.named
     if motion.moving:
-        columns["speed_rpm"] = motion.speed_rpm
+        columns["speed_rpm"] = np.abs(motion.speed_rpm) * motion.named
     if np.ptp(motion.temperature_c) > 0:
         columns["temperature_c"] = motion.temperature_c
     if settled.kind.demands.turn_column or "temperature_c" in columns:

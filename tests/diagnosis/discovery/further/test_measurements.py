@@ -55,6 +55,7 @@ def planned(motion: twin_motion.Motion) -> Motion:
         time_s=motion.time_s,
         shaft_deg=np.degrees(motion.shaft_rad),
         direction=motion.direction,
+        named=motion.direction,
         speed_rpm=motion.speed_rad_s * 30.0 / np.pi,
         turn=motion.turn,
         temperature_c=motion.temperature_c,

@@ -12,6 +12,7 @@ import pytest
 
 from tests.benchmarks import confusion, power
 from tests.hidden import coverage
+from tests.hidden.coverage_table import share_between
 from tests.hidden.generator import draw
 from tests.hidden.study import DEFAULT_ANSWERER, load
 
@@ -28,7 +29,8 @@ def test_intervals_hold_the_truth_in_95_percent(tmp_path: Path) -> None:
             hidden = draw([cause], seed=FIRST_SEED + 10 * place + number, protocol="static-channels")
             hidden.write_csv(path)
             records.append(coverage.held(load(DEFAULT_ANSWERER)(str(path)), hidden.truth))
-    hits, total = coverage.counted(records)["all measured"]
+    misses = [one.miss for one in coverage.pooled(records)["all measured"]]
+    hits, total = misses.count(0), len(misses)
     assert total >= 15
     assert coverage.chance(hits, total) > RARE, f"{hits} of {total}: {records}"
 
@@ -50,6 +52,25 @@ def test_conventions_are_brought_together() -> None:
     assert coverage.common("zero_drift", {}, truth)["amplitude_deg"] == pytest.approx(1.0 - np.exp(-1.0))
     assert coverage.common("clipping", {}, truth)["level_percent"] == pytest.approx(100.0)
     assert coverage.common("bearing_wobble", {}, truth)["phase_deg"] == pytest.approx(5.0 - 36.0)
+
+
+def test_a_miss_says_on_which_side_the_truth_lies() -> None:
+    assert [coverage.Interval(truth, 1.0, 0.5, 1.5).miss for truth in (0.4, 0.5, 1.6)] == [-1, 0, 1]
+
+
+def test_an_answer_in_the_other_sense_counts_apart_where_it_leaves_the_sense_open() -> None:
+    truth = {"parameters": {}, "baseline": {"beta_deg": 0.3, "sense": 1.0, "channel_sense": 1.0}}
+    figure = {"value": 0.3, "low": 0.2, "high": 0.4}
+    senses = {"sensor": -1, "output": -1, "decided": False}
+    answer = {"causes": [], "extended": {"parameters": {"beta_deg": figure}}, "senses": senses}
+    assert list(coverage.held(answer, truth)) == ["baseline.beta_deg, sense open"]
+    senses["decided"] = True
+    assert list(coverage.held(answer, truth)) == ["baseline.beta_deg"]
+
+
+def test_interval_of_a_share() -> None:
+    # Newcombe, Statistics in Medicine 17 (1998) 857, table I, method 3: 81 of 263
+    assert share_between(81, 263) == pytest.approx((0.2553, 0.3662), abs=1e-4)
 
 
 def test_chance_of_so_few() -> None:

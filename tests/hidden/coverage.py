@@ -18,9 +18,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
 from typing import Any
-
-from rich.table import Table
 
 IN_AMPLITUDES = {
     "clipping": ("level_percent",),
@@ -73,12 +72,44 @@ def common(name: str, given: Mapping[str, Any], truth: Mapping[str, Any]) -> dic
     return actual
 
 
-def held(answer: Mapping[str, Any], truth: Mapping[str, Any]) -> dict[str, bool]:
-    """For "cause.parameter" of every cause named as it is: does its interval hold the truth?
+@dataclass(frozen=True)
+class Interval:
+    """A 95 % interval of an answer and the truth that it is held against, in the unit of the parameter."""
 
-    Phases are compared on the circle. Parameters that only one side gives are passed over. What an angle alone does
-    not tell carries ", angle only" behind its name.
+    truth: float
+    value: float
+    low: float
+    high: float
+
+    @property
+    def miss(self) -> int:
+        """0 where the interval holds the truth, else -1 or 1 as the truth lies below or above it."""
+        # the file itself is rounded at the sixth digit
+        slack = 1e-6 * max(abs(self.low), abs(self.high))
+        return int(self.truth > self.high + slack) - int(self.truth < self.low - slack)
+
+    @property
+    def half_width(self) -> float:
+        """Half the width."""
+        return 0.5 * (self.high - self.low)
+
+    def record(self) -> dict[str, float]:
+        """For a JSON file."""
+        return asdict(self)
+
+
+def held(answer: Mapping[str, Any], truth: Mapping[str, Any]) -> dict[str, Interval]:
+    """The interval of every "cause.parameter" of the causes named as they are, and of every "baseline.factor".
+
+    Parameters that only one side gives are passed over. What an angle alone does not tell carries ", angle only" behind
+    its name; ", sense open" all of an answer that counts the other way round and says that the readings leave it open.
     """
+    found = {**_of_causes(answer, truth), **_of_baseline(answer, truth)}
+    behind = ", sense open" if _sense_open(answer, truth) else ""
+    return {label + behind: interval for label, interval in found.items()}
+
+
+def _of_causes(answer: Mapping[str, Any], truth: Mapping[str, Any]) -> dict[str, Interval]:
     found = {}
     for entry in answer["causes"]:
         name = entry["name"]
@@ -86,26 +117,49 @@ def held(answer: Mapping[str, Any], truth: Mapping[str, Any]) -> dict[str, bool]
             continue
         actual = common(name, entry.get("parameters", {}), truth)
         for parameter, given in entry.get("parameters", {}).items():
-            if parameter not in actual or not isinstance(given, Mapping):
-                continue
-            low, high = given.get("low"), given.get("high")
-            if low is None or high is None:
-                continue
-            value = actual[parameter]
-            if parameter.endswith("phase_deg"):
-                middle = 0.5 * (low + high)
-                value = middle + (value - middle + 180.0) % 360.0 - 180.0
             label = f"{name}.{parameter}"
             if label in ANGLE_ONLY and not truth["channels"]:
                 label += ", angle only"
-            # the file itself is rounded at the sixth digit
-            found[label] = bool(low - 1e-6 * abs(low) <= value <= high + 1e-6 * abs(high))
+            interval = _interval(given, actual.get(parameter), turns=parameter.endswith("phase_deg"))
+            if interval is not None:
+                found[label] = interval
     return found
+
+
+def _of_baseline(answer: Mapping[str, Any], truth: Mapping[str, Any]) -> dict[str, Interval]:
+    """The factors of the extended twin; none where a mechanism is no formula: it may do what factors do."""
+    if "kind" in truth:
+        return {}
+    found = {}
+    for name, given in answer.get("extended", {}).get("parameters", {}).items():
+        interval = _interval(given, truth["baseline"].get(name), turns=name == "zero_deg")
+        if interval is not None:
+            found[f"baseline.{name}"] = interval
+    return found
+
+
+def _interval(given: Any, truth: float | None, *, turns: bool) -> Interval | None:
+    """One figure of an answer against the truth, which is compared on the circle where it ``turns``."""
+    if truth is None or not isinstance(given, Mapping) or given.get("low") is None or given.get("high") is None:
+        return None
+    low, high = float(given["low"]), float(given["high"])
+    if turns:
+        middle = 0.5 * (low + high)
+        truth = middle + (truth - middle + 180.0) % 360.0 - 180.0
+    return Interval(float(truth), float(given["value"]), low, high)
+
+
+def _sense_open(answer: Mapping[str, Any], truth: Mapping[str, Any]) -> bool:
+    """Whether an answer counts the other way round than the truth and says that it may."""
+    told, own = answer.get("senses"), truth["baseline"]
+    if told is None or told["decided"]:
+        return False
+    return bool((told["sensor"], told["output"]) != (own["sense"], own["channel_sense"]))
 
 
 def measured(label: str) -> bool:
     """A continuous parameter that the sweep shows: of its intervals 95 % should hold the truth, no more and no less."""
-    return label not in WHOLE | OF_A_POPULATION and not label.endswith("angle only")
+    return label not in WHOLE | OF_A_POPULATION and not label.endswith(("angle only", "sense open"))
 
 
 def chance(hits: int, total: int, share: float = 0.95) -> float:
@@ -116,33 +170,11 @@ def chance(hits: int, total: int, share: float = 0.95) -> float:
     return min(sum(terms), 1.0)
 
 
-def counted(records: Iterable[Mapping[str, bool]]) -> dict[str, tuple[int, int]]:
-    """Hits and intervals of each parameter, and of all that are measured together ("all measured")."""
-    counts: dict[str, tuple[int, int]] = {}
+def pooled(records: Iterable[Mapping[str, Interval]]) -> dict[str, list[Interval]]:
+    """The intervals of each parameter; of all that are measured together ("all measured")."""
+    found: dict[str, list[Interval]] = {}
     for record in records:
-        for label, inside in record.items():
+        for label, interval in record.items():
             for name in (label, "all measured") if measured(label) else (label,):
-                hits, total = counts.get(name, (0, 0))
-                counts[name] = (hits + inside, total + 1)
-    return counts
-
-
-def table(records: Iterable[Mapping[str, bool]]) -> Table:
-    """Share of intervals that held the truth, by cause and parameter, and the chance of so few at 95 %."""
-    counts = counted(records)
-    pooled = counts.pop("all measured", None)
-    made = Table(title="95 % intervals that hold the truth, answers that were right", title_justify="left")
-    made.add_column("parameter", no_wrap=True)
-    for heading in ("held", "share", "chance of so few"):
-        made.add_column(heading, justify="right")
-    ordered = sorted(counts.items(), key=lambda item: (not measured(item[0]), item[0]))
-    rows = [item for item in ordered if measured(item[0])]
-    rows += [("all measured", pooled)] if pooled is not None else []
-    for name, (hits, total) in [*rows, *(item for item in ordered if not measured(item[0]))]:
-        if name == "all measured":
-            made.add_section()
-        odds = f"{chance(hits, total):.2g}" if measured(name) else ""
-        made.add_row(name, f"{hits}/{total}", f"{hits / total:.2f}", odds)
-        if name == "all measured":
-            made.add_section()
-    return made
+                found.setdefault(name, []).append(interval)
+    return found

@@ -26,8 +26,8 @@ from typing import Any
 
 from rich.console import Console
 
-from .coverage import held
-from .coverage import table as coverage_table
+from .coverage import Interval, held
+from .coverage_table import table as coverage_table
 from .generator import Hidden, draw
 from .physics.generator import draw as draw_physics
 from .physics.kind import Kind
@@ -72,8 +72,8 @@ class Result:
     """RMS that the extended twin leaves over that of noise and rounding."""
     transfer: float | None = None
     """The same on another recording of the device, of which the twin has seen nothing."""
-    intervals: Mapping[str, bool] = field(default_factory=dict)
-    """By "cause.parameter": the interval held the truth."""
+    intervals: Mapping[str, Interval] = field(default_factory=dict)
+    """By "cause.parameter" or "baseline.factor", each with its truth."""
     answered: tuple[Mapping[str, Any], ...] = ()
     """The causes as the answer gave them."""
     message: str = ""
@@ -90,7 +90,7 @@ class Result:
             "cpu_s": self.cpu_s,
             "noise_ratio": self.noise_ratio,
             "transfer": self.transfer,
-            "intervals": dict(self.intervals),
+            "intervals": {label: interval.record() for label, interval in self.intervals.items()},
             "answered": [dict(entry) for entry in self.answered],
             "message": self.message,
             "truth": dict(self.truth),

@@ -210,18 +210,25 @@ def _begun(
 
 
 def _start(effects: tuple[Effect, ...], mounting: Mounting | None, given: Chain | None) -> Chain:
-    """The chain without any effect, in the field of the magnet that is named. Raises UserError."""
+    """The chain without any effect, in the field of the magnet and at the air gap that are named. Raises UserError."""
+    from dataclasses import replace
+
     from twin.chain import Chain
     from twin.errors import UserError
     from twin.magnet.assembly import Assembly
     from twin.magnet.placement import Placement
 
     start = Chain(effects=effects)
-    if mounting is None or mounting.assumed:
+    usual = Placement()
+    if mounting is None or (mounting.assumed and mounting.air_gap_mm[0] == usual.air_gap_mm):
         return start
     if given is not None:
-        raise UserError("found a twin and a mounting; give one of them: a twin brings its own magnet")
-    return start.with_magnet(Assembly(mounting.magnet, Placement(air_gap_mm=mounting.air_gap_mm[0])))
+        if mounting.assumed and len(mounting.air_gap_mm) > 1:
+            return start
+        raise UserError("found a twin and a mounting; give one of them: a twin brings its own magnet and air gap")
+    chain = start.with_magnet(Assembly(mounting.magnet, replace(usual, air_gap_mm=mounting.air_gap_mm[0])))
+    words = f"{mounting.body} at an air gap of {mounting.air_gap_mm[0]:g} mm" if mounting.assumed else ""
+    return replace(chain, effects=tuple(replace(e, assumes=words) if e.at_magnet else e for e in chain.effects))
 
 
 def _check_settings(settings: DiscoverySettings | None) -> None:

@@ -69,7 +69,7 @@ def joined(
         Where they cannot belong together.
     """
     fits = _baselines(sweeps, rng)
-    magnet = mounting.magnet if mounting is not None else Magnet()
+    magnet = _magnet(mounting, given)
     stated = mounting.air_gap_mm if mounting is not None and len(mounting.air_gap_mm) == len(sweeps) else None
     gaps = list(stated) if stated is not None else _stated(sweeps, "air_gap_mm")
     turned = list(mounting.turned_deg) if mounting is not None and mounting.turned_deg else []
@@ -79,6 +79,13 @@ def joined(
     own = {f"{ZERO.name}{MARK}{k + 1}": {"zero_deg": _own_zero(fits, setups, k)} for k in range(1, len(sweeps))}
     start = replace(chain.with_values(own), effects=_effects(effects, setups, magnet))
     return Joined(_one_sweep(sweeps, setups), start, np.concatenate([fit.outliers for fit in fits]))
+
+
+def _magnet(mounting: Mounting | None, given: Chain | None) -> Magnet:
+    """The magnet in whose field the gaps are counted: that of the device's twin, else that of the mounting."""
+    if given is not None and given.magnet is not None:
+        return given.magnet.magnet
+    return mounting.magnet if mounting is not None else Magnet()
 
 
 def _baselines(sweeps: Sequence[Sweep], rng: np.random.Generator) -> list[BaselineFit]:

@@ -211,7 +211,8 @@ class Effect:
     line : Line, optional
         For periodic shapes: the shape parameter is found by a periodogram.
     derived : callable
-        From the parameters to further figures to report: value, low, high, unit.
+        From the parameters to further figures to report: value, low, high, unit; low and high are the value itself
+        where the figure is as well known as the parameters.
     angle_only : callable
         From the parameters to low and high of those that an angle alone leaves open.
     spread : callable, optional
@@ -230,6 +231,8 @@ class Effect:
         run as built has this in place of the arctangent and of `forward`.
     at_magnet : callable, optional
         From a described magnet (:class:`twin.magnet.assembly.Assembly`) to the same effect in that magnet's field.
+    assumes : str
+        What its figures are counted against where nobody has described it, in words that an answer repeats.
     repeatable : bool
         Whether a second instance beside the first makes sense: another source with parameters of its own.
     record_wide : bool
@@ -275,6 +278,7 @@ class Effect:
     marks: Marks | None = None
     computes: Callable[[Array, Parameters], Array | None] | None = None
     at_magnet: Callable[[Any], Effect] | None = None
+    assumes: str = ""
     repeatable: bool = False
     record_wide: bool = False
     handicap: float = 0.0

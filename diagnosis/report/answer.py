@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.discovery.finding import Finding
-from diagnosis.discovery.fitting.intervals import Deviations, quantile_95, standard_deviations
+from diagnosis.discovery.fitting.intervals import Deviations, interval_of_derived, quantile_95, standard_deviations
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.marks.row_masks import raw_residual
@@ -214,6 +214,7 @@ def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
         "name": cause.name,
         "stage": effect.stage,
         "parameters": parameters(found, cause),
+        "assumed": effect.assumes or None,
         "false_alarm_probability": cause.false_alarm_probability,
         "heldout_rms_deg_before": cause.before_deg,
         "heldout_rms_deg_after": cause.after_deg,
@@ -279,8 +280,16 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
         for name, (low, high) in effect.angle_only(values).items():
             told, value = figures[name], float(values[name])
             told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
-    figures.update({name: _figure(*figure) for name, figure in derived.items()})
+    figures.update({name: _derived(fit, key, name, figure) for name, figure in derived.items()})
     return figures
+
+
+def _derived(fit: Fit, key: str, name: str, figure: tuple[float, float, float, str]) -> dict[str, Any]:
+    """A figure that follows from the parameters, with the interval that theirs make where it has none of its own."""
+    value, low, high, unit = figure
+    if low == value == high:
+        low, high = interval_of_derived(fit, key, name)
+    return _figure(value, low, high, unit)
 
 
 def _hardly_told(param: Param, deviation: float) -> dict[str, Any]:

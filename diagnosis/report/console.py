@@ -17,7 +17,7 @@ from diagnosis.report.change_words import change_line, change_name, change_rival
 from diagnosis.report.recordings import recordings_notes, recordings_table, where_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.statements import FactorRow
-from diagnosis.report.wording import chance
+from diagnosis.report.wording import assumed_words, chance
 
 _ALL_SAID = ("adequate", "explained")
 """Verdicts that leave nothing open."""
@@ -190,8 +190,8 @@ def _columns(width: int, figures: Sequence[int]) -> Table:
 def _details(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list[str]:
     """A cause's parameters and what else it might be; structure without a name in words."""
     lines = statements.parameter_lines(answer, cause)
-    said = (where_words(cause), statements.single_rows_words(cause), statements.rivals_words(cause))
-    return [*lines, *filter(None, said)]
+    figures = (assumed_words(cause), where_words(cause), statements.single_rows_words(cause))
+    return [*lines, *filter(None, (*figures, statements.rivals_words(cause)))]
 
 
 def _verdict(answer: Mapping[str, Any]) -> RenderableType:

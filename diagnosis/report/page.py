@@ -20,7 +20,7 @@ from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.style import CSS
 from diagnosis.report.svg import Plot
 from diagnosis.report.tables import number
-from diagnosis.report.wording import minus, plain
+from diagnosis.report.wording import assumed_words, minus, plain
 from twin.catalogue import find
 from twin.whole_file import write_beside
 
@@ -175,7 +175,8 @@ def _cause(
         )
     else:
         words = f"<p>Stage: {escape(effect.stage)}. Signature in the error: {escape(minus(effect.signature))}.</p>"
-    where = f"<p>{statements.sentence(_text(where_words(cause)))}</p>" if where_words(cause) else ""
+    said = filter(None, (assumed_words(cause), where_words(cause)))
+    where = "".join(f"<p>{statements.sentence(_text(words))}</p>" for words in said)
     gain = (
         f"{where}<p>RMS on held-out readings, without it and with it: {_text(statements.held_words(cause))} deg. "
         f"{statements.sentence(_text(statements.single_rows_words(cause)))}</p>"

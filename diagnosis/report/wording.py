@@ -14,6 +14,8 @@ from twin.catalogue import CATALOGUE
 _MOST_DECIMALS = 7
 _FIFTY = 50
 """Readings of which an RMS is known to a tenth."""
+_LOPSIDED = 1.5
+"""Ratio of the two sides of an interval from which on both ends are told."""
 _ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT|mm|mm2|ms2|ms3|lsb|Hz|s)$")
 _NUMBERED = re.compile(r"^(?P<name>.*?)(?:_(?P<number>\d+))?$")
 
@@ -101,7 +103,18 @@ def with_unit(parameter: Mapping[str, Any], unit: str | None = None, scale: floa
     if parameter["value"] is None or math.isnan(parameter["value"]):
         return figure(parameter)[0]
     shown = unit_shown(parameter["unit"]) if unit is None else unit
+    if _lopsided(parameter):
+        value, low, high = (plain(parameter[end] * scale, 2) for end in ("value", "low", "high"))
+        return f"{f'{value} {shown}'.rstrip()} ({low} to {high})"
     return " ".join(part for part in (*figure(parameter, scale), shown) if part)
+
+
+def _lopsided(parameter: Mapping[str, Any]) -> bool:
+    """Whether a figure above zero is known to a factor rather than to a difference, so that half a width misleads."""
+    value, low, high = (parameter[end] for end in ("value", "low", "high"))
+    if low is None or high is None or not math.isfinite(high) or low <= 0.0:
+        return False
+    return bool(high - value > _LOPSIDED * (value - low) > 0.0)
 
 
 def unit_shown(unit: str) -> str:
@@ -145,6 +158,12 @@ def parameter_line(parameters: Mapping[str, Any]) -> str:
     line = ", ".join(f"{label(name)} {with_unit(parameter)}" for name, parameter in told.items())
     rest = ", ".join(label(name) for name in parameters if name not in told)
     return f"{line}; hardly told by this sweep: {rest}" if rest else line
+
+
+def assumed_words(cause: Mapping[str, Any]) -> str:
+    """What a cause's millimetres and millitesla are counted against where nobody has described the magnet."""
+    assumed = cause.get("assumed")
+    return f"assumed, as no magnet is described (--magnet, --twin): {assumed}" if assumed else ""
 
 
 # ---- findings ---------------------------------------------------------------------------------------------------

@@ -99,9 +99,21 @@ def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str,
     }
 
 
+def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
+    """The displacements: of the sensor, of the magnet's field at the sensor, and their geometric mean."""
+    mean = float(np.sqrt(np.abs(values["product_mm2"])))
+    share = float(np.exp(0.5 * values["log_ratio"]))
+    figures = {
+        "displacement_mm": mean,
+        "sensor_displacement_mm": float(values["off_axis_mm"]) + mean * share,
+        "field_displacement_mm": mean / share,
+    }
+    return {name: (value, value, value, "mm") for name, value in figures.items()}
+
+
 def at_magnet(assembly: Assembly) -> Effect:
     """The effect in the field of a described magnet."""
-    return replace(MAGNET_MISALIGNMENT, forward=Misplaced(UnevenField(assembly), described=True))
+    return replace(MAGNET_MISALIGNMENT, forward=Misplaced(UnevenField(assembly), described=True), assumes="")
 
 
 def _shape(unit: str, bound: float, doc: str, **about: Any) -> Param:
@@ -179,7 +191,9 @@ MAGNET_MISALIGNMENT = Effect(
         *("sensor_tilt_x_deg", "sensor_tilt_y_deg", "magnet_tilt_x_deg", "magnet_tilt_y_deg"),
     ),
     drawing=drawing,
+    derived=derived,
     at_magnet=at_magnet,
+    assumes="a cylinder of 6 mm x 2.5 mm at an air gap of 1.5 mm",
     source="field of a diametral cylinder off its axis: Caciagli et al., J. Magn. Magn. Mater. 456 (2018) 423; its "
     "series: Jackson, Classical Electrodynamics, 3rd ed., section 3.7; counted for 6 mm x 2.5 mm at 1.5 mm where no "
     "magnet is described, typical assumptions",

@@ -30,7 +30,7 @@ def at_magnet(assembly: Any) -> Effect:
     """The effect beside a described magnet (an ``Assembly``): its millitesla count against that magnet's field."""
     known = STRAY_FIELD.params["field_mT"]
     own = replace(known, null=float(np.clip(assembly.nominal_mT, known.lower, known.upper)))
-    return replace(STRAY_FIELD, params={**STRAY_FIELD.params, "field_mT": own})
+    return replace(STRAY_FIELD, params={**STRAY_FIELD.params, "field_mT": own}, assumes="")
 
 
 STRAY_FIELD = Effect(
@@ -63,6 +63,7 @@ STRAY_FIELD = Effect(
     },
     forward=forward,
     at_magnet=at_magnet,
+    assumes=f"a field of {FIELD_MT:g} mT at the sensor",
     needs=frozenset({"two mountings"}),
     source="superposition of fields; a constant added to both channels ahead of the gains",
     signature="order 1: the same as offset",

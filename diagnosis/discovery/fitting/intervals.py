@@ -34,6 +34,34 @@ def quantile_95(fit: Fit) -> float:
     return float(stdtrit(freedom, _TWO_SIDED_95))
 
 
+def interval_of_derived(fit: Fit, key: str, name: str) -> tuple[float, float]:
+    """Low and high of a figure above zero that follows from an effect's parameters.
+
+    The delta method on its logarithm: its 95 % interval has no end below zero.
+    """
+    effect = find(key, fit.chain.effects)
+    values = {**effect.null(), **fit.chain.values[key]}
+    places = [place for place, one in enumerate(fit.free) if one.key == key and one.turn is None]
+    value = effect.derived(values)[name][0]
+    if value <= 0.0 or not places:
+        return value, value
+    covariance = fit.covariance()[np.ix_(places, places)]
+
+    def log_at(parameter: str, by: float) -> float:
+        moved = effect.derived({**values, parameter: float(values[parameter]) + by})[name][0]
+        return float(np.log(max(moved, 1e-300)))
+
+    steps = 1e-4 * np.sqrt(np.diag(covariance))
+    names = [fit.free[place].name for place in places]
+    slope = [
+        (log_at(one, step) - log_at(one, -step)) / (2.0 * step) if 0.0 < step < np.inf else 0.0
+        for one, step in zip(names, steps, strict=True)
+    ]
+    known = np.where(np.isfinite(covariance), covariance, 0.0)
+    factor = float(np.exp(quantile_95(fit) * np.sqrt(max(float(slope @ known @ slope), 0.0))))
+    return value / factor, value * factor
+
+
 def may_be_null(fit: Fit, key: str) -> bool:
     """Whether nothing may be there: whether the joint 95 % region of a cause's strengths and phases holds their null.
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diagnosis import explain
+from diagnosis.factors.mounting import Mounting
 from scenarios.commands.protocol import Protocol
 from twin.chain import Chain
 from twin.magnet.assembly import Assembly
@@ -73,4 +76,22 @@ def test_what_the_sweep_hardly_tells_is_marked_and_named_without_a_figure() -> N
     assert "sensor_tilt_x_deg" not in told
     product = cause["parameters"]["product_mm2"]
     assert product["low"] < 0.06 < product["high"]
-    assert "hardly told by this sweep: " in " ".join(found.summary(width=400).split())
+    said = " ".join(found.summary(width=400).split())
+    assert "hardly told by this sweep: " in said
+    # The displacements themselves, counted for a magnet that nobody has described; of 0.3 and 0.2 mm.
+    for name, truth in (("", 0.06**0.5), ("sensor_", 0.3), ("field_", 0.2)):
+        figure = cause["parameters"][f"{name}displacement_mm"]
+        assert figure["low"] < truth < figure["high"], name
+    assert "cylinder of 6 mm x 2.5 mm" in cause["assumed"]
+    assert "assumed, as no magnet is described (--magnet, --twin): a cylinder of 6 mm x 2.5 mm" in said
+
+
+def test_an_air_gap_that_is_stated_counts_for_the_assumed_magnet() -> None:
+    """Twice as far away the same turn of the field is that of larger displacements."""
+    place = Placement(sensor_x_mm=0.5, magnet_y_mm=0.4, air_gap_mm=3.0)
+    device = Chain(magnet=Assembly(placement=place)).with_effect("noise", rms_deg=0.02)
+    sweep = device.simulate(Protocol(turns=2).motion(), seed=1)
+    (cause,) = explain(sweep, mounting=replace(Mounting.unstated(), air_gap_mm=(3.0,))).to_dict()["causes"]
+    assert cause["assumed"] == "a cylinder of 6 mm x 2.5 mm at an air gap of 3 mm"
+    figure = cause["parameters"]["displacement_mm"]
+    assert figure["low"] < 0.2**0.5 < figure["high"]

@@ -21,6 +21,7 @@ from twin.catalogue import unnamed
 from twin.chain import Chain
 from twin.each_recording import device_of, everywhere
 from twin.effect import BoolArray
+from twin.moved_placement import settled
 from twin.sweep import Sweep
 
 REPEATED, HELD_OUT = "repeated readings", "held-out readings"
@@ -109,7 +110,7 @@ class Discovery:
     @property
     def device(self) -> Chain:
         """The extended twin as it is in a single recording: of several, in the first one's."""
-        return device_of(self.fit.chain)
+        return settled(device_of(self.fit.chain))
 
     @property
     def verdict(self) -> str:

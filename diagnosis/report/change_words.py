@@ -13,7 +13,7 @@ OTHER_DEVICE = "This is not that device's twin"
 
 def change_name(change: Mapping[str, Any]) -> str:
     """A parameter of the twin that has changed, as people read it: a factor's name, or an effect's and its own."""
-    effect, _, name = change["parameter"].partition(".")
+    effect, _, name = change["parameter"].rpartition(".")
     factor = next((one.label for one in FACTORS if (one.key, one.param) == (effect, name)), "")
     return factor or f"{effect.replace('#', ' ')} {label(name)}"
 

@@ -70,6 +70,28 @@ STAGES: tuple[Mutation, ...] = (
             "other = another_device(full, told.free, found)",
             "stages/test_changes.py::test_what_has_changed_is_named_and_the_rest_stays",
         ),
+        (
+            "changes.no_magnet_is_ever_moved",
+            "if (found or state.keys or together) and not other:",
+            "if False:",
+            "stages/test_changes.py::test_a_magnet_that_was_moved_is_named_by_the_number_of_its_placement",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/mountings.py",
+        "tests/diagnosis",
+        (
+            "mountings.a_turn_is_known_from_statements_alone",
+            "turned = far and _alike(setups, sweeps, place) and _turned(fits, sweeps, place)",
+            "turned = False",
+            "test_several_recordings.py::test_a_turned_sensor_parts_the_reference_from_the_sensor",
+        ),
+        (
+            "mountings.a_zero_that_has_moved_is_always_a_turn",
+            "turned = far and _alike(setups, sweeps, place) and _turned(fits, sweeps, place)",
+            "turned = far",
+            "test_several_recordings.py::test_a_zero_that_has_moved_is_the_references_where_nothing_tells_otherwise",
+        ),
     ),
     *of_one_file(
         f"{_D}/stages/own_parameters.py",

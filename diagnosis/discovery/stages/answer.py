@@ -56,7 +56,8 @@ def _as_given(state: State) -> Array:
     """The held-out residual (n,) [rad] of a given twin as it is."""
     if state.given is None or state.fold is None:
         return state.held_out[0]
-    before = set_back(state.fit, [one for one in state.own if one in state.fit.free], state.given)
+    own = {*state.own, *(change.free for change in state.changed)}
+    before = set_back(state.fit, [one for one in state.fit.free if one in own], state.given)
     return held_out_residual(before, state.keys, (), state.fold)
 
 

@@ -8,16 +8,21 @@ import numpy as np
 
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.f_test import log_probability
-from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve, value_of
 from diagnosis.discovery.fitting.own_parameters import set_back
+from diagnosis.discovery.fitting.projection import projected
 from diagnosis.discovery.proof.changes import TWIN_VARIANCE, Change, Differences, another_device
-from diagnosis.discovery.search.likelihood_ratio import add
+from diagnosis.discovery.search.likelihood_ratio import add, drop
 from diagnosis.discovery.search.rivals import judge
 from diagnosis.discovery.search.screening import Base, Candidate, screen
 from diagnosis.discovery.state import State
-from twin.catalogue import base_name, unnamed
+from twin.catalogue import base_name, find, unnamed
 from twin.each_recording import everywhere
 from twin.effect import Effect
+from twin.moved_placement import PLACEMENT, movable
+
+_TRIED = 4
+"""Moved numbers of a placement that are fitted exactly: a displacement from both sides, and what it is mistaken for."""
 
 
 def changes(state: State) -> State:
@@ -33,7 +38,12 @@ def changes(state: State) -> State:
     found = told.changes(full, twin)
     other = another_device(full, told.free, found) or _counts_otherwise(state)
     fit = _with(state, found)
-    if _leaves_more_than_chance(state, fit, told.threshold):
+    together = _leaves_more_than_chance(state, fit, told.threshold)
+    if (found or state.keys or together) and not other:
+        placement = _placement_instead(state, found, fit, told)
+        if placement is not None and not _leaves_more_than_chance(state, placement.fit, told.threshold):
+            return placement
+    if together:
         # Each within its chance, but not all together: what the earlier mounting hardly told stays free.
         return state.with_(changed=found, other_device=other, fitted_anew=True, held=())
     if found and not other:
@@ -108,6 +118,63 @@ def _instead(state: State, found: Sequence[Change], fit: Fit, price: float) -> S
             finding = Finding((key,), judged.log_p, judged.gain, family, judged.rivals)
             return state.with_(trial, keys=(*state.keys, key), findings=(finding, *state.findings), held=())
     return None
+
+
+def _placement_instead(state: State, found: Sequence[Change], fit: Fit, told: Differences) -> State | None:
+    """The state with one number of the magnet's placement moved, where that does the same as changes and causes do.
+
+    It takes the place of all changes, and of one cause or none: where it does that with fewer parameters.
+    """
+    assert state.given is not None
+    given = movable(state.given)
+    if given is state.given:
+        return None
+    terms = {key: sum(one.key == key for one in state.fit.free) for key in state.keys}
+    worth = _squares(state, fit) + told.price * (len(found) + sum(terms.values())) - 2.0 * state.settings.swap_log_odds
+    tried = []
+    for dropped in (None, *state.keys):
+        without = _with(state, ()) if dropped is None else drop(_with(state, ()), dropped)
+        kept = sum(count for key, count in terms.items() if key != dropped)
+        for trial in _moved_placements(without):
+            tried.append((_squares(state, trial) + told.price * (1 + kept), dropped, trial))
+    best, dropped, trial = min(tried, key=lambda one: one[0])
+    if best >= worth:
+        return None
+    gain = _squares(state, drop(trial, PLACEMENT)) - _squares(state, trial)
+    alike = [other.free[-1].name for value, key, other in tried if key == dropped and value < best + told.same]
+    moved = trial.free[-1]
+    log_p = told.log_p(gain)
+    change = Change(
+        free=moved,
+        owner=find(PLACEMENT, trial.chain.effects).owner(moved.name),
+        was=value_of(given, moved),
+        gain=gain,
+        log_p=log_p,
+        family_log_p=log_p + float(np.log(told.family + len(find(PLACEMENT, trial.chain.effects).params))),
+        rivals=tuple(f"{PLACEMENT}.{name}" for name in dict.fromkeys(alike) if name != moved.name),
+    )
+    keys = tuple(key for key in state.keys if key != dropped)
+    findings = tuple(one for one in state.findings if dropped not in one.keys)
+    return state.with_(trial, given=given, keys=keys, findings=findings, changed=(change,), held=())
+
+
+def _moved_placements(fit: Fit) -> list[Fit]:
+    """A fit with one number of the magnet's placement moved: each of those that promise most, to either side."""
+    chain, begun = movable(fit.chain), []
+    effect = find(PLACEMENT, chain.effects)
+    for name, param in effect.params.items():
+        free = (*fit.free, Free(PLACEMENT, name))
+        for side in (-1.0, 1.0):
+            # On the axis what a displacement does is of second order: from there no fit sets out.
+            moved = chain.with_values({PLACEMENT: {**effect.null(), name: param.null + side * param.typical}})
+            begun.append(evaluate(moved, free, fit.observations, fit.weighting))
+    return [solve(one) for one in sorted(begun, key=_left_to_first_order)[:_TRIED]]
+
+
+def _left_to_first_order(fit: Fit) -> float:
+    """Chi-squared that a fit would leave were the chain linear in its free parameters."""
+    left = projected(*fit.whitened())
+    return float(left @ left)
 
 
 def _with_rivals(state: State, found: Sequence[Change], fit: Fit, same: float) -> tuple[Change, ...]:

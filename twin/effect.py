@@ -211,8 +211,7 @@ class Effect:
     line : Line, optional
         For periodic shapes: the shape parameter is found by a periodogram.
     derived : callable
-        From the parameters to further figures to report: value, low, high, unit; low and high are the value itself
-        where the figure is as well known as the parameters.
+        From the parameters to further figures: value, low, high (both the value: as well known as they are), unit.
     angle_only : callable
         From the parameters to low and high of those that an angle alone leaves open.
     spread : callable, optional
@@ -229,10 +228,8 @@ class Effect:
         For a stage that computes the angle: from the channels (..., 2, n) and its parameters to the angle [rad]
         (..., 1, n) as its integers return it, or None where the parameters do not say how it is built. Where they do, a
         run as built has this in place of the arctangent and of `forward`.
-    at_magnet : callable, optional
-        From a described magnet (:class:`twin.magnet.assembly.Assembly`) to the same effect in that magnet's field.
-    assumes : str
-        What its figures are counted against where nobody has described it, in words that an answer repeats.
+    at_magnet, assumes : callable, optional, and str
+        From a described magnet (an ``Assembly``) to the same effect in its field; what figures count against without.
     repeatable : bool
         Whether a second instance beside the first makes sense: another source with parameters of its own.
     record_wide : bool

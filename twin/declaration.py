@@ -124,7 +124,7 @@ def _unclear(name: str, param: Param) -> Iterator[str]:
     low, high = param.allowed or (param.lower, param.upper)
     if not param.lower <= low <= param.null <= high <= param.upper:
         yield f"{name}: allowed is {param.allowed}; expected a range within [lower, upper] that holds the null"
-    if not np.isfinite(param.field_power) or not 0.0 <= param.scatter < np.inf:
+    if not (callable(param.field_power) or np.isfinite(param.field_power)) or not 0.0 <= param.scatter < np.inf:
         yield f"{name}: field_power and scatter must be finite, and scatter not negative"
 
 

@@ -361,7 +361,8 @@ class Effect:
         Either may be an array; so is then the factor.
         """
         param = self.params[name]
-        factor = field_ratio**param.field_power
+        power = param.field_power(values) if callable(param.field_power) else param.field_power
+        factor = field_ratio**power
         return factor if param.distance_power is None else factor * distance_ratio ** param.distance_power(values)
 
     @property

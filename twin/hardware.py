@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.adc.adc_quantisation import ADC_QUANTISATION, codes_of
+from twin.adc.adc_quantisation import ADC_QUANTISATION, codes_of, range_of
 from twin.angles import Array
 from twin.catalogue import STAGES, output_grid
 from twin.chain import Chain, Step
@@ -157,5 +157,6 @@ def _codes(chain: Chain, channels: Array) -> Codes | None:
     converter = chain.parts.converter
     if converter is not None:
         return np.asarray(np.round(channels / converter.step), dtype=np.int64)
-    bits = int(chain.values.get(ADC_QUANTISATION.name, {}).get("bits", 0))
-    return codes_of(channels, bits) if bits > 0 else None
+    stated = chain.values.get(ADC_QUANTISATION.name, {})
+    bits = int(stated.get("bits", 0))
+    return codes_of(channels, bits, range_of(stated)) if bits > 0 else None

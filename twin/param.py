@@ -63,9 +63,10 @@ class Param:
         Whether it is a whole number (bits, orders, iterations).
     allowed : tuple of float, optional
         Lowest and highest value that physics allows, where a fit is given more room; training sweeps keep to it.
-    field_power : float
+    field_power : float or callable
         Power of the magnet's field at the sensor with which it changes, device and gain kept: 0 for angles, -1 for what
-        is constant in volts or millitesla but counted in amplitudes of the channels.
+        is constant in volts or millitesla but counted in amplitudes of the channels. A callable gives it for the
+        effect's parameters.
     distance_power : callable, optional
         From the effect's parameters to the power of the distance from the magnet's centre with which it also changes.
     mirror : {-1, 0, 1}, optional
@@ -95,7 +96,7 @@ class Param:
     typical: float = 0.1
     counts: bool = False
     allowed: tuple[float, float] | None = None
-    field_power: float = 0.0
+    field_power: float | Callable[[Parameters], Any] = 0.0
     distance_power: Callable[[Parameters], Any] | None = None
     mirror: Literal[-1, 0, 1] | None = None
     prior_sd: float = 0.0

@@ -40,6 +40,13 @@ def simulate(
         int | None,
         typer.Option(metavar="N", help="Lines of the reference encoder (4 counts each). Without: as the twin says."),
     ] = None,
+    air_gap: Annotated[
+        float | None,
+        typer.Option(
+            metavar="mm",
+            help="Air gap in mm, in place of the twin's: what is constant in volts is then another share of the field.",
+        ),
+    ] = None,
     trace: Annotated[Path | None, written("Write every intermediate signal with its unit as CSV.")] = None,
     plot: Annotated[Path | None, written("Draw the trace: .png, .svg or .pdf.")] = None,
     force: Force = False,
@@ -49,7 +56,7 @@ def simulate(
 ) -> None:
     """Simulate a sweep from a twin, on a protocol or on a recorded motion."""
     from scenarios.commands.protocol import Protocol, numbers
-    from scenarios.commands.simulate import Outputs, run
+    from scenarios.commands.simulate import Instead, Outputs, run
     from twin.bounded_input import bytes_of
 
     protocol = Protocol(
@@ -67,7 +74,7 @@ def simulate(
         max_bytes=bytes_of(max_size),
         protocol=protocol,
         seed=seed,
-        reference_lines=reference_lines,
+        instead=Instead(reference_lines=reference_lines, air_gap_mm=air_gap),
         effect_files=effects or (),
     )
 

@@ -11,7 +11,9 @@ from scenarios.commands.outputs import PICTURE, SWEEP, TABLE, OutputFiles
 from scenarios.commands.protocol import Protocol
 from scenarios.commands.trace import trace, trace_text
 from scenarios.commands.trace_plot import trace_figure
+from twin.air_gap import at_air_gap
 from twin.bounded_input import LARGEST_SWEEP_BYTES
+from twin.chain import Chain
 from twin.extensions import effects_with
 from twin.presets import read_twin_or_preset
 from twin.reference.encoder import Encoder
@@ -33,6 +35,25 @@ class Outputs:
     force: bool = False
 
 
+@dataclass(frozen=True, kw_only=True)
+class Instead:
+    """What is other than the twin says: lines of the reference encoder, and the air gap [mm]; None: as there."""
+
+    reference_lines: int | None = None
+    air_gap_mm: float | None = None
+
+    def of(self, chain: Chain) -> Chain:
+        """The twin as it is then: the same device at that gap."""
+        if self.air_gap_mm is not None:
+            chain = at_air_gap(chain, self.air_gap_mm)
+        if self.reference_lines is not None:
+            chain = replace(chain, encoder=replace(chain.encoder or Encoder(), lines=self.reference_lines))
+        return chain
+
+
+_AS_IT_IS = Instead()
+
+
 def run(
     twin: str,
     outputs: Outputs,
@@ -40,22 +61,17 @@ def run(
     recorded: Path | None,
     protocol: Protocol,
     seed: int,
-    reference_lines: int | None = None,
+    instead: Instead = _AS_IT_IS,
     effect_files: Sequence[Path] = (),
     max_bytes: int = LARGEST_SWEEP_BYTES,
 ) -> None:
-    """Simulate on the protocol, or on the motion of a recorded sweep, and write what was asked for.
-
-    ``reference_lines``: lines of the reference encoder, in place of those of the twin's [reference]; None: as there.
-    """
+    """Simulate on the protocol, or on the motion of a recorded sweep, and write what was asked for."""
     files = OutputFiles.checked(
         [(outputs.sweep, SWEEP), (outputs.trace, TABLE), (outputs.plot, PICTURE)],
         inputs=[twin, recorded, *effect_files],
         force=outputs.force,
     )
-    chain = read_twin_or_preset(twin, effects=effects_with(effect_files))
-    if reference_lines is not None:
-        chain = replace(chain, encoder=replace(chain.encoder or Encoder(), lines=reference_lines))
+    chain = instead.of(read_twin_or_preset(twin, effects=effects_with(effect_files)))
     # A recorded motion holds the reference's readings: the shaft is where its errors are undone.
     motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded, max_bytes=max_bytes).motion())
     sweep = chain.simulate(motion, seed=seed)

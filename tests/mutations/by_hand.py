@@ -280,7 +280,7 @@ TWIN: tuple[Mutation, ...] = (
     Mutation(
         "design.saturation_grows_with_the_field",
         "twin/concentrator/saturation.py",
-        "field_power=2.0",
+        "field_power=exponent_of",
         "field_power=1.0",
         (f"{_DESIGN}::test_a_causes_error_goes_with_its_power_of_the_field",),
         short=True,
@@ -298,6 +298,20 @@ TWIN: tuple[Mutation, ...] = (
         "before * right + after * left, both",
         "before * left + after * right, both",
         ("tests/twin/test_acceleration.py::test_acceleration_of_a_parabola_is_exact_between_uneven_readings",),
+    ),
+    Mutation(
+        "air_gap.codes_reach_as_far_at_every_gap",
+        "twin/adc/adc_quantisation.py",
+        "    reach = range_of(values)\n",
+        "    reach = FULL_SCALE\n",
+        ("tests/twin/test_air_gap.py::test_as_built_the_converter_keeps_its_range_in_volts",),
+    ),
+    Mutation(
+        "air_gap.percentages_stay",
+        "twin/air_gap.py",
+        "values[name] * effect.field_factor(name, values, **ratios)",
+        "values[name]",
+        ("tests/twin/test_air_gap.py::test_expected_errors_at_each_gap_are_those_of_first_principles",),
     ),
     Mutation(
         "design.quadratic_term_keeps_its_share",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from scenarios.commands.protocol import Protocol
-from scenarios.commands.simulate import Outputs, run
+from scenarios.commands.simulate import Instead, Outputs, run
 from scenarios.commands.trace import trace
 from twin.angles import TAU
 from twin.chain import Chain
@@ -71,7 +71,7 @@ def test_the_option_replaces_the_lines_of_the_file(tmp_path: Path) -> None:
             recorded=None,
             protocol=Protocol(points=97),
             seed=1,
-            reference_lines=lines,
+            instead=Instead(reference_lines=lines),
         )
         counts = Sweep.read(out).reference_deg / count_deg
         np.testing.assert_allclose(counts, np.round(counts), atol=1e-6)

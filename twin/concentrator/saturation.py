@@ -14,10 +14,15 @@ CUBIC = 2.0
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     k = 0.01 * np.asarray(values["k_percent"])
-    exponent = np.asarray(values.get("exponent", CUBIC), dtype=np.float64)
+    exponent = exponent_of(values)
     if np.all(exponent == CUBIC):
         return signal - k * (signal * signal * signal)
     return np.asarray(signal - k * of_order_4(exponent) * signal * np.abs(signal) ** exponent)
+
+
+def exponent_of(values: Parameters) -> Array:
+    """The loss's exponent: the power of the field with which its share grows."""
+    return np.asarray(values.get("exponent", CUBIC), dtype=np.float64)[()]
 
 
 def of_order_4(exponent: Array) -> Array:
@@ -37,7 +42,7 @@ SATURATION = Effect(
     stage="concentrator",
     acts_on="channels",
     params={
-        # The next odd term of a magnetisation curve that bends down: it grows with the square of the field.
+        # Of a cubic, the next odd term of a magnetisation curve that bends down, it grows with the square of the field.
         "k_percent": Param(
             unit="%",
             null=0.0,
@@ -45,7 +50,7 @@ SATURATION = Effect(
             upper=30.0,
             doc="loss at full amplitude, c - k c^3, or that of the cubic with the same order 4",
             typical=0.5,
-            field_power=2.0,
+            field_power=exponent_of,
         ),
         "exponent": Param(
             unit="1",

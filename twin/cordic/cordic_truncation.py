@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from twin.adc.adc_quantisation import codes_of
+from twin.adc.adc_quantisation import codes_of, full_scale, range_of
 from twin.angles import Array, radians, wrap
 from twin.cordic import bit_true
 from twin.cordic.bit_true import Cordic, angle_rad
@@ -83,7 +83,9 @@ def _angle(channels: Array, values: Parameters) -> Array:
     unit = unit_of(values)
     if unit is None:
         return _cut_short(np.asarray(np.arctan2(y, x)), values)
-    words, _ = bit_true.vectoring(codes_of(x, unit.word_bits), codes_of(y, unit.word_bits), unit)
+    reach = float(np.ravel(range_of(values))[0])
+    codes = [codes_of(one, unit.word_bits, reach) for one in (x, y)]
+    words, _ = bit_true.vectoring(codes[0], codes[1], unit)
     return angle_rad(words, unit.angle_bits)
 
 
@@ -148,6 +150,7 @@ CORDIC_TRUNCATION = Effect(
         "word_bits": _words(0, "of the codes that it takes; 0: unbounded", lower=0, upper=32),
         "guard_bits": _words(3, "more in its data path", lower=0, upper=24),
         "angle_bits": _words(0, "of the angle's register; 0: exact", lower=0, upper=48),
+        "full_scale_percent": full_scale(),
     },
     forward=forward,
     computes=computes,

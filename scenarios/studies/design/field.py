@@ -24,7 +24,7 @@ from twin.parts import Parts
 
 TOLERANCE = 1e-7
 """Of the field's series, relative to the smallest |B|: 6e-6 deg."""
-_CONVERTER = "adc"
+_CONVERTER = frozenset({"adc", "cordic"})
 """Stage of the effects that are counted in the converter's range."""
 
 
@@ -181,7 +181,7 @@ def scaled_values(chain: Chain, magnet: Assembly) -> dict[str, dict[str, Any]]:
 
 def followed(effect: Effect) -> tuple[str, ...]:
     """The parameters of an effect that follow the field or the distance; the converter's range follows the signal."""
-    return () if effect.stage == _CONVERTER else effect.follow_field
+    return () if effect.stage in _CONVERTER else effect.follow_field
 
 
 def errors_deg(chain: Chain, designs: Designs, motion: Motion) -> Array:

@@ -32,6 +32,9 @@ Footprint = Literal["mean", "spread", "values", "sequence"]
 """Where an effect leaves its mark: on the expected reading, on its spread, on the set of values that readings can
 take, or on single readings and their sequence."""
 
+TOLD_APART_BY = frozenset({"vx", "two air gaps", "two mountings"})
+"""Needs of an effect that acts without them too: they tell it from what else does the same to an angle."""
+
 BoolArray = NDArray[np.bool_]
 Drawing = Callable[[Array, Array, Motion], Mapping[str, Array]]
 """Draws an effect's parameters for training sweeps.
@@ -328,11 +331,26 @@ class Effect:
         """What a sweep lacks for this effect to be visible, sorted."""
         return tuple(sorted(need for need in self.needs if not any(part in provides for part in need.split("|"))))
 
+    def acts_in(self, provides: frozenset[str]) -> bool:
+        """Whether what it would do to the readings of such a sweep is known, even where something else does the same.
+
+        Then it may stand behind a cause that the sweep names, though the sweep alone can never name it.
+        """
+        return all(TOLD_APART_BY.intersection(need.split("|")) for need in self.missing(provides))
+
     def stair_rad(self, values: Parameters) -> float:
         """Mean step [rad] between the angles that a reading can take; 0 where it can take any."""
         if self.attainable is None or self.is_null(values):
             return 0.0
         return TAU / self.attainable(values).size if self.stair is None else self.stair(values)
+
+    def alone(self, name: str) -> Effect:
+        """The same effect where one of its parameters is its only strength, and all others stay at their null."""
+        params = {other: replace(param, role="shape") for other, param in self.params.items()}
+        params[name] = replace(params[name], role="strength")
+        return replace(
+            self, params=params, shapes=_one_shape, zoomed=(), fitted_shapes=(), channel_shapes=(), line=None
+        )
 
     @property
     def whole(self) -> bool:

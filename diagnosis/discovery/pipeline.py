@@ -27,6 +27,7 @@ from diagnosis.discovery.stages.quantisation import quantisation
 from diagnosis.discovery.stages.recording_levels import recording_levels
 from diagnosis.discovery.stages.recordings_alone import recordings_alone
 from diagnosis.discovery.stages.repeated_frames import repeated_frames
+from diagnosis.discovery.stages.rival_fits import rival_fits
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.stages.sense_check import sense_check
 from diagnosis.discovery.stages.spread import spread
@@ -59,6 +60,7 @@ PIPELINE: tuple[Stage, ...] = (
     recordings_alone,  # of several recordings, whether they share one device
     answer,  # one entry a cause, with its figures
     listed,  # only entries that their own figures bear out
+    rival_fits,  # all that explains the readings as well, for how far the factors are known
     further_measurements,  # what would part each cause from its rivals
     predictive_check,  # would sweeps simulated from the extended twin look alike
 )

@@ -37,8 +37,10 @@ class Discovery:
     ``cut_short`` the stage in which the search was stopped, where it was; ``misfits`` what the extended twin does not
     predict although neither a cause nor structure tells of it. ``changed`` are the parameters of a given twin that have
     moved, ``other_device`` whether so many have that it is another device's, ``fitted_anew`` whether the others were
-    not held at the twin's values. ``alone`` is each of several recordings fitted by itself, and ``whole_recordings``
-    whether these were held out as a whole.
+    not held at the twin's values. ``in_factors`` are effects that an angle alone never tells from the error model's
+    factors, which hold what they do. ``rival_fits`` are the fits with another effect, whose name stands beside, in the
+    place of a cause. ``alone`` is each of several recordings fitted by itself, and ``whole_recordings`` whether these
+    were held out as a whole.
     """
 
     sweep: Sweep
@@ -57,11 +59,13 @@ class Discovery:
     other_device: bool = False
     fitted_anew: bool = False
     invisible: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    in_factors: tuple[str, ...] = ()
     likeness: PredictiveCheck | None = None
     lack: LackOfFit | None = None
     misfits: tuple[Misfit, ...] = ()
     cut_short: str | None = None
     alone: tuple[Alone, ...] = ()
+    rival_fits: tuple[tuple[str, Fit], ...] = ()
     whole_recordings: bool = False
 
     def __repr__(self) -> str:
@@ -99,11 +103,15 @@ class Discovery:
                 for effect in state.effects
                 if not unnamed(effect.name) and not effect.visible_in(provides)
             },
+            in_factors=tuple(
+                sorted(everywhere(e.name) for e in state.effects if not e.visible_in(provides) and e.acts_in(provides))
+            ),
             likeness=state.likeness,
             lack=state.lack,
             misfits=misfits(fit, state.likeness, state.lack),
             cut_short=state.watch.stopped_in,
             alone=state.alone,
+            rival_fits=state.rival_fits,
             whole_recordings=state.fold is not None and are_halves(fit, state.fold),
         )
 

@@ -43,7 +43,8 @@ class State:
     the raw rows (n_raw,) that single-reading causes have claimed; ``looked_at``, how many effects were searched for;
     ``fold`` (n,), the block in which each row was held out; ``held``, held-out residuals (n,) [rad] of the baseline and
     after each of ``keys``, and once there is an answer after each of ``causes``; ``causes``, the entries of
-    the answer; ``likeness``, the predictive check; ``lack``, what is left against repeated readings. Of a given twin
+    the answer; ``rival_fits``, by name the fits with another effect in the place of one of these that are as good;
+    ``likeness``, the predictive check; ``lack``, what is left against repeated readings. Of a given twin
     also ``own``, its parameters that are asked whether they have moved, ``changed``, those that have,
     ``other_device``, whether so many have that it is another's twin, and ``fitted_anew``, whether the others were not
     held at its values, as it hardly tells some from the rest. Of several recordings ``alone``, each of them fitted by
@@ -68,6 +69,7 @@ class State:
     causes: tuple[Finding, ...] = ()
     likeness: PredictiveCheck | None = None
     alone: tuple[Alone, ...] = ()
+    rival_fits: tuple[tuple[str, Fit], ...] = ()
     lack: LackOfFit | None = None
     own: tuple[Free, ...] = ()
     changed: tuple[Change, ...] = ()

@@ -18,6 +18,7 @@ from diagnosis.discovery.proof.predictive_check import why_not_checked
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.facts import facts
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
+from diagnosis.report.over_class import over_class
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.recordings import in_recordings, recordings_answer
 from diagnosis.report.row_counts import MOST_LISTED
@@ -39,7 +40,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
     extended = np.degrees(raw_residual(found.fit, found.sweep))
     kept = ~found.masked if found.masked.any() and not found.masked.all() else np.ones_like(found.masked)
     unnamed = [key for cause in found.causes if cause.name == "unnamed" for key in cause.keys]
-    parameters_before, parameters_after = (baseline_parameters(fit) for fit in (found.baseline, found.fit))
+    parameters_before, parameters_after = baseline_parameters(found.baseline), _extended_parameters(found)
     answer: dict[str, Any] = _rounded(
         {
             "schema": SCHEMA,
@@ -74,6 +75,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
                 "likeness_worst": None if found.likeness is None else found.likeness.worst,
                 "likeness_not_checked": _not_checked(found),
             },
+            "in_factors": list(found.in_factors),
             "not_visible": {name: list(missing) for name, missing in sorted(found.invisible.items())},
             "senses": senses(found),
             "searched": found.looked_at,
@@ -162,6 +164,13 @@ def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:
         at_bound = value <= declared.lower or value >= declared.upper
         answer[factor.name] = {**_figure(middle, low, high, factor.unit), "at_bound": bool(at_bound)}
     return answer
+
+
+def _extended_parameters(found: Discovery) -> dict[str, dict[str, Any]]:
+    """The factors with the causes, as well known as all that explains the sweep as well leaves them."""
+    return over_class(
+        baseline_parameters(found.fit), [(everywhere(name), baseline_parameters(fit)) for name, fit in found.rival_fits]
+    )
 
 
 def moved(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[str]:

@@ -14,6 +14,7 @@ from rich.text import Text
 
 from diagnosis.report import statements
 from diagnosis.report.change_words import change_line, change_name, change_rivals_words
+from diagnosis.report.over_class import in_factors_words, open_words
 from diagnosis.report.recordings import recordings_notes, recordings_table, where_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.statements import FactorRow
@@ -67,7 +68,7 @@ def _sweep(sweep: Mapping[str, Any]) -> RenderableType:
 def _baseline(answer: Mapping[str, Any], *, beside: int) -> RenderableType:
     rows = statements.factor_rows(answer)
     table = _extended(rows, statements.after_head(answer)) if rows[0].after else _plain(rows, beside=beside)
-    said = filter(None, (statements.moved_words(answer), statements.senses_words(answer)))
+    said = filter(None, (statements.moved_words(answer), open_words(answer), statements.senses_words(answer)))
     return Group(
         Text(statements.baseline_words(answer), "bold"),
         _indented(statements.floor_words(answer)),
@@ -215,4 +216,5 @@ def _recordings(answer: Mapping[str, Any]) -> RenderableType | None:
 
 def _invisible(answer: Mapping[str, Any]) -> RenderableType | None:
     said = statements.invisible_words(answer)
-    return Text(f"Not visible in this sweep: {said}", "dim") if said else None
+    words = filter(None, (said and f"Not visible in this sweep: {said}", in_factors_words(answer)))
+    return Text(". ".join(words), "dim") if said else None

@@ -15,6 +15,7 @@ from diagnosis.report import statements, tables
 from diagnosis.report.change_words import change_name
 from diagnosis.report.data import Readings, readings, two_ways
 from diagnosis.report.facts import facts
+from diagnosis.report.over_class import in_factors_words, open_words
 from diagnosis.report.recordings import RMS_HEADS, recordings_notes, recordings_table, where_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.style import CSS
@@ -221,7 +222,7 @@ def _chain(answer: Mapping[str, Any], found: Discovery) -> str:
 def _parameters(answer: Mapping[str, Any]) -> str:
     sense = answer["senses"]["sensor"] * answer["senses"]["output"]
     counting = "the same way as" if sense > 0 else "the other way round than"
-    said = (statements.moved_words(answer), statements.senses_words(answer))
+    said = (statements.moved_words(answer), open_words(answer), statements.senses_words(answer))
     words = (
         "<p>Offsets in percent of their channel's amplitude; only the ratio of the amplitudes is visible in an angle. "
         f"The sensor counts {counting} the reference. "
@@ -244,7 +245,8 @@ def _recordings(answer: Mapping[str, Any]) -> str:
 def _invisible(answer: Mapping[str, Any]) -> str:
     if not answer["not_visible"]:
         return ""
-    words = "<p>These causes were not searched for, because this sweep could not have shown them.</p>"
+    words = "<p>These causes were not searched for, because this sweep could not have shown them."
+    words = f"{words} {statements.sentence(_text(in_factors_words(answer)))}</p>"
     return f"<h2>Not visible in this sweep</h2>{words}{tables.invisible(answer['not_visible'])}"
 
 

@@ -29,6 +29,7 @@ STAGES = {
     "final_fit": "fitting the extended twin",
     "answer": "working out what each cause gains",
     "listed": "holding each cause against its own figures",
+    "rival_fits": "fitting what explains the readings as well",
     "further_measurements": "weighing further measurements",
     "predictive_check": "comparing simulated sweeps with the measured one",
 }

@@ -5,7 +5,7 @@ Each takes the answer (the content of the JSON) and nothing else, so that all th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from diagnosis.discovery.proof.misfit import LACK_OF_FIT, LIKENESS
@@ -19,6 +19,7 @@ from diagnosis.report.wording import (
     around,
     figure,
     instances,
+    listed,
     parameter_line,
     plain,
     structure_words,
@@ -210,7 +211,9 @@ def moved_words(answer: Mapping[str, Any]) -> str:
         return ""
     if not names:
         return "With the causes known, every factor stays within its interval"
-    return f"With the causes known, {_and(names)} {'lies' if len(names) == 1 else 'lie'} outside of the interval before"
+    return (
+        f"With the causes known, {listed(names)} {'lies' if len(names) == 1 else 'lie'} outside of the interval before"
+    )
 
 
 def senses_words(answer: Mapping[str, Any]) -> str:
@@ -227,16 +230,12 @@ def senses_words(answer: Mapping[str, Any]) -> str:
         text, _ = figure({**parameters[key], **around(parameters[key], mirrored[key])}, SCALES[key])
         there.append(f"{LABELS[key]} {text} {UNITS[key]}")
     pair = f"s = {-senses['sensor']:+d}, h = {-senses['output']:+d}"
-    return f"The mirrored twin ({pair}) fits as well, with {_and(there)}"
+    return f"The mirrored twin ({pair}) fits as well, with {listed(there)}"
 
 
 def sentence(words: str) -> str:
     """Words as a sentence that ends in a full stop; nothing where there are none."""
     return f"{words[:1].upper()}{words[1:]}." if words else ""
-
-
-def _and(names: Sequence[str]) -> str:
-    return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
 
 
 # ---- the causes -------------------------------------------------------------------------------------------------
@@ -306,7 +305,7 @@ def verdict_words(answer: Mapping[str, Any]) -> str:
 def _stated_words(answer: Mapping[str, Any]) -> str:
     """That what was stated of the sensor's turn does not agree with the zeros; empty where it does."""
     names = contradictions(answer)
-    return f" The turn stated of {_and(names)} does not agree with the zero found there." if names else ""
+    return f" The turn stated of {listed(names)} does not agree with the zero found there." if names else ""
 
 
 def cut_words(answer: Mapping[str, Any]) -> str:

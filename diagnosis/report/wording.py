@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -99,10 +99,13 @@ def around(parameter: Mapping[str, Any], value: float) -> dict[str, Any]:
 
 
 def with_unit(parameter: Mapping[str, Any], unit: str | None = None, scale: float = 1.0) -> str:
-    """Value, half width and unit of a parameter."""
+    """Value, half width and unit of a parameter; the range of one that other causes leave open."""
     if parameter["value"] is None or math.isnan(parameter["value"]):
         return figure(parameter)[0]
     shown = unit_shown(parameter["unit"]) if unit is None else unit
+    if parameter.get("open_by"):
+        ends = (figure({**parameter, **around(parameter, parameter[end])}, scale)[0] for end in ("low", "high"))
+        return f"{' to '.join(ends)} {shown}".rstrip()
     if _lopsided(parameter):
         value, low, high = (plain(parameter[end] * scale, 2) for end in ("value", "low", "high"))
         return f"{f'{value} {shown}'.rstrip()} ({low} to {high})"
@@ -115,6 +118,11 @@ def _lopsided(parameter: Mapping[str, Any]) -> bool:
     if low is None or high is None or not math.isfinite(high) or low <= 0.0:
         return False
     return bool(high - value > _LOPSIDED * (value - low) > 0.0)
+
+
+def listed(names: Sequence[str], last: str = "and") -> str:
+    """Names one after the other, with a word ahead of the last."""
+    return f" {last} ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
 
 
 def unit_shown(unit: str) -> str:

@@ -182,6 +182,58 @@ PARTS: tuple[Mutation, ...] = (
             "return trial",
             "search/test_rivals.py::test_as_good_is_within_three_sigma_and_beside_coarse_stairs_within_six",
         ),
+        (
+            "rivals.what_an_angle_never_names_is_none",
+            "if other.acts_in(provides) and not",
+            "if False and not",
+            "search/test_rivals.py::test_which_causes_cannot_be_told_apart[harmonic of order 3]",
+        ),
+        (
+            "rivals.factors_may_be_of_any_size",
+            "usual = with_usual_factors(fit)",
+            "usual = fit",
+            "search/test_rivals.py::test_which_causes_cannot_be_told_apart[saturation in a turn]",
+        ),
+        (
+            "rivals.more_usual_factors_are_enough",
+            "if _reads_as_well(rival, usual)",
+            "if True",
+            "stages/test_rival_fits.py::test_a_displaced_magnet_is_in_the_class_of_the_order_that_it_makes",
+        ),
+        (
+            "rivals.details_are_none",
+            "if effect.params[name].aside:",
+            "if False:",
+            "search/test_rivals.py::test_a_detail_that_no_search_sets_is_a_rival_by_itself",
+        ),
+        (
+            "rivals.left_short_of_their_optimum",
+            "iterations=TO_THE_END",
+            "iterations=12",
+            "stages/test_rival_fits.py::test_a_displaced_magnet_is_in_the_class_of_the_order_that_it_makes",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/search/every_start.py",
+        _T,
+        (
+            "every_start.one_is_enough",
+            "    return (own, *(fit for fit in fits if likelihood(fit) > least))",
+            "    return (own,)",
+            "stages/test_rival_fits.py::test_every_fit_is_as_good_and_its_open_shape_is_held_somewhere_else",
+        ),
+        (
+            "every_start.worse_ones_too",
+            "if likelihood(fit) > least",
+            "if True",
+            "stages/test_rival_fits.py::test_every_fit_is_as_good_and_its_open_shape_is_held_somewhere_else",
+        ),
+        (
+            "every_start.of_what_the_sweep_shows_too",
+            "    if effect.visible_in(motion.provides):",
+            "    if False:",
+            "stages/test_rival_fits.py::test_of_what_the_sweep_shows_by_itself_there_is_the_one_fit",
+        ),
     ),
     *of_one_file(
         f"{_D}/search/iterate.py",

@@ -108,6 +108,11 @@ class Fit:
         return _cost(self) / self.freedom
 
     @property
+    def squares_of_readings(self) -> float:
+        """Sum of the readings' whitened squared residuals, without what the priors add."""
+        return _cost(self) - float(np.sum(self.prior_residual**2))
+
+    @property
     def prior_residual(self) -> Array:
         """What the parameters that a prior holds lack to its centre, in units of the residual."""
         away: Array = self.strengths * _from_centre(self.chain, self.free)

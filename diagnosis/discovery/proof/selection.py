@@ -71,10 +71,9 @@ def select(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.
 
     ``rng`` draws the sweeps on which the family-wise probabilities are calibrated.
     """
-    visible = tuple(effect for effect in effects if effect.visible_in(fit.observations.motion.provides))
     kept = list(keys)
     while True:
-        proof = prove(fit, visible, kept, rng=rng)
+        proof = prove(fit, effects, kept, rng=rng)
         idle = next((cause.key for place, cause in enumerate(proof.causes) if not _proven(proof, place)), None)
         if idle is None:
             return proof
@@ -82,8 +81,11 @@ def select(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.
         kept.remove(idle)
 
 
-def prove(fit: Fit, effects: tuple[Effect, ...], keys: Sequence[str], *, rng: np.random.Generator) -> Proof:
-    """Judge the causes of a fit, hold them out, and calibrate their probabilities."""
+def prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.random.Generator) -> Proof:
+    """Judge the causes of a fit, hold them out, and calibrate their probabilities.
+
+    Of the ``effects`` those count as searched for that the recording can show; the others may be rivals of these.
+    """
     views = _views(fit, effects) if keys else []
     causes = sorted((_judged(views, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
     ordered = [cause.key for cause in causes]
@@ -92,8 +94,9 @@ def prove(fit: Fit, effects: tuple[Effect, ...], keys: Sequence[str], *, rng: np
         # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere.
         fold = scattered(fit, ordered)
     held, weighed = _held_out(fit, ordered, fold)
-    family = _calibrated(fit, effects, causes, rng)
-    return Proof(fit, effects, tuple(causes), fold, tuple(held), tuple(weighed), family)
+    visible = tuple(effect for effect in effects if effect.visible_in(fit.observations.motion.provides))
+    family = _calibrated(fit, visible, causes, rng)
+    return Proof(fit, visible, tuple(causes), fold, tuple(held), tuple(weighed), family)
 
 
 def _proven(proof: Proof, place: int) -> bool:

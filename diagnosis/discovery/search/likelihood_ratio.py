@@ -17,6 +17,8 @@ from twin.catalogue import find, unnamed
 from twin.chain import Chain
 from twin.effect import Effect
 
+TO_THE_END = 60
+"""Steps of a fit that is not to be left short of its optimum, where it ends by itself."""
 SETTLING = 3
 """Times that noise and fit are adapted to one another; the second time the noise hardly ever changes."""
 
@@ -108,7 +110,7 @@ def radius_as_left(fit: Fit) -> tuple[int, float]:
     return member, float(squares[member] / len(fit.observations))
 
 
-def add(fit: Fit, candidate: Candidate) -> tuple[Fit, str]:
+def add(fit: Fit, candidate: Candidate, *, iterations: int = 12) -> tuple[Fit, str]:
     """The joint fit with the candidate added, and the key it got."""
     name = candidate.effect.name
     further = (f"{name}#{number}" for number in itertools.count(2))
@@ -116,7 +118,7 @@ def add(fit: Fit, candidate: Candidate) -> tuple[Fit, str]:
     chain = fit.chain.with_values({key: dict(candidate.effect.begin(candidate.values))})
     turns = int(fit.observations.motion.turn.max(initial=0)) + 1
     free = free_of(candidate.effect, key, turns=turns, channels=fit.observations.observables == 2)
-    return refit(chain, (*fit.free, *free), fit), key
+    return refit(chain, (*fit.free, *free), fit, iterations=iterations), key
 
 
 def reweighed(fit: Fit, member: int) -> Fit:

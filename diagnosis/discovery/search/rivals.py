@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from diagnosis.discovery.fitting.joint_fit import Fit
-from diagnosis.discovery.search.likelihood_ratio import add, likelihood
+from diagnosis.discovery.fitting.usual_factors import with_usual_factors
+from diagnosis.discovery.search.likelihood_ratio import TO_THE_END, add, likelihood
 from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import screen_one
 from twin.catalogue import base_name, unnamed
@@ -25,27 +26,60 @@ class Judged:
 
 
 def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) -> Judged:
-    """What a cause gains in the final fit, and which named effects (of these, all visible) would fit as well."""
+    """What a cause gains in the final fit, and which named effects (of these) would fit as well.
+
+    Among them are those that an angle alone never names: here they do what it shows beside the baseline.
+    """
     removal = Removal.of(fit, key)
     rivals: dict[str, Fit] = {}
     if not unnamed(removal.effect.name):
         present = {*(base_name(other) for other in keys), removal.effect.name}
-        for other in effects:
-            if other.name not in present and not unnamed(other.name):
-                rival = _as_good(fit, removal, other)
-                if rival is not None:
-                    rivals[other.name] = rival
+        provides = fit.observations.motion.provides
+        others = [other for other in effects if other.name not in present and not unnamed(other.name)]
+        rivals = _as_good(fit, removal, [other for other in others if other.visible_in(provides)])
+        if hidden := [other for other in others if other.acts_in(provides) and not other.visible_in(provides)]:
+            # Beside the factors that do the same they fit anything, at sizes of these that no device has.
+            usual = with_usual_factors(fit)
+            found = _as_good(usual, Removal.of(usual, key), hidden)
+            rivals |= {name: rival for name, rival in found.items() if _reads_as_well(rival, usual)}
     return Judged(key, removal.gain, removal.log_p, rivals)
 
 
-def _as_good(fit: Fit, removal: Removal, other: Effect) -> Fit | None:
+def _as_good(fit: Fit, removal: Removal, others: Sequence[Effect]) -> dict[str, Fit]:
+    """By name the fits with one of these in the place of a cause that cannot be told from the fit with the cause."""
+    found = {}
+    for other in others:
+        rival = next(filter(None, (_in_its_place(fit, removal, form) for form in forms(other))), None)
+        if rival is not None:
+            found[other.name] = rival
+    return found
+
+
+def _reads_as_well(rival: Fit, fit: Fit) -> bool:
+    """Whether a rival fits the readings themselves as well, and not only makes the factors more usual."""
+    same = fit.settings.same_fit(coarse=fit.weighting.coarse)
+    return (rival.squares_of_readings - fit.squares_of_readings) / fit.variance < same
+
+
+def forms(effect: Effect) -> Iterator[Effect]:
+    """What an effect may be to a cause that it cannot be told from, the plainest first.
+
+    A detail that no search sets, because another effect says it more plainly, is a rival of that one alone.
+    """
+    for name in effect.roles("level"):
+        if effect.params[name].aside:
+            yield effect.alone(name)
+    yield effect
+
+
+def _in_its_place(fit: Fit, removal: Removal, other: Effect) -> Fit | None:
     """The fit with another effect in the place of a cause, if it cannot be told from the fit with the cause."""
     settings, gain, own = fit.settings, removal.gain, removal.own
     same = settings.same_fit(coarse=fit.weighting.coarse)
     rival = screen_one(removal.base, other)
     if rival is None or rival.gain < settings.rival_share * min(gain, own.gain if own is not None else gain) - same:
         return None
-    trial, _ = add(removal.removed, rival)
+    trial, _ = add(removal.removed, rival, iterations=TO_THE_END)
     rival_gain = 2.0 * (likelihood(trial) - likelihood(removal.without))
     if other.roles("per turn"):
         # A step between two turns is a special case of a zero for each turn: what fits counts, not its price.

@@ -145,11 +145,17 @@ def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, floa
     if not np.any(gains > 0.0):
         return None
     (point,) = sharpened(base, effect, shapes, gains, coefficients)
-    terms = point.coefficient.size
-    found = _parameters(effect, fit.linear.terms(effect), point.coefficient, motion)
-    values = {**effect.null(), **point.shape, **found}
-    log_p = float(by_chance(base, effect, np.array(point.gain), terms, looks))
-    return Candidate(effect, values, point.gain, terms, looks, log_p)
+    return candidate_at(base, effect, point.shape, point.gain, point.coefficient, looks=looks)
+
+
+def candidate_at(
+    base: Base, effect: Effect, shape: Mapping[str, float], gain: float, coefficient: Array, *, looks: float = 1.0
+) -> Candidate:
+    """The effect at a shape with the coefficients (T,) of its first-order fit, the best of so many looks."""
+    linear = base.fit.linear
+    found = _parameters(effect, linear.terms(effect), coefficient, linear.motion)
+    log_p = float(by_chance(base, effect, np.array(gain), coefficient.size, looks))
+    return Candidate(effect, {**effect.null(), **shape, **found}, float(gain), coefficient.size, looks, log_p)
 
 
 def by_chance(base: Base, effect: Effect, gain: Array, terms: int, looks: float) -> Array:

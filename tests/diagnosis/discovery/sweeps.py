@@ -29,6 +29,7 @@ from diagnosis.discovery.stages.quantisation import quantisation
 from diagnosis.discovery.stages.recording_levels import recording_levels
 from diagnosis.discovery.stages.recordings_alone import recordings_alone
 from diagnosis.discovery.stages.repeated_frames import repeated_frames
+from diagnosis.discovery.stages.rival_fits import rival_fits
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.stages.sense_check import sense_check
 from diagnosis.discovery.stages.spread import spread
@@ -53,7 +54,7 @@ ONCE: tuple[Stage, ...] = (
     *(observe, initial_fit, row_masks, own_parameters, quantisation),
     *LOOP,
     *(held_out_selection, flipped_bits, grid_cause, changes, final_fit, recordings_alone, answer, listed),
-    *(further_measurements, predictive_check),
+    *(rival_fits, further_measurements, predictive_check),
 )
 """Every stage, each once."""
 

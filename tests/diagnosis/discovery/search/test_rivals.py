@@ -18,10 +18,12 @@ from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.searches import candidate, with_cause
 from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
+from twin.adc.adc_inl import STEP_PERCENT
 from twin.catalogue import CATALOGUE, find, unnamed
 
 LIMITS = DiscoverySettings()
 SATURATION, HARMONIC, HYSTERESIS, BACKLASH = "saturation", "magnet_harmonic", "hysteresis", "backlash"
+MISPLACED, INL = "magnet_misalignment", "adc_inl"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,16 +35,26 @@ class Case:
 
 
 CASES = {
-    "saturation in a turn": Case(made=Made(causes=((SATURATION, 0.05),), points=120), rivals=frozenset({HARMONIC})),
+    "saturation in a turn": Case(
+        made=Made(causes=((SATURATION, 0.05),), points=120), rivals=frozenset({HARMONIC, INL})
+    ),
     "saturation with channels": Case(
-        made=Made(causes=((SATURATION, 0.05),), points=120, channels=True), rivals=frozenset()
+        made=Made(causes=((SATURATION, 0.05),), points=120, channels=True), rivals=frozenset({INL})
     ),
     # A harmonic's phase is its own, saturation's is locked to the sensor's axes.
     "harmonic of order 5": Case(made=Made(causes=((HARMONIC, 0.05),), points=120, seed=2), rivals=frozenset()),
-    # At one speed a lag in time is a lag in angle; one turn there and one back might also be a slip between them.
+    # Two displacements together make order 3, of any phase, and no higher one; the channels tell them from it.
+    "harmonic of order 3": Case(
+        made=Made(causes=((HARMONIC, 0.05),), points=120, seed=13), rivals=frozenset({MISPLACED})
+    ),
+    "harmonic of order 3 with channels": Case(
+        made=Made(causes=((HARMONIC, 0.05),), points=120, seed=13, channels=True), rivals=frozenset()
+    ),
+    # At one speed a lag in time is a lag in angle, or a play; one turn there and one back might also be a slip between
+    # them.
     "latency at one speed": Case(
         made=Made(causes=(("latency", 0.1),), points=72, rpm=(300.0,), back=True, left_out=("turn",)),
-        rivals=frozenset({HYSTERESIS, "index_slip"}),
+        rivals=frozenset({HYSTERESIS, BACKLASH, "index_slip"}),
     ),
     "latency at two speeds": Case(
         made=Made(causes=(("latency", 0.1),), points=72, rpm=(100.0, 300.0), back=True, left_out=("turn",)),
@@ -59,8 +71,7 @@ def handed(made: Made) -> State:
 
 
 def judged(state: State) -> rivals.Judged:
-    visible = [e for e in state.searched if e.visible_in(state.fit.observations.motion.provides)]
-    return judge(state.fit, state.keys[0], visible, state.keys)
+    return judge(state.fit, state.keys[0], state.searched, state.keys)
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
@@ -116,7 +127,7 @@ def test_only_who_gains_a_share_to_first_order_is_fitted(
     assert gain > 0.0
     offered = candidate(HARMONIC, state.fit, gain=gain, order=4.0, amplitude_deg=0.05)
     monkeypatch.setattr(rivals, "screen_one", lambda base, effect: offered)
-    found = rivals._as_good(state.fit, removal, find(HARMONIC))
+    found = rivals._in_its_place(state.fit, removal, find(HARMONIC))
     assert (found is not None) == fitted
 
 
@@ -125,3 +136,23 @@ def test_neither_what_has_no_name_nor_what_is_there_already_is_a_rival() -> None
     assert not {HARMONIC, *(effect.name for effect in CATALOGUE if unnamed(effect.name))} & set(judged(state).rivals)
     bump = with_cause(state, "unnamed_bump", centre_deg=100.0, width_deg=10.0, height_deg=0.01)
     assert judge(bump.fit, "unnamed_bump", bump.searched, bump.keys).rivals == {}
+
+
+def test_a_detail_that_no_search_sets_is_a_rival_by_itself() -> None:
+    """An S of the converter is the cubic loss k c^3: k percent of it is sqrt(27) / 2 s steps over the range squared."""
+    state = handed(CASES["saturation in a turn"].made)
+    values = judged(state).rivals[INL].chain.values[INL]
+    assert {name for name, value in values.items() if value} == {"s_lsb", "full_scale_percent"}
+    k_percent = float(np.sqrt(27.0)) / 2.0 * values["s_lsb"] * STEP_PERCENT / (0.01 * values["full_scale_percent"]) ** 2
+    cubic = state.fit.chain.values[SATURATION]["k_percent"]
+    # The exponent moves what the cubic alone would be by less than a tenth.
+    assert k_percent == pytest.approx(cubic, rel=0.1)
+
+
+def test_what_an_angle_never_names_acts_on_it_all_the_same() -> None:
+    misplaced, provides = find(MISPLACED), frozenset({"one turn"})
+    assert misplaced.missing(provides) == ("vx|two air gaps",)
+    assert misplaced.acts_in(provides)
+    assert not misplaced.acts_in(frozenset())
+    # What a drift did at temperatures that nobody recorded is not known.
+    assert not find("gain_drift").acts_in(frozenset({"one turn", "vx"}))

@@ -75,8 +75,9 @@ def test_what_would_part_a_cause_from_its_rivals(case: Case) -> None:
 
 def test_channels_part_a_magnets_harmonic_from_saturation() -> None:
     (cause,) = further_measurements(before(further_measurements, CASES["saturation in a turn"].made)).causes
-    assert set(cause.rivals) == {"magnet_harmonic"}
-    assert re.search(r"record vx and vy \(\d+ sigma", advice(cause.options))
+    assert set(cause.rivals) == {"magnet_harmonic", "adc_inl"}
+    # An S of the converter is the same curve, channel by channel.
+    assert re.search(r"from magnet_harmonic: record vx and vy \(\d+ sigma", advice(cause.options))
 
 
 def test_what_the_sweep_has_already_is_not_offered() -> None:
@@ -91,6 +92,7 @@ def test_twice_the_strength_parts_them_by_twice_as_many_sigma() -> None:
     for strength_deg in (0.05, 0.1):
         made = Made(causes=(("saturation", strength_deg),), points=120)
         (cause,) = further_measurements(before(further_measurements, made)).causes
-        sigma.append({option.name: option.sigma for option in cause.options}["raw channels"])
+        (channels,) = (option for option in cause.options if option.name == "raw channels")
+        sigma.append(channels.parted["magnet_harmonic"])
     assert sigma[1] / sigma[0] == pytest.approx(2.0, rel=0.2)
     assert np.isfinite(sigma).all()

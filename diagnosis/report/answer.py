@@ -8,7 +8,13 @@ from typing import Any
 import numpy as np
 
 from diagnosis.discovery.finding import Finding
-from diagnosis.discovery.fitting.intervals import Deviations, interval_of_derived, quantile_95, standard_deviations
+from diagnosis.discovery.fitting.intervals import (
+    Deviations,
+    interval_of_derived,
+    intervals_95,
+    quantile_95,
+    standard_deviations,
+)
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.marks.row_masks import raw_residual
@@ -154,13 +160,12 @@ def _sweep(found: Discovery) -> dict[str, Any]:
 
 def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:
     """The six visible parameters of the paper's model with 95 % intervals; a given twin's are taken as known."""
-    deviation = standard_deviations(fit)
-    answer = {}
+    known, answer = intervals_95(fit), {}
     for factor in FACTORS:
         declared = factor.effect.params[factor.param]
         value = float(fit.chain.values.get(factor.key, {}).get(factor.param, factor.null))
-        half = quantile_95(fit) * deviation.get((factor.key, factor.param), 0.0)
-        middle, low, high = (figure * factor.scale for figure in (value, value - half, value + half))
+        ends = known.get((factor.key, factor.param), (value, value))
+        middle, low, high = (figure * factor.scale for figure in (value, *ends))
         at_bound = value <= declared.lower or value >= declared.upper
         answer[factor.name] = {**_figure(middle, low, high, factor.unit), "at_bound": bool(at_bound)}
     return answer
@@ -198,7 +203,7 @@ def _change(found: Discovery, change: Change) -> dict[str, Any]:
     fit, free = found.fit, change.free
     effect = find(free.key, fit.chain.effects)
     value = float(fit.chain.values[free.key][free.name])
-    half = quantile_95(fit) * standard_deviations(fit).get((free.key, free.name), 0.0)
+    low, high = intervals_95(fit).get((free.key, free.name), (value, value))
     return {
         "parameter": change.name,
         "effect": base_name(free.key),
@@ -206,8 +211,8 @@ def _change(found: Discovery, change: Change) -> dict[str, Any]:
         "owner": change.owner,
         "was": change.was,
         "is": value,
-        "low": value - half,
-        "high": value + half,
+        "low": low,
+        "high": high,
         "unit": effect.params[free.name].unit,
         "p": change.false_alarm_probability,
         "heldout_rms_deg_before": change.before_deg,
@@ -259,7 +264,7 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
     """The parameters of one instance of an effect, each with its 95 % interval."""
     effect = find(key, fit.chain.effects)
     values = {**effect.null(), **fit.chain.values.get(key, {})}
-    derived, reach = effect.derived(values), quantile_95(fit)
+    derived, known = effect.derived(values), intervals_95(fit)
     figures: dict[str, dict[str, Any]] = {}
     for name, param in effect.params.items():
         if param.role == "per turn" or name not in values or np.ndim(values[name]):
@@ -269,11 +274,11 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
         if param.aside and values[name] == param.null:
             continue
         value = float(values[name])
-        half = reach * deviation.get((key, name), 0.0)
+        low, high = known.get((key, name), (value, value))
         if param.role == "phase":
             # Of a phase no less can be known than nothing.
-            half = min(half, 180.0)
-        figures[name] = _figure(value, value - half, value + half, param.unit)
+            low, high = max(low, value - 180.0), min(high, value + 180.0)
+        figures[name] = _figure(value, low, high, param.unit)
         figures[name] |= _hardly_told(param, deviation.get((key, name), 0.0))
         if param.unit == "s" and name in effect.zoomed and (key, name) not in deviation:
             figures[name] |= _between_readings(fit, value)
@@ -338,8 +343,9 @@ def _phase_at_first_row(
     """A phase [deg], fitted in the middle of the record, where it is known best, as it is at the record's first row."""
     half_s = 0.5 * float(np.ptp(fit.observations.motion.time_s))
     value = float(wrap_deg(phase["value"] - 360.0 * frequency_Hz * half_s))
-    half = float(np.hypot(0.5 * (phase["high"] - phase["low"]), 360.0 * half_s * quantile_95(fit) * deviation_Hz))
-    return {"value": value, "low": value - half, "high": value + half}
+    by_frequency = 360.0 * half_s * quantile_95(fit) * deviation_Hz
+    down, up = (float(np.hypot(end - phase["value"], by_frequency)) for end in (phase["low"], phase["high"]))
+    return {"value": value, "low": value - down, "high": value + up}
 
 
 def _counted(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:

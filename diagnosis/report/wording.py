@@ -107,17 +107,27 @@ def with_unit(parameter: Mapping[str, Any], unit: str | None = None, scale: floa
         ends = (figure({**parameter, **around(parameter, parameter[end])}, scale)[0] for end in ("low", "high"))
         return f"{' to '.join(ends)} {shown}".rstrip()
     if _lopsided(parameter):
-        value, low, high = (plain(parameter[end] * scale, 2) for end in ("value", "low", "high"))
+        value, low, high = _to_the_shorter_part(parameter, scale)
         return f"{f'{value} {shown}'.rstrip()} ({low} to {high})"
     return " ".join(part for part in (*figure(parameter, scale), shown) if part)
 
 
 def _lopsided(parameter: Mapping[str, Any]) -> bool:
-    """Whether a figure above zero is known to a factor rather than to a difference, so that half a width misleads."""
+    """Whether an interval reaches clearly farther to one side, so that half a width misleads."""
     value, low, high = (parameter[end] for end in ("value", "low", "high"))
-    if low is None or high is None or not math.isfinite(high) or low <= 0.0:
+    if low is None or high is None or not math.isfinite(high - low):
         return False
-    return bool(high - value > _LOPSIDED * (value - low) > 0.0)
+    shorter, longer = sorted((value - low, high - value))
+    return bool(longer > _LOPSIDED * shorter > 0.0)
+
+
+def _to_the_shorter_part(parameter: Mapping[str, Any], scale: float) -> list[str]:
+    """Value and ends of an interval, to two digits of how far the nearer end is."""
+    figures = [scale * parameter[end] for end in ("value", "low", "high")]
+    decimals = decimals_of(min(abs(figures[0] - end) for end in figures[1:]))
+    if decimals > _MOST_DECIMALS:
+        return [plain(one, 2) for one in figures]
+    return [f"{one:.{decimals}f}" for one in figures]
 
 
 def listed(names: Sequence[str], last: str = "and") -> str:

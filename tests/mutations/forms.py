@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tests.mutations.mutation import Mutation
 
+_PROFILE = "tests/diagnosis/discovery/fitting/test_profile.py"
 _FORMS = "tests/diagnosis/discovery/test_forms.py"
 
 FORMS: tuple[Mutation, ...] = tuple(
@@ -30,6 +31,20 @@ FORMS: tuple[Mutation, ...] = tuple(
             "way = _as_reached(shaft, _way(shaft, direction, speed_rad_s))",
             "way = _way(shaft, direction, speed_rad_s)",
             f"{_FORMS}::test_a_stack_of_plays_is_one_hysteresis",
+        ),
+        (
+            "forms.every_likelihood_is_a_parabola",
+            "diagnosis/discovery/fitting/profile.py",
+            "CURVED = 0.05",
+            "CURVED = np.inf",
+            f"{_PROFILE}::test_a_weak_amplitude_and_its_phase",
+        ),
+        (
+            "forms.a_profile_fits_nothing_beside",
+            "diagnosis/discovery/fitting/profile.py",
+            "rest = projected(left, jacobian)",
+            "rest = left",
+            f"{_PROFILE}::test_a_weak_amplitude_and_its_phase",
         ),
         (
             "forms.strengths_pass_through_zero_without_a_phase",

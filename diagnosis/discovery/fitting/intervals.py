@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, value_of
+from diagnosis.discovery.fitting.profile import Profile
 from diagnosis.discovery.fitting.projection import projected
 from twin.catalogue import find
 
@@ -60,6 +62,25 @@ def interval_of_derived(fit: Fit, key: str, name: str) -> tuple[float, float]:
     known = np.where(np.isfinite(covariance), covariance, 0.0)
     factor = float(np.exp(quantile_95(fit) * np.sqrt(max(float(slope @ known @ slope), 0.0))))
     return value / factor, value * factor
+
+
+@lru_cache(maxsize=4)
+def intervals_95(fit: Fit) -> Mapping[tuple[str, str], tuple[float, float]]:
+    """95 % interval of every free scalar parameter of a fit, in its own unit; infinite where nothing is known of it.
+
+    By the profile likelihood, which within an interval is mostly a parabola. Of stairs in the channels it is none at
+    all: what scatters at their edges is in the standard deviation alone.
+    """
+    deviation, reach = standard_deviations(fit), quantile_95(fit)
+    found = {}
+    for (key, name), one in deviation.items():
+        value = value_of(fit.chain, Free(key, name))
+        found[key, name] = (value - reach * one, value + reach * one)
+    if fit.free and not fit.weighting.slopes:
+        known = [place for place, one in enumerate(fit.free) if 0.0 < deviation.get((one.key, one.name), 0.0) < np.inf]
+        ends = Profile(fit, fit.covariance(), reach).intervals(known)
+        found |= {(fit.free[place].key, fit.free[place].name): both for place, both in ends.items()}
+    return found
 
 
 def may_be_null(fit: Fit, key: str) -> bool:

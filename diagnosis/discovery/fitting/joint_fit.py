@@ -105,17 +105,17 @@ class Fit:
     @property
     def variance(self) -> float:
         """Variance of the noise by the whitened residual."""
-        return _cost(self) / self.freedom
+        return cost_of(self) / self.freedom
 
     @property
     def squares_of_readings(self) -> float:
         """Sum of the readings' whitened squared residuals, without what the priors add."""
-        return _cost(self) - float(np.sum(self.prior_residual**2))
+        return cost_of(self) - float(np.sum(self.prior_residual**2))
 
     @property
     def prior_residual(self) -> Array:
         """What the parameters that a prior holds lack to its centre, in units of the residual."""
-        away: Array = self.strengths * _from_centre(self.chain, self.free)
+        away: Array = self.strengths * from_centre(self.chain, self.free)
         return -away[self.strengths > 0.0]
 
     @property
@@ -241,12 +241,12 @@ def _prior_strengths(chain: Chain, free: tuple[Free, ...], observations: Observa
     # Whitened residuals are in radians: a prior of one sigma counts as one residual RMS.
     unit = float(np.sqrt(np.mean(residual[observations.usable] ** 2)))
     strengths = np.array([unit / param.prior_sd if param.prior_sd > 0.0 else 0.0 for param in params])
-    zeros = _from_centre(chain, free)[turns]
+    zeros = from_centre(chain, free)[turns]
     strengths[turns] = unit / max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
     return strengths
 
 
-def _from_centre(chain: Chain, free: tuple[Free, ...]) -> Array:
+def from_centre(chain: Chain, free: tuple[Free, ...]) -> Array:
     """How far each free parameter (P,) is from what is most likely before the sweep, in its own unit; else 0."""
     away = np.zeros(len(free))
     for place, one in enumerate(free):
@@ -272,7 +272,7 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
     if not fit.free:
         return fit
     damping = 0.0
-    cost = _cost(fit)
+    cost = cost_of(fit)
     for _ in range(iterations):
         r, j = fit.whitened()
         scale = np.linalg.norm(j, axis=1)
@@ -289,8 +289,8 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
             system = normal + (1e-12 + damping) * np.eye(len(unit))
             step = np.where(alive, step_within(system, gradient, lower, upper), 0.0)
             # What priors hold follows from the residual: a trial is compared by those of the fit that it starts from.
-            trial = evaluate(_moved(fit, step / unit), fit.free, fit.observations, fit.weighting, fit.strengths)
-            new_cost = _cost(trial)
+            trial = evaluate(moved_by(fit, step / unit), fit.free, fit.observations, fit.weighting, fit.strengths)
+            new_cost = cost_of(trial)
             if new_cost <= cost * (1.0 + 1e-12):
                 improved = True
                 break
@@ -302,7 +302,7 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
         share = gained / max(float(step @ (2.0 * gradient - normal @ step)), 1e-300)
         damping *= eased(share)
         fit = replace(trial, strengths=_prior_strengths(trial.chain, fit.free, fit.observations, trial.residual[0]))
-        cost = _cost(fit)
+        cost = cost_of(fit)
         if moved < tolerance * sigma or gained < SMALL_GAIN * sigma**2:
             break
     return fit
@@ -327,12 +327,13 @@ def _bounds(effect: Effect, param: Param) -> tuple[float, float]:
     return (-param.upper if through_zero else param.lower), param.upper
 
 
-def _cost(fit: Fit) -> float:
+def cost_of(fit: Fit) -> float:
+    """Sum of the whitened squares that a fit leaves."""
     r, _ = fit.whitened()
     return float(r @ r)
 
 
-def _moved(fit: Fit, step: Array) -> Chain:
+def moved_by(fit: Fit, step: Array) -> Chain:
     """The chain with its free parameters moved by ``step`` (P,), in the parameters' own units."""
     values = {key: dict(params) for key, params in fit.chain.values.items()}
     for place, free in enumerate(fit.free):

@@ -6,6 +6,7 @@ from tests.mutations.mutation import Mutation
 
 _PROFILE = "tests/diagnosis/discovery/fitting/test_profile.py"
 _FORMS = "tests/diagnosis/discovery/test_forms.py"
+_DETAILS = "tests/diagnosis/discovery/search/test_details.py"
 
 FORMS: tuple[Mutation, ...] = tuple(
     Mutation(name, file, old, new, (test,))
@@ -77,16 +78,23 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "forms.no_detail_is_freed",
             "diagnosis/discovery/search/exchange.py",
-            "detailed(retuned(fit, held), held, plan.threshold)",
+            "detailed(retuned(fit, held), held, plan.threshold, plan.effects)",
             "retuned(fit, held)",
             f"{_FORMS}::test_plays_on_each_axis_are_one_hysteresis",
         ),
         (
+            "forms.a_detail_before_another_cause",
+            "diagnosis/discovery/search/details.py",
+            "return plain if _by_another_cause(plain, effects, keys, level)",
+            "return plain if np.inf",
+            f"{_DETAILS}::test_a_detail_stays_at_its_null_where_another_cause_does_it",
+        ),
+        (
             "forms.details_cost_nothing",
             "diagnosis/discovery/search/details.py",
-            "return wide if _log_p(gain, fit) < level else plain",
-            "return wide",
-            "tests/diagnosis/discovery/search/test_details.py::test_a_detail_that_says_nothing_goes_back_to_its_null",
+            "    if log_p >= level:\n        return plain\n",
+            "",
+            f"{_DETAILS}::test_a_detail_that_says_nothing_goes_back_to_its_null",
         ),
         (
             "forms.nothing_is_done_behind",

@@ -9,22 +9,26 @@ import numpy as np
 from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate
 from diagnosis.discovery.fitting.noise.plausible import either, plausible_members
 from diagnosis.discovery.fitting.projection import projected
-from diagnosis.discovery.search.likelihood_ratio import judged_p, likelihood, refit
+from diagnosis.discovery.search.forward_step import best_addition
+from diagnosis.discovery.search.likelihood_ratio import judged_p, likelihood, refit, settle
 from twin.catalogue import find
+from twin.effect import Effect
 
 
-def detailed(fit: Fit, keys: Sequence[str], level: float) -> Fit:
+def detailed(fit: Fit, keys: Sequence[str], level: float, effects: Sequence[Effect] = ()) -> Fit:
     """The fit with the details of each cause free where they pay, and at their nulls where they do not.
 
-    A detail pays where noise gains as much only with a log probability below ``level``, as a cause must.
+    A detail pays where noise gains as much only with a log probability below ``level``, as a cause must, and where none
+    of ``effects`` as a further cause explains the same surely better: a search that went on from the detail would not
+    come to it.
     """
     for key in keys:
         for name in find(key, fit.chain.effects).details:
-            fit = _judged(fit, Free(key, name), level)
+            fit = _judged(fit, Free(key, name), level, effects=effects, keys=keys)
     return fit
 
 
-def _judged(fit: Fit, detail: Free, level: float) -> Fit:
+def _judged(fit: Fit, detail: Free, level: float, *, effects: Sequence[Effect], keys: Sequence[str]) -> Fit:
     """The fit with the detail, or without it where that is as good."""
     if detail in fit.free:
         wide = fit
@@ -37,8 +41,21 @@ def _judged(fit: Fit, detail: Free, level: float) -> Fit:
             return fit
         wide = refit(fit.chain, wide.free, fit)
     members = either(plausible_members(plain), plausible_members(wide))
-    gain = 2.0 * (likelihood(wide, members) - likelihood(plain, members))
-    return wide if _log_p(gain, fit) < level else plain
+    log_p = _log_p(2.0 * (likelihood(wide, members) - likelihood(plain, members)), fit)
+    if log_p >= level:
+        return plain
+    return plain if _by_another_cause(plain, effects, keys, level) < log_p - fit.settings.swap_log_odds else wide
+
+
+def _by_another_cause(plain: Fit, effects: Sequence[Effect], keys: Sequence[str], level: float) -> float:
+    """The log probability by chance of what the best further cause explains beside causes without the detail."""
+    without, base = settle(plain)
+    step = best_addition(without, base, effects, keys, level)
+    if step is None:
+        return 0.0
+    members = either(plausible_members(without), plausible_members(step.fit))
+    gain = 2.0 * (likelihood(step.fit, members) - likelihood(without, members))
+    return judged_p(gain, step.terms, plain.freedom, 1.0) + step.log_looks
 
 
 def _log_p(gain: float, fit: Fit) -> float:

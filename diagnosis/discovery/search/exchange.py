@@ -63,7 +63,7 @@ def improve(fit: Fit, keys: Sequence[str], plan: Search) -> tuple[Fit, list[str]
     held = list(keys)
     for _ in range(fit.settings.most_rounds):
         before = list(held)
-        fit = detailed(retuned(fit, held), held, plan.threshold)
+        fit = detailed(retuned(fit, held), held, plan.threshold, plan.effects)
         for key in before:
             if key in held and len(held) > 1:
                 fit, held, plan = _held_or_exchanged(fit, key, held, plan)

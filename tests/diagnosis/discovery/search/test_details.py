@@ -44,6 +44,21 @@ def test_a_detail_that_says_nothing_goes_back_to_its_null(freed: bool) -> None:
     assert found.chain.values["hysteresis"]["on_axes"] == 0.0
 
 
+def test_a_detail_stays_at_its_null_where_another_cause_does_it() -> None:
+    """Lags of the axes make some of a saturation's order 4: without it the detail pays, and hides it."""
+    state = before(stepwise, BACK)
+    chain = state.fit.chain.with_effect("hysteresis", lag_deg=0.1, memory_deg=8.0)
+    chain = chain.with_effect("saturation", k_percent=0.4)
+    shape = chain.readings(state.fit.observations.motion) - state.fit.linear.angle
+    fit = with_cause(
+        with_residual(state, shape + noise(len(state.sweep))), "hysteresis", lag_deg=0.1, memory_deg=8.0
+    ).fit
+    assert SHARE in detailed(fit, ["hysteresis"], LEVEL).free
+    assert SHARE not in detailed(fit, ["hysteresis"], LEVEL, [find("saturation")]).free
+    # Where the axes do lag, no saturation says it better.
+    assert SHARE in detailed(held(1.0), ["hysteresis"], LEVEL, [find("saturation")]).free
+
+
 def test_a_cause_without_details_is_left_alone() -> None:
     fit = with_cause(before(stepwise, BACK), "saturation", k_percent=0.2).fit
     assert find("saturation").details == ()

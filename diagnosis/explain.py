@@ -70,7 +70,8 @@ def explain(
         StopIteration, the search ends where it stands and the answer is what it holds, as after an interrupt.
     on_interrupt : {"raise", "answer"}, optional
         What an interrupt (Ctrl-C) does: raise KeyboardInterrupt, or end the search where it stands and answer with
-        what it holds, finished and proven like any other; a second one raises. Such an answer says so in
+        what it holds, proven on held-out readings like any other; what else each cause may be is not looked for then,
+        since whoever interrupts is waiting. A second one raises. Such an answer says so in
         ``to_dict()["cut_short"]``, and its verdict is never ``"adequate"`` or ``"explained"``, but ``"stopped"`` where
         nothing had been found.
 

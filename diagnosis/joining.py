@@ -143,16 +143,22 @@ def _own_zero(fits: Sequence[BaselineFit], setups: Sequence[Setup], place: int) 
 
 
 def _effects(effects: Sequence[Effect], setups: Sequence[Setup], magnet: Magnet) -> tuple[Effect, ...]:
-    """The effects common to all recordings, and those that each has by itself: its zero, and what happens in time."""
+    """The effects common to all recordings, and those that each has by itself: its zero, and what belongs to it."""
     found: list[Effect] = []
     for effect in effects:
         if effect.name == ZERO.name:
             found += [effect, *(in_one(effect, number) for number in range(1, len(setups)))]
-        elif "time_s" in effect.needs:
+        elif _belongs_to_recording(effect):
             found += [in_one(effect, number) for number in range(len(setups))]
         else:
             found.append(in_each(effect, setups, magnet))
     return tuple(found)
+
+
+def _belongs_to_recording(effect: Effect) -> bool:
+    """Whether an effect in the mean has parameters of the recording's; zeros of turns are their recording's already."""
+    own = any(effect.owner(name) == "recording" for name in effect.params)
+    return own and effect.footprint == "mean" and not effect.roles("per turn")
 
 
 def _left_out(sweeps: Sequence[Sweep]) -> tuple[str, ...]:

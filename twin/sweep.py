@@ -13,7 +13,7 @@ from twin.angles import Array, IntArray, radians, wrap_deg
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
 from twin.log import LOG
-from twin.motion import Motion
+from twin.motion import RPM, Motion
 from twin.recordings import Recordings
 from twin.shown_name import shown_name
 from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, OF_SETUP, PLAUSIBLE, REQUIRED, SMALLEST_AMPLITUDE
@@ -245,7 +245,7 @@ class Sweep:
             radians(self.reference_deg),
             time_s=self.time_s,
             direction=self.direction,
-            speed_rad_s=None if self.speed_rpm is None else self.speed_rpm * (2.0 * np.pi / 60.0),
+            speed_rad_s=None if self.speed_rpm is None else self.speed_rpm * RPM,
             turn=self.turn,
             temperature_c=self.temperature_c,
             has_channels=self.vx is not None,

@@ -233,6 +233,7 @@ def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
         "heldout_rms_deg_before": cause.before_deg,
         "heldout_rms_deg_after": cause.after_deg,
         "indistinguishable_from": list(dict.fromkeys(map(everywhere, cause.rivals))),
+        "rivals_sought": found.cut_short is None,
         "to_tell_apart": advice(cause.options, found.fit.settings) if cause.rivals else "",
         "to_tell_apart_options": [
             {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options

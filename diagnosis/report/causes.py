@@ -16,6 +16,7 @@ from diagnosis.report.wording import minus
 from twin.angles import TAU, Array
 from twin.catalogue import find, unnamed
 from twin.effect import BoolArray, Effect
+from twin.motion import RPM
 
 _PERIODS = 8.0
 """Periods of a fast ripple that are shown: more cannot be told from each other."""
@@ -97,7 +98,7 @@ def _views(read: Readings) -> Iterator[tuple[str, list[Group]]]:
     if "two temperatures" in motion.provides:
         yield ", by temperature", list(_levels(motion.temperature_c, "°C"))
     if "two speeds" in motion.provides:
-        yield ", by speed", list(_levels(motion.speed_rad_s * 60.0 / TAU, "rpm"))
+        yield ", by speed", list(_levels(motion.speed_rad_s / RPM, "rpm"))
 
 
 def _levels(values: Array, unit: str) -> Iterator[Group]:

@@ -18,7 +18,7 @@ from diagnosis.report.over_class import in_factors_words, open_words
 from diagnosis.report.recordings import recordings_notes, recordings_table, where_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.statements import FactorRow
-from diagnosis.report.wording import assumed_words, chance
+from diagnosis.report.wording import assumed_words, chance, rivals_words
 
 _ALL_SAID = ("adequate", "explained")
 """Verdicts that leave nothing open."""
@@ -192,7 +192,7 @@ def _details(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list[str]:
     """A cause's parameters and what else it might be; structure without a name in words."""
     lines = statements.parameter_lines(answer, cause)
     figures = (assumed_words(cause), where_words(cause), statements.single_rows_words(cause))
-    return [*lines, *filter(None, (*figures, statements.rivals_words(cause)))]
+    return [*lines, *filter(None, (*figures, rivals_words(cause)))]
 
 
 def _verdict(answer: Mapping[str, Any]) -> RenderableType:

@@ -9,6 +9,7 @@ import numpy as np
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.result import Discovery
 from twin.angles import Array, wrap
+from twin.motion import RPM
 from twin.sweep import Sweep
 
 
@@ -24,7 +25,7 @@ def facts(found: Discovery) -> dict[str, Any]:
         "error_rms_deg": float(np.sqrt(np.mean(angle_error_deg(found.baseline, sweep)[kept] ** 2))),
     }
     if np.any(motion.speed_rad_s != 0.0):
-        rpm = np.abs(motion.speed_rad_s) * 60.0 / (2.0 * np.pi)
+        rpm = np.abs(motion.speed_rad_s) / RPM
         said["speed_rpm"] = [float(rpm.min()), float(rpm.max())]
     if "temperature_c" in motion.columns:
         said["temperature_c"] = [float(motion.temperature_c.min()), float(motion.temperature_c.max())]

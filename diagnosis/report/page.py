@@ -21,7 +21,7 @@ from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.style import CSS
 from diagnosis.report.svg import Plot
 from diagnosis.report.tables import number
-from diagnosis.report.wording import assumed_words, minus, plain
+from diagnosis.report.wording import assumed_words, minus, plain, rivals_words
 from twin.catalogue import find
 from twin.whole_file import write_beside
 
@@ -202,6 +202,8 @@ def _picture_names(named: Finding) -> list[str]:
 
 def _rivals(cause: Mapping[str, Any]) -> str:
     rivals = cause["indistinguishable_from"]
+    if not cause["rivals_sought"]:
+        return f"<p>{statements.sentence(_text(rivals_words(cause)))}</p>"
     if not rivals:
         return "" if cause["name"] == "unnamed" else "<p>Nothing else that was searched explains the same readings.</p>"
     names = ", ".join(f'<span class="name">{escape(rival)}</span>' for rival in rivals)

@@ -10,6 +10,7 @@ from diagnosis.report.data import Readings, binned, highest_order, noise_level, 
 from diagnosis.report.svg import Axis, Kind, Layer, Plot
 from twin.angles import Array
 from twin.effect import BoolArray
+from twin.motion import RPM
 
 ANGLE = Axis("shaft angle / deg", (0.0, 360.0), (0, 45, 90, 135, 180, 225, 270, 315, 360))
 _ERROR = "error / deg"
@@ -125,7 +126,7 @@ def conditions(read: Readings) -> Iterator[tuple[str, Plot]]:
     if "temperature_c" in motion.columns and np.ptp(motion.temperature_c) > 1.0:
         yield "Over temperature", over_condition(read, motion.temperature_c, "temperature / °C")
     if "two speeds" in motion.provides:
-        rpm = motion.speed_rad_s * 60.0 / (2.0 * np.pi)
+        rpm = motion.speed_rad_s / RPM
         yield "Over speed", over_condition(read, rpm, "speed / rpm, backward negative")
 
 

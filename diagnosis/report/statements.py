@@ -279,17 +279,6 @@ def single_rows_words(cause: Mapping[str, Any], most: int = 8) -> str:
     return f"{listed}: {off}" if off else listed
 
 
-def rivals_words(cause: Mapping[str, Any]) -> str:
-    """What a cause cannot be told from, and what would part them; empty for structure without a name."""
-    if cause["name"] == "unnamed":
-        return ""
-    rivals = cause["indistinguishable_from"]
-    if not rivals:
-        return "cannot be told from: nothing else that was searched"
-    part = f". To tell them apart: {cause['to_tell_apart']}" if cause["to_tell_apart"] else ""
-    return f"cannot be told from: {', '.join(rivals)}{part}"
-
-
 # ---- the verdict ------------------------------------------------------------------------------------------------
 
 

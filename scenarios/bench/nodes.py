@@ -10,10 +10,11 @@ import numpy as np
 from scenarios.bench.faults import FaultyBus
 from scenarios.bench.messages import Frame
 from scenarios.bench.node import Node
-from scenarios.bench.stepper import RPM, Stepper
+from scenarios.bench.stepper import Stepper
 from scenarios.bench.world import World
 from twin.angles import TAU
 from twin.chain import Chain
+from twin.motion import RPM
 from twin.reference.encoder import Encoder
 
 MOVING, AT_REST, PASSED = 1, 2, 3

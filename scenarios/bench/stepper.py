@@ -8,10 +8,8 @@ import numpy as np
 
 from twin.angles import TAU
 from twin.limits import require_within
+from twin.motion import RPM
 from twin.reference.encoder import stepper_order
-
-RPM = TAU / 60.0
-"""One turn a minute [rad/s]."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,9 +13,13 @@ import pytest
 from diagnosis import explain
 from diagnosis.explanation import Explanation
 from diagnosis.factors.mounting import Mounting
+from diagnosis.joining import joined
+from diagnosis.report.explain_plot import residual_figure
 from tests.command_line import halltwin
 from twin.angles import Array
+from twin.catalogue import CATALOGUE
 from twin.chain import Chain
+from twin.each_recording import acts_in, everywhere
 from twin.errors import UserError
 from twin.files import read_twin
 from twin.motion import Motion
@@ -192,11 +196,31 @@ def test_what_happened_in_one_recording_is_named_with_it() -> None:
     assert "in 1.csv alone" in found.summary()
 
 
+def test_what_belongs_to_a_recording_is_each_ones_own() -> None:
+    """By the parameters' owners: what happens in time, and a phase that counts from the middle of a record."""
+    sweeps = [recorded(DEVICE, f"{k}.csv", zero_deg=float(k)) for k in range(2)]
+    start = joined(sweeps, CATALOGUE, mounting=None, given=None, rng=np.random.default_rng(1)).start
+    own = {everywhere(effect.name) for effect in start.effects if acts_in(effect.name) is not None}
+    assert own == {
+        *("zero", "zero_drift", "index_slip", "mains_pickup", "reference_ripple"),
+        *("unnamed_tone", "unnamed_drift"),
+    }
+
+
 def test_the_report_shows_them_side_by_side(tmp_path: Path) -> None:
     lagging().write_report(tmp_path / "r.html")
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert "The recordings side by side" in page
     assert "loud.csv" in page.split("The recordings side by side")[1]
+
+
+def test_the_picture_has_a_row_for_each() -> None:
+    figure = residual_figure(lagging().discovery)
+    labels = [axis.get_ylabel() for axis in figure.axes]
+    assert [label.split("\n")[0] for label in labels if label] == ["quiet.csv", "loud.csv"]
+    left = [float(re.search(r"([\d.]+) deg RMS", axis.get_title())[1]) for axis in figure.axes[2::3]]  # type: ignore[index]
+    # Each by itself, as the table has them.
+    assert left == pytest.approx([0.02, 0.06], rel=0.1)
 
 
 def test_zeros_of_turns_are_their_recordings() -> None:

@@ -14,7 +14,7 @@ _MECHANISMS: tuple[Mutation, ...] = (
     Mutation(
         "cross_validation.fits_see_held_out_rows",
         "diagnosis/discovery/proof/cross_validation.py",
-        "fit.observations.masked(use & ~held)",
+        "fit.observations.masked(split.seen)",
         "fit.observations",
         (
             f"{_TESTS}/proof/test_cross_validation.py::test_a_wild_value_in_a_held_out_fold_moves_no_other_reading_of_it",

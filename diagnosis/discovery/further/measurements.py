@@ -15,7 +15,7 @@ import numpy as np
 from twin.angles import TAU, Array, IntArray
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement
-from twin.motion import Motion
+from twin.motion import RPM, Motion
 
 FINEST_DEG = (0.05, 1.0)
 FINE_DEG = (0.5, 20.0)
@@ -132,7 +132,7 @@ def _second_speed(motion: Motion) -> tuple[Recording, ...] | None:
         speed = 2.0 * again.speed_rad_s
         elapsed = 0.5 * (again.time_s - again.time_s[0])
     else:
-        pace = FIRST_SPEED_RPM * TAU / 60.0
+        pace = FIRST_SPEED_RPM * RPM
         speed = pace * again.direction
         step = np.abs(np.diff(again.shaft_rad))
         # A shaft that turns round in its place takes its time too.

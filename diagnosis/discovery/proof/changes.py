@@ -17,6 +17,7 @@ import numpy as np
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.initial_fit import awake
 from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, value_of
+from diagnosis.discovery.fitting.projection import projected
 from diagnosis.discovery.settings import over_footprints
 from twin.angles import Array, wrap_deg
 from twin.catalogue import find
@@ -179,8 +180,7 @@ def _told(fit: Fit, free: Sequence[Free]) -> Array:
     """
     _, j = fit.whitened()
     tested = [fit.free.index(one) for one in free]
-    nuisance = _orthonormal(j[[place for place in range(len(fit.free)) if place not in set(tested)]])
-    columns = j[tested] - (j[tested] @ nuisance.T) @ nuisance
+    columns = projected(j[tested], j[[place for place in range(len(fit.free)) if place not in set(tested)]])
     return np.asarray(columns @ columns.T)
 
 
@@ -219,12 +219,3 @@ def _away(fit: Fit, twin: Chain, one: Free) -> float:
     away = value_of(fit.chain, one) - value_of(twin, one)
     phase = find(one.key, twin.effects).params[one.name].role == "phase"
     return float(wrap_deg(away)) if phase else away
-
-
-def _orthonormal(rows: Array) -> Array:
-    """Orthonormal rows that span the same as these (P, N)."""
-    if not len(rows):
-        return rows
-    scale = np.linalg.norm(rows, axis=1, keepdims=True)
-    _, s, v = np.linalg.svd(rows / np.where(scale > 0.0, scale, 1.0), full_matrices=False)
-    return np.asarray(v[s > 1e-9 * max(float(s[0]), 1e-300)])

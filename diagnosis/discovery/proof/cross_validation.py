@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, evaluate, solve
-from diagnosis.discovery.proof.whole_recordings import are_halves, by_recordings, halves, held_out_rows
+from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, solve
+from diagnosis.discovery.proof.whole_recordings import Split, are_halves, by_recordings, halves, of_recordings
 from twin.angles import TAU, Array, IntArray, wrap
 from twin.effect import BoolArray
+
+_ITERATIONS = 6
+"""Steps of a held-out fit: it sets out from the fit of all rows, which is near."""
 
 
 def folds(fit: Fit, keys: Sequence[str] = ()) -> IntArray:
@@ -35,31 +38,50 @@ def scattered(fit: Fit, keys: Sequence[str] = ()) -> IntArray:
     return np.arange(len(fit.observations), dtype=np.int64) % fit.settings.folds
 
 
-def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray) -> list[Array]:
+def held_out_residuals(fit: Fit, keys: Sequence[str], fold: IntArray, *, at_once: bool = False) -> list[Array]:
     """Residuals (n,) [rad] on held-out rows: of the baseline, then of the baseline with one cause after the other.
 
-    ``fold`` (n,) is that of each row.
+    ``fold`` (n,) is that of each row; ``at_once`` as in :func:`held_out_residual`.
     """
-    return [held_out_residual(fit, keys, keys[:count], fold) for count in range(len(keys) + 1)]
+    return [held_out_residual(fit, keys, keys[:count], fold, at_once=at_once) for count in range(len(keys) + 1)]
 
 
-def held_out_residual(fit: Fit, keys: Sequence[str], present: Collection[str], fold: IntArray) -> Array:
-    """Residual (n,) [rad] on held-out rows of the baseline with those of the causes ``keys`` that are present."""
-    use = fit.observations.usable
+def held_out_residual(
+    fit: Fit, keys: Sequence[str], present: Collection[str], fold: IntArray, *, at_once: bool = False
+) -> Array:
+    """Residual (n,) [rad] on held-out rows of the baseline with those of the causes ``keys`` that are present.
+
+    ``at_once``: each fit goes from that of all rows by one step, which is all of it where the chain is linear.
+    """
     base_free = [f for f in fit.free if f.key not in keys] or list(BASELINE)
     free = (*base_free, *(f for f in fit.free if f.key in present))
     chain = fit.chain.without(*(key for key in keys if key not in present))
-    if are_halves(fit, fold):
-        return held_out_rows(fit, chain, free, fold)
+    splits = of_recordings(fit, free, fold) if are_halves(fit, fold) else _of_blocks(fit, free, fold)
     residual = np.full(len(fit.observations), np.nan)
+    iterations = 1 if at_once else _ITERATIONS
+    for split in splits:
+        # Fewer readings than parameters tell a fit nothing.
+        if np.count_nonzero(split.seen) <= split.fewest:
+            continue
+        observations = fit.observations.masked(split.seen)
+        told = solve(evaluate(chain, split.free, observations, fit.weighting), iterations=iterations)
+        for seen, own, held in split.parts:
+            if np.count_nonzero(seen) <= len(own):
+                continue
+            settled = told
+            if own:
+                settled = solve(evaluate(told.chain, own, fit.observations.masked(seen), fit.weighting))
+            residual[held] = wrap(fit.observations.measured - settled.linear.angle)[held]
+    return residual
+
+
+def _of_blocks(fit: Fit, free: tuple[Free, ...], fold: IntArray) -> Iterator[Split]:
+    """Each fold (n,) told by the others."""
+    use = fit.observations.usable
     for number in range(fit.settings.folds):
         held = fold == number
-        # Fewer readings than parameters tell the fit nothing.
-        if not np.any(held & use) or np.count_nonzero(use & ~held) <= len(fit.free):
-            continue
-        trained = solve(evaluate(chain, free, fit.observations.masked(use & ~held), fit.weighting), iterations=6)
-        residual[held] = wrap(fit.observations.measured - trained.linear.angle)[held]
-    return residual
+        if np.any(held & use):
+            yield Split(use & ~held, free, len(fit.free), ((use & ~held, (), held),))
 
 
 def rms_deg(residual: Array, use: BoolArray) -> float:

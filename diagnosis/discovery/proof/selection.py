@@ -26,7 +26,7 @@ class Proof:
 
     ``fold`` (n,) is that of each row, ``held`` the held-out residuals (n,) [rad] of the baseline and after each cause,
     ``weighed_deg`` their RMS with the rows weighed by their noise; ``family`` calibrates the probabilities, where any
-    of the causes leaves a doubt, and ``effects`` are those that were searched for.
+    of the causes leaves a doubt, and ``effects`` are those that were searched for. ``at_once`` as in :func:`select`.
     """
 
     fit: Fit
@@ -36,6 +36,7 @@ class Proof:
     held: tuple[Array, ...]
     weighed_deg: tuple[float, ...]
     family: FamilyWise | None
+    at_once: bool = False
 
     @property
     def ordered(self) -> tuple[str, ...]:
@@ -66,14 +67,17 @@ class Proof:
         )
 
 
-def select(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.random.Generator) -> Proof:
+def select(
+    fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.random.Generator, at_once: bool = False
+) -> Proof:
     """Drop causes one after the other until every one that is left is proven.
 
-    ``rng`` draws the sweeps on which the family-wise probabilities are calibrated.
+    ``rng`` draws the sweeps on which the family-wise probabilities are calibrated. ``at_once``: somebody waits; then no
+    rivals are looked for, held-out fits go by a single step, and probabilities are those of the F test.
     """
     kept = list(keys)
     while True:
-        proof = prove(fit, effects, kept, rng=rng)
+        proof = prove(fit, effects, kept, rng=rng, at_once=at_once)
         idle = next((cause.key for place, cause in enumerate(proof.causes) if not _proven(proof, place)), None)
         if idle is None:
             return proof
@@ -81,22 +85,25 @@ def select(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.
         kept.remove(idle)
 
 
-def prove(fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.random.Generator) -> Proof:
-    """Judge the causes of a fit, hold them out, and calibrate their probabilities.
+def prove(
+    fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.random.Generator, at_once: bool = False
+) -> Proof:
+    """Judge the causes of a fit, hold them out, and calibrate their probabilities; see :func:`select`.
 
     Of the ``effects`` those count as searched for that the recording can show; the others may be rivals of these.
     """
     views = _views(fit, effects) if keys else []
-    causes = sorted((_judged(views, key, effects, keys) for key in keys), key=lambda cause: -cause.gain)
+    others = () if at_once else effects
+    causes = sorted((_judged(views, key, others, keys) for key in keys), key=lambda cause: -cause.gain)
     ordered = [cause.key for cause in causes]
     fold = folds(fit, ordered)
     if fit.weighting.member == 0 and least_seen(fit, ordered, fold) < fit.settings.heldout_seen:
         # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere.
         fold = scattered(fit, ordered)
-    held, weighed = _held_out(fit, ordered, fold)
+    held, weighed = _held_out(fit, ordered, fold, at_once=at_once)
     visible = tuple(effect for effect in effects if effect.visible_in(fit.observations.motion.provides))
-    family = _calibrated(fit, visible, causes, rng)
-    return Proof(fit, visible, tuple(causes), fold, tuple(held), tuple(weighed), family)
+    family = None if at_once else _calibrated(fit, visible, causes, rng)
+    return Proof(fit, visible, tuple(causes), fold, tuple(held), tuple(weighed), family, at_once)
 
 
 def _proven(proof: Proof, place: int) -> bool:
@@ -109,15 +116,15 @@ def _proven(proof: Proof, place: int) -> bool:
         return True
     # Not the last step: its turn may come only with what was added after it.
     last = [*(key for key in proof.ordered if key != cause.key), cause.key]
-    _, weighed = _held_out(fit, last, proof.fold)
+    _, weighed = _held_out(fit, last, proof.fold, at_once=proof.at_once)
     # The RMS counts correlated noise in full: a strong cause that leaves it as it is shows elsewhere.
     slack = settings.heldout_slack if cause.log_p < settings.beyond_doubt_log_p else 1.0
     return weighed[-1] < slack * weighed[-2]
 
 
-def _held_out(fit: Fit, keys: Sequence[str], fold: IntArray) -> tuple[list[Array], list[float]]:
+def _held_out(fit: Fit, keys: Sequence[str], fold: IntArray, *, at_once: bool) -> tuple[list[Array], list[float]]:
     """Held-out residuals (n,) [rad] as the causes are added one by one, and their RMS [deg] with weighed rows."""
-    held = held_out_residuals(fit, keys, fold)
+    held = held_out_residuals(fit, keys, fold, at_once=at_once)
     return held, [rms_deg(residual / fit.observations.scale, fit.observations.usable) for residual in held]
 
 

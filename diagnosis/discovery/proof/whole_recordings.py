@@ -6,16 +6,17 @@ it and judged on the other, in blocks; everything else comes from the other reco
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve
+from diagnosis.discovery.fitting.joint_fit import Fit, Free
 from diagnosis.discovery.fitting.own_zeros import owner
-from twin.angles import Array, IntArray, wrap
+from twin.angles import IntArray
 from twin.catalogue import find
-from twin.chain import Chain
 from twin.each_recording import acts_in
+from twin.effect import BoolArray
 
 HALVES = 2
 
@@ -49,26 +50,31 @@ def halves(fit: Fit, block: IntArray) -> IntArray:
     return np.asarray(HALVES * recordings.number + block % HALVES, dtype=np.int64)
 
 
-def held_out_rows(fit: Fit, chain: Chain, free: Sequence[Free], fold: IntArray) -> Array:
-    """Residual (n,) [rad] of every row in use, each predicted from other recordings and the other half of its own.
+@dataclass(frozen=True, eq=False)
+class Split:
+    """Rows that are held out: what is fitted to others first, and in each part what to which rows, ahead of its own.
 
-    ``chain`` is where the fits set out from, ``free`` what they may move, ``fold`` (n,) that of :func:`halves`.
+    ``seen`` (n,) are the rows of the first fit, ``free`` what it moves, ``fewest`` the readings that it takes. A part
+    holds the rows (n,) of a second fit, what that moves, and the rows (n,) that are then predicted.
+    """
+
+    seen: BoolArray
+    free: tuple[Free, ...]
+    fewest: int
+    parts: tuple[tuple[BoolArray, tuple[Free, ...], BoolArray], ...]
+
+
+def of_recordings(fit: Fit, free: Sequence[Free], fold: IntArray) -> Iterator[Split]:
+    """Each recording as a whole: what is common is told by the others, what is its own by the other half of it.
+
+    ``fold`` (n,) is that of :func:`halves`.
     """
     use, recordings = fit.observations.usable, fit.observations.motion.recordings
     assert recordings is not None
-    residual = np.full(len(fit.observations), np.nan)
     for number in range(len(recordings)):
-        own = [one for one in free if owner(one, fit.observations.motion) == number]
+        own = tuple(one for one in free if owner(one, fit.observations.motion) == number)
         shared = tuple(one for one in free if one not in own)
         here = fold // HALVES == number
-        if np.count_nonzero(use & ~here) <= len(shared):
-            continue
-        told = solve(evaluate(chain, shared, fit.observations.masked(use & ~here), fit.weighting), iterations=6)
-        for half in range(HALVES):
-            seen = here & (fold % HALVES != half)
-            if np.count_nonzero(use & seen) <= len(own):
-                continue
-            settled = solve(evaluate(told.chain, tuple(own), fit.observations.masked(use & seen), fit.weighting))
-            held = here & (fold % HALVES == half)
-            residual[held] = wrap(fit.observations.measured - settled.linear.angle)[held]
-    return residual
+        halves_here = [here & (fold % HALVES == half) for half in range(HALVES)]
+        parts = tuple((use & here & ~held, own, held) for held in halves_here)
+        yield Split(use & ~here, shared, len(shared), parts)

@@ -90,6 +90,9 @@ def test_what_a_stopped_search_holds_is_finished_and_proven() -> None:
         assert cause.false_alarm_probability < 0.01
         assert found.verdict == "partly explained"
         assert "noise" in found.extended.values
+        # Whoever has stopped the search waits for the answer: rivals would take longer than all else.
+        assert found.to_dict()["causes"][0]["rivals_sought"] is False
+        assert "what else it may be was not looked for, as the search was stopped" in " ".join(found.summary().split())
         after = [one.stage for one in heard if one.stopped]
         # At once in the stage that is stopped, then as what it holds is finished.
         assert after == ["stepwise", *(stage.__name__ for stage in PIPELINE[PIPELINE.index(held_out_selection) :])]

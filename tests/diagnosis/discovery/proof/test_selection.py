@@ -78,8 +78,9 @@ CASES = {
 def test_which_cause_stays(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Sequence[str]] = []
 
-    def held_out(fit: Fit, keys: Sequence[str], fold: Any) -> tuple[list[Any], list[float]]:
+    def held_out(fit: Fit, keys: Sequence[str], fold: Any, *, at_once: bool) -> tuple[list[Any], list[float]]:
         asked.append(keys)
+        assert not at_once
         assert case.last is not None
         return [], list(case.last)
 
@@ -138,7 +139,7 @@ def test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost(
     jacobian[[free.key == SATURATION for free in fit.free]] = column
     fit = replace(fit, jacobian=jacobian, weighting=replace(fit.weighting, member=member))
     assert selection.least_seen(fit, [SATURATION], fold) == pytest.approx(share)
-    monkeypatch.setattr(selection, "_held_out", lambda *_: ([], [0.02, 0.01]))
+    monkeypatch.setattr(selection, "_held_out", lambda *_, **__: ([], [0.02, 0.01]))
     monkeypatch.setattr(selection, "_calibrated", lambda *_: None)
     proof = prove(fit, handed().searched[:EFFECTS], [SATURATION], rng=np.random.default_rng(0))
     assert np.array_equal(proof.fold, scattered(fit) if scatters else fold)

@@ -202,7 +202,7 @@ def _picture_names(named: Finding) -> list[str]:
 
 def _rivals(cause: Mapping[str, Any]) -> str:
     rivals = cause["indistinguishable_from"]
-    if not cause["rivals_sought"]:
+    if not cause.get("rivals_sought", True):
         return f"<p>{statements.sentence(_text(rivals_words(cause)))}</p>"
     if not rivals:
         return "" if cause["name"] == "unnamed" else "<p>Nothing else that was searched explains the same readings.</p>"

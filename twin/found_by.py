@@ -1,0 +1,86 @@
+"""What an effect is found by where a grid of its shapes is not it: a periodogram, or marks on single readings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.angles import Array
+from twin.motion import Motion
+
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Line:
+    """A periodic shape: found by a periodogram instead of a grid.
+
+    ``param`` is the parameter that holds its order, frequency or weight; ``clock`` is what it is periodic in: the shaft
+    angle (orders), time (Hz), or a channel's value (a bit's weight, %). ``limits`` maps a motion to the lowest and
+    highest order, frequency or weight worth looking at; ``within`` maps an array of these to a mask of those that
+    belong to the effect; ``multiples`` are multiples of it at which the same source shows again. ``begin`` maps such a
+    value, and the sign with which the shape matches a residual, to the shape parameters that a search sets out from.
+    """
+
+    param: str
+    clock: Literal["shaft", "time", "channels"]
+    limits: Callable[[Motion], tuple[float, float]]
+    within: Callable[[Array], BoolArray]
+    multiples: tuple[int, ...] = ()
+    begin: Callable[[float, float], Mapping[str, float]] | None = None
+
+    def begun(self, value: float, sign: float = 1.0) -> Mapping[str, float]:
+        """The shape that a search sets out from at this order, frequency or weight."""
+        return {self.param: value, **({} if self.begin is None else self.begin(value, sign))}
+
+    def some(self, motion: Motion) -> Array:
+        """Orders, frequencies or weights (m,) of the effect, ascending, over all its limits, whole ones among them."""
+        low, high = self.limits(motion)
+        tried = np.linspace(low, high, 201)
+        tried = np.concatenate([tried, np.unique(np.round(tried))])
+        return np.sort(tried[self.within(tried) & (tried >= low) & (tried <= high)])
+
+
+class FindMarks(Protocol):
+    """Finds the single readings that an effect of the footprint "sequence" has touched.
+
+    From readings and residual [rad] (n,), the RMS of the noise [rad], the step of the output's grid [rad] (0: none) and
+    the motion to a mask (n,) of the touched readings and the log probability that chance alone marks as many.
+    """
+
+    def __call__(
+        self, measured: Array, residual: Array, noise: float, step: float, motion: Motion
+    ) -> tuple[BoolArray, float]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Marks:
+    """How an effect of the footprint "sequence" is looked for, and what is said of it. Called, it does ``find``.
+
+    Attributes
+    ----------
+    find : FindMarks
+        Finds the touched readings.
+    told : callable
+        From the number of touched readings and of all readings to the parameters, each with its standard deviation.
+    early : bool
+        Whether its marks would pass for structure unless they are looked for first; they are looked for once more in
+        what is left at the end. Others are looked for at the end alone, on readings that no other effect has claimed.
+    rows_listed : bool
+        Whether the answer names each touched row.
+    """
+
+    find: FindMarks
+    told: Callable[[int, int], Mapping[str, tuple[float, float]]]
+    early: bool = False
+    rows_listed: bool = False
+
+    def __call__(
+        self, measured: Array, residual: Array, noise: float, step: float, motion: Motion
+    ) -> tuple[BoolArray, float]:
+        """The touched rows (n,) and the log probability of as many by chance: see :class:`FindMarks`."""
+        return self.find(measured, residual, noise, step, motion)

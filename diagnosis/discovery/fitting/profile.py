@@ -66,7 +66,7 @@ class Profile:
         Whatever chain has been found within the reach belongs to the region, and what it has for the others to theirs:
         a parameter that turns back along a curved valley has its ends elsewhere than where its own profile is followed.
         """
-        values = np.array([value_of(self.fit.chain, one) for one in self.fit.free])
+        values = {place: value_of(self.fit.chain, self.fit.free[place]) for place in places}
         found: dict[int, tuple[float, float]] = {}
         within: list[Array] = []
         for place in places:

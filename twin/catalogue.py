@@ -50,6 +50,11 @@ def unnamed(key: str) -> bool:
     return base_name(key).startswith("unnamed")
 
 
+def of_one_source(effect: Effect) -> bool:
+    """Whether further lines of an effect are the multiples of its first one, or what that is a multiple of."""
+    return effect.line is not None and bool(effect.line.multiples)
+
+
 def output_grid(effects: Iterable[Effect] = CATALOGUE) -> Effect | None:
     """The effect whose attainable angles are the grid of the output word; None where there is none."""
     return next((effect for effect in effects if effect.output_grid), None)

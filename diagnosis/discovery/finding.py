@@ -10,8 +10,9 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.settings import over_footprints
-from twin.catalogue import base_name, unnamed
+from twin.catalogue import CATALOGUE, base_name, find, of_one_source, unnamed
 from twin.each_recording import everywhere
+from twin.effect import Effect
 
 if TYPE_CHECKING:
     from diagnosis.discovery.further.power import Option
@@ -63,16 +64,20 @@ class Finding:
         return "unnamed" if unnamed(name) else name
 
 
-def merge(entries: Sequence[Finding]) -> list[Finding]:
+def merge(entries: Sequence[Finding], effects: tuple[Effect, ...] = CATALOGUE) -> list[Finding]:
     """Instances of one effect, and all structure without a name, as one entry each; strongest first.
 
-    The held-out figures of a merged entry are those of no single instance: they are left open.
+    Instances of which one has another rival than the other may come of different causes: they are entries of their own,
+    unless they are lines of one source. The held-out figures of a merged entry are those of no single instance: they
+    are left open.
     """
-    merged: dict[str, Finding] = {}
+    merged: dict[tuple[str, frozenset[str]], Finding] = {}
     for entry in entries:
-        if entry.name in merged:
-            first = merged[entry.name]
-            merged[entry.name] = replace(
+        apart = entry.name != "unnamed" and not of_one_source(find(entry.keys[0], effects))
+        which = (entry.name, frozenset(entry.rivals if apart else ()))
+        if which in merged:
+            first = merged[which]
+            merged[which] = replace(
                 first,
                 keys=(*first.keys, *entry.keys),
                 log_p=min(first.log_p, entry.log_p),
@@ -85,5 +90,5 @@ def merge(entries: Sequence[Finding]) -> list[Finding]:
                 intervals={**first.intervals, **entry.intervals},
             )
         else:
-            merged[entry.name] = entry
+            merged[which] = entry
     return sorted(merged.values(), key=lambda e: -e.gain)

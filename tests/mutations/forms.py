@@ -71,7 +71,7 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "forms.a_drive_has_any_order",
             "diagnosis/discovery/search/forward_step.py",
-            " and not _of_one_source(e)",
+            " and not of_one_source(effect)",
             "",
             f"{_FORMS}::test_a_drive_has_one_order_and_its_multiples",
         ),

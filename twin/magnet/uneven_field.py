@@ -96,7 +96,12 @@ class UnevenField:
     @property
     def turn_per_mm2(self) -> float:
         """What a product of both displacements turns the angle by [rad/mm2], to the leading order."""
-        return float(2.0 * np.abs(self.terms[1, 0]) / self.radius_mm**2)
+        return abs(self.second_per_mm2)
+
+    @property
+    def second_per_mm2(self) -> float:
+        """The part of the field that turns twice as fast as the magnet, of a product of both displacements [1/mm2]."""
+        return float(-2.0 * self.terms[1, 0] / self.radius_mm**2)
 
     @cached_property
     def shift_of_tilt_mm(self) -> tuple[complex, complex]:

@@ -19,7 +19,7 @@ from diagnosis.discovery.search.likelihood_ratio import (
     take_out,
 )
 from diagnosis.discovery.search.screening import Base, Candidate, screen, screen_one
-from twin.catalogue import base_name, find
+from twin.catalogue import base_name, find, of_one_source
 from twin.effect import Effect
 
 _HIGHEST_SHARE = 0.9
@@ -29,15 +29,29 @@ _HIGHEST_SHARE = 0.9
 def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
     """Every effect that may still be added, at its best shape, best first after the handicap."""
     present = {base_name(key) for key in keys}
-    open_to = [e for e in effects if e.name not in present or (e.repeatable and not _of_one_source(e))]
-    found = screen(base, open_to)
+    found = screen(base, [effect for effect in effects if effect.name not in present])
+    further = (one_more(base, effect, keys) for effect in effects if effect.name in present)
+    found += [candidate for candidate in further if candidate is not None]
     found += multiples(base, effects, keys)
     return sorted(found, key=lambda c: c.log_p + handicap(c.effect, base.fit))
 
 
-def _of_one_source(effect: Effect) -> bool:
-    """Whether further lines of an effect are the multiples of its first one, or what that is a multiple of."""
-    return effect.line is not None and bool(effect.line.multiples)
+def may_come_again(effect: Effect) -> bool:
+    """Whether an effect may be found once more beside itself; further lines of one source are looked for as such."""
+    return effect.repeatable and not of_one_source(effect)
+
+
+def one_more(base: Base, effect: Effect, keys: Sequence[str]) -> Candidate | None:
+    """A further instance of an effect beside those among the keys: where there may be one, of another whole number."""
+    if not may_come_again(effect):
+        return None
+    counted = [name for name in effect.roles("shape") if effect.params[name].counts]
+    if not counted or effect.line is not None:
+        return screen_one(base, effect)
+    own = [base.fit.chain.values.get(key, {}) for key in keys if base_name(key) == effect.name]
+    held = [[values.get(name) for name in counted] for values in own]
+    shapes = effect.shapes(base.fit.linear.motion)
+    return screen_one(base, effect, shapes=[one for one in shapes if [one.get(name) for name in counted] not in held])
 
 
 def multiples(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
@@ -47,7 +61,7 @@ def multiples(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> lis
     """
     found = []
     for effect in effects:
-        if effect.line is None or not _of_one_source(effect):
+        if effect.line is None or not of_one_source(effect):
             continue
         motion = base.fit.observations.motion
         low, _ = effect.line.limits(motion)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.usual_factors import with_usual_factors
+from diagnosis.discovery.search.forward_step import may_come_again, one_more
 from diagnosis.discovery.search.likelihood_ratio import TO_THE_END, add, likelihood
 from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import screen_one
@@ -33,7 +34,9 @@ def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) ->
     removal = Removal.of(fit, key)
     rivals: dict[str, Fit] = {}
     if not unnamed(removal.effect.name):
-        present = {*(base_name(other) for other in keys), removal.effect.name}
+        # What is there already may come again, with another whole number.
+        again = {effect.name for effect in effects if may_come_again(effect)}
+        present = {*(base_name(other) for other in keys if base_name(other) not in again), removal.effect.name}
         provides = fit.observations.motion.provides
         others = [other for other in effects if other.name not in present and not unnamed(other.name)]
         rivals = _as_good(fit, removal, [other for other in others if other.visible_in(provides)])
@@ -76,7 +79,8 @@ def _in_its_place(fit: Fit, removal: Removal, other: Effect) -> Fit | None:
     """The fit with another effect in the place of a cause, if it cannot be told from the fit with the cause."""
     settings, gain, own = fit.settings, removal.gain, removal.own
     same = settings.same_fit(coarse=fit.weighting.coarse)
-    rival = screen_one(removal.base, other)
+    there = [key for key in removal.removed.chain.values if base_name(key) == other.name]
+    rival = one_more(removal.base, other, there) if there else screen_one(removal.base, other)
     if rival is None or rival.gain < settings.rival_share * min(gain, own.gain if own is not None else gain) - same:
         return None
     trial, _ = add(removal.removed, rival, iterations=TO_THE_END)

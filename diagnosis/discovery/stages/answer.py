@@ -23,7 +23,7 @@ def answer(state: State) -> State:
     rows and of single readings: what is before an entry is after the one above it. Causes of single readings and of the
     scatter change nothing there.
     """
-    entries = merge(state.findings)
+    entries = merge(state.findings, state.fit.chain.effects)
     causes, changed, held = _with_figures(state, entries)
     # The turn of some comes only with what stands below them.
     early = [entry for entry, cause in zip(entries, causes, strict=True) if cause.after_deg > cause.before_deg]

@@ -132,7 +132,7 @@ def misplaced(chain: Chain, designs: Designs) -> tuple[Designs, frozenset[str]]:
     """The designs with what the chain's effects displace, and the keys of these effects."""
     for key, params in chain.values.items():
         effect = find(key, chain.effects)
-        if isinstance(effect.forward, Misplaced) and not effect.is_null(params):
+        if isinstance(effect.forward, Misplaced) and effect.forward.displaces(params) and not effect.is_null(params):
             still, moved = effect.forward.poses({**effect.null(), **params})
             return Misplacing(designs.magnet, designs.placement, still, moved), frozenset({key})
     return designs, frozenset()

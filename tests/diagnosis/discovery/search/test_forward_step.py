@@ -10,7 +10,15 @@ import pytest
 
 from diagnosis.discovery.search import forward_step
 from diagnosis.discovery.search.exchange import Search
-from diagnosis.discovery.search.forward_step import Step, best_addition, best_together, candidates, multiples, retuned
+from diagnosis.discovery.search.forward_step import (
+    Step,
+    best_addition,
+    best_together,
+    candidates,
+    multiples,
+    one_more,
+    retuned,
+)
 from diagnosis.discovery.search.likelihood_ratio import likelihood, settle
 from diagnosis.discovery.search.screening import Base, Candidate, screen_one
 from diagnosis.discovery.settings import DiscoverySettings
@@ -172,6 +180,23 @@ def test_a_cause_that_is_there_is_offered_again_only_where_a_second_makes_sense(
     assert SATURATION in {c.effect.name for c in candidates(base, effects, [])}
     assert SATURATION not in names
     assert HARMONIC in names
+
+
+@pytest.mark.parametrize(("held", "order"), [((5.0,), 6.0), ((5.0, 6.0), None)])
+def test_a_further_instance_has_another_whole_number(held: tuple[float, ...], order: float | None) -> None:
+    """Of two clear orders that the fit does not take up; one that is held would be the same again."""
+    state = with_residual(fifth(), noise(len(fifth().sweep)))
+    shaft = state.fit.observations.motion.shaft_rad
+    both = np.radians(0.05) * np.sin(5.0 * shaft) + np.radians(0.02) * np.sin(6.0 * shaft)
+    state = with_residual(state, noise(len(state.sweep)) + both)
+    chain = state.fit.chain
+    for number, one in enumerate(held):
+        chain = chain.with_values({f"{HARMONIC}#{number + 2}": {"order": one, "amplitude_deg": 0.0, "phase_deg": 0.0}})
+    base = Base.of(replace(state.fit, chain=chain))
+    found = one_more(base, find(HARMONIC), [f"{HARMONIC}#{number + 2}" for number in range(len(held))])
+    assert found is not None
+    assert found.values["order"] not in held
+    assert order is None or found.values["order"] == order
 
 
 def rippled() -> State:

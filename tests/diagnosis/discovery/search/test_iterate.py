@@ -72,10 +72,10 @@ def test_all_that_the_radius_does_has_to_be_the_work_of_causes(case: Case) -> No
 
 def test_an_unexplained_radius_is_taken_for_noise_in_the_end() -> None:
     """The stage then searches once more without trusting it, and still finds what the angle shows."""
-    made = replace(CLEAN, causes=(("cardan_coupling", 0.1),))
+    made = replace(CLEAN, causes=(("magnet_harmonic", 0.1),))
     after = stepwise(with_order(recorded(made), 6, 6.0))
     assert not after.fit.weighting.radius_trusted
-    assert after.keys == ("cardan_coupling",)
+    assert after.keys == ("magnet_harmonic",)
 
 
 def test_rows_that_stand_alone_only_once_the_causes_are_known_are_masked(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -156,3 +156,9 @@ def test_what_an_angle_never_names_acts_on_it_all_the_same() -> None:
     assert not misplaced.acts_in(frozenset())
     # What a drift did at temperatures that nobody recorded is not known.
     assert not find("gain_drift").acts_in(frozenset({"one turn", "vx"}))
+
+
+def test_what_is_there_already_is_a_rival_with_another_order() -> None:
+    """Saturation turns the angle by order 4, which a second harmonic of the magnet does too."""
+    state = with_cause(handed(CASES["saturation in a turn"].made), HARMONIC, order=5.0, amplitude_deg=0.01)
+    assert HARMONIC in judged(state).rivals

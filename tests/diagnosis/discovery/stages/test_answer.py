@@ -123,5 +123,26 @@ def test_instances_of_one_effect_are_one_entry_and_so_is_all_without_a_name() ->
     assert set(ripple.rivals) == {"magnet_harmonic"}
 
 
+def test_instances_with_rivals_of_their_own_are_entries_of_their_own() -> None:
+    """What one of them cannot be told from says nothing of the other; with the same rivals they are one."""
+    state = before(answer, MADE)
+    fit = state.fit
+
+    def finding(key: str, gain: float, *rivals: str) -> Finding:
+        return Finding((key,), -0.5 * gain, gain, -gain, dict.fromkeys(rivals, fit), before_deg=0.3, after_deg=0.2)
+
+    state = state.with_(
+        findings=(
+            finding("magnet_harmonic", 50.0, "saturation"),
+            finding("magnet_harmonic#2", 40.0),
+            finding("magnet_harmonic#3", 30.0, "saturation"),
+        )
+    )
+    assert [(cause.keys, set(cause.rivals)) for cause in answer(state).causes] == [
+        (("magnet_harmonic", "magnet_harmonic#3"), {"saturation"}),
+        (("magnet_harmonic#2",), set()),
+    ]
+
+
 def test_without_findings_there_is_no_entry() -> None:
     assert answer(before(answer, Made(points=72))).causes == ()

@@ -24,8 +24,6 @@ TOLERANCE_DEG = 2.0
 """Standard deviation of a tilt before anything is known of it: a mounting that is off by more is seen."""
 WITHIN = 3.0
 """Sensor and magnet are placed alike: neither is further off than the other by more than this, two times of three."""
-EITHER = 0.5
-"""Share of a second moment that is set out from."""
 MOMENTS = SENSOR_ALONE, OFF_CENTRE, NOT_ROUND = 1.0, 2.0, 3.0
 """Moments of the magnet about the shaft that a sensor off the axis sees. Every magnet has the first, whose field turns
 against the shaft there. One off the axis, or stronger on one side, has the second, a block or a chipped one the third:
@@ -123,7 +121,7 @@ def _poses(values: Parameters, shift_of_tilt_mm: tuple[complex, complex]) -> tup
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
-    return [*shapes_of_round(motion), {"moment": NOT_ROUND, "direction_deg": 0.0, "log_ratio": 0.0}]
+    return [*shapes_of_round(motion), *_of_moment(NOT_ROUND, motion)]
 
 
 def shapes_of_round(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -134,12 +132,13 @@ def shapes_of_round(motion: Motion) -> Sequence[Mapping[str, float]]:
         for ratio in (0.5, 1.0, 2.0)
         for direction in np.arange(-90.0, 90.0, 30.0)
     ]
-    return [*both, {"moment": SENSOR_ALONE, "direction_deg": 0.0, "log_ratio": 0.0}]
+    return [*both, *_of_moment(SENSOR_ALONE, motion)]
 
 
-def begin(values: Parameters) -> Parameters:
-    """Half of a second moment is taken for unevenness, as long as nothing is known of the displacements."""
-    return {**values, "uneven": EITHER if values["moment"] == OFF_CENTRE else 0.0}
+def _of_moment(moment: float, motion: Motion) -> Sequence[Mapping[str, float]]:
+    """The one shape of a moment that in an angle alone, at one gap, does what gain and phase do."""
+    shown = not motion.provides.isdisjoint({"vx", "two air gaps"})
+    return [{"moment": moment, "direction_deg": 0.0, "log_ratio": 0.0}] if shown else []
 
 
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
@@ -210,7 +209,7 @@ MAGNET_MISALIGNMENT = Effect(
             role="shape",
             typical=0.5,
             # Either may be most of it.
-            prior_mean=EITHER,
+            prior_mean=0.5,
             prior_sd=0.5,
         ),
         "off_axis_mm": Param(
@@ -276,7 +275,6 @@ MAGNET_MISALIGNMENT = Effect(
         *("direction_deg", "log_ratio", "uneven"),
         *("sensor_tilt_x_deg", "sensor_tilt_y_deg", "magnet_tilt_x_deg", "magnet_tilt_y_deg"),
     ),
-    begin=begin,
     repeatable=True,
     drawing=drawing,
     derived=derived,

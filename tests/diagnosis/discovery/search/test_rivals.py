@@ -19,7 +19,7 @@ from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.searches import candidate, with_cause
 from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
 from twin.adc.adc_inl import STEP_PERCENT
-from twin.catalogue import CATALOGUE, find, unnamed
+from twin.catalogue import find, unnamed
 
 LIMITS = DiscoverySettings()
 SATURATION, HARMONIC, HYSTERESIS, BACKLASH = "saturation", "magnet_harmonic", "hysteresis", "backlash"
@@ -131,9 +131,9 @@ def test_only_who_gains_a_share_to_first_order_is_fitted(
     assert (found is not None) == fitted
 
 
-def test_neither_what_has_no_name_nor_what_is_there_already_is_a_rival() -> None:
-    state = with_cause(handed(CASES["saturation in a turn"].made), HARMONIC, order=5.0, amplitude_deg=0.01)
-    assert not {HARMONIC, *(effect.name for effect in CATALOGUE if unnamed(effect.name))} & set(judged(state).rivals)
+def test_what_has_no_name_is_no_rival() -> None:
+    state = handed(CASES["saturation in a turn"].made)
+    assert not any(unnamed(name) for name in judged(state).rivals)
     bump = with_cause(state, "unnamed_bump", centre_deg=100.0, width_deg=10.0, height_deg=0.01)
     assert judge(bump.fit, "unnamed_bump", bump.searched, bump.keys).rivals == {}
 

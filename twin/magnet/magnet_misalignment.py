@@ -177,7 +177,7 @@ def at_magnet(assembly: Assembly) -> Effect:
 
 
 def _shape(unit: str, bound: float, doc: str, **about: Any) -> Param:
-    return Param(unit=unit, null=0.0, lower=-bound, upper=bound, doc=doc, role="shape", **about)
+    return Param(unit=unit, null=0.0, lower=-bound, upper=bound, doc=doc, role="shape", aside=True, **about)
 
 
 def _tilt(doc: str, *, mirror: Any) -> Param:
@@ -211,6 +211,7 @@ MAGNET_MISALIGNMENT = Effect(
             # Either may be most of it.
             prior_mean=0.5,
             prior_sd=0.5,
+            aside=True,
         ),
         "off_axis_mm": Param(
             unit="mm",

@@ -118,6 +118,10 @@ def add(fit: Fit, candidate: Candidate, *, iterations: int = 12) -> tuple[Fit, s
     chain = fit.chain.with_values({key: dict(candidate.effect.begin(candidate.values))})
     turns = int(fit.observations.motion.turn.max(initial=0)) + 1
     free = free_of(candidate.effect, key, turns=turns, channels=fit.observations.observables == 2)
+    begun = evaluate(chain, free, fit.observations, fit.weighting)
+    # A detail that this kind of the effect does not have.
+    idle = {one for one, column in zip(free, begun.jacobian, strict=True) if not column.any()}
+    free = tuple(one for one in free if one not in idle or candidate.effect.params[one.name].role != "shape")
     return refit(chain, (*fit.free, *free), fit, iterations=iterations), key
 
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.air_gap import at_air_gap
 from twin.angles import Array, wrap
 from twin.catalogue import in_order
 from twin.chain import Chain
@@ -24,15 +25,15 @@ PLACEMENT = "magnet.placement"
 """The effect's name: the table of a twin file that holds its numbers."""
 _NEWTON = 6
 """Steps in which the field's angle is found: its direction leaves it by some hundredths of a radian."""
-_FAR_MM, _TILTED_DEG, _STRAY_MT = 5.0, 30.0, 50.0
-"""Beyond these a fit does not look: nobody has put a sensor there."""
 
 
 @dataclass(frozen=True, eq=False)
 class Moved:
     """The channels of a magnet in another placement, from its channels in the one in which it is described.
 
-    ``apart_rad`` is by how much the field's angle at y is ahead of that at x.
+    They are counted in the amplitude of the described one, as all that the chain does to them is: in a weaker field an
+    offset in volts is then a larger share by itself. ``apart_rad`` is by how much the field's angle at y is ahead of
+    that at x.
     """
 
     assembly: Assembly
@@ -42,11 +43,13 @@ class Moved:
         angle = self._angle(signal, motion)
         before = self.assembly.channels(angle, motion)
         sizes = [np.size(value) for value in values.values()]
-        moved = [
-            placed(self.assembly, values, place).channels(angle, motion) - before
-            for place in range(max(sizes, default=1))
-        ]
+        moved = [self._channels(values, place, angle, motion) - before for place in range(max(sizes, default=1))]
         return np.asarray(signal + (moved[0] if len(moved) == 1 else np.stack(moved)))
+
+    def _channels(self, values: Parameters, place: int, angle: Array, motion: Motion) -> Array:
+        """The channels (2, n) elsewhere, in the amplitude of the described placement."""
+        elsewhere = placed(self.assembly, values, place)
+        return elsewhere.channels(angle, motion) * (elsewhere.nominal_mT / self.assembly.nominal_mT)
 
     def _angle(self, signal: Array, motion: Motion) -> Array:
         """The field angles [rad] (2, n) at which the described placement makes these channels (2, n)."""
@@ -64,24 +67,24 @@ def placed(assembly: Assembly, values: Parameters, place: int = 0) -> Assembly:
     return replace(assembly, placement=replace(assembly.placement, **numbers))
 
 
-def moved_placement(assembly: Assembly, *, apart_rad: float, gap: bool) -> Effect:
-    """The effect of a magnet whose placement is another than the described one; with ``gap`` its air gap too.
+def moved_placement(assembly: Assembly, *, apart_rad: float) -> Effect:
+    """The effect of a magnet whose placement is another than the described one.
 
     ``apart_rad`` is by how much the field's angle at y is ahead of that at x.
     """
 
-    def number(unit: str, reach: float, limit: float, typical: float) -> Callable[[str, str], tuple[str, Param]]:
+    def number(unit: str, limit: float, typical: float) -> Callable[[str, str], tuple[str, Param]]:
         def declared(name: str, doc: str) -> tuple[str, Param]:
             own = float(getattr(assembly.placement, name))
-            low, high = max(own - reach, SMALLEST_GAP_MM if name == "air_gap_mm" else -limit), min(own + reach, limit)
+            low = SMALLEST_GAP_MM if name == "air_gap_mm" else -limit
             about: dict[str, Any] = {"role": "level", "typical": typical, "owner": "mounting"}
-            return name, Param(unit=unit, null=own, lower=low, upper=high, doc=doc, **about)
+            return name, Param(unit=unit, null=own, lower=low, upper=limit, doc=doc, **about)
 
         return declared
 
-    length = number("mm", _FAR_MM, LARGEST_SHIFT_MM, 0.1)
-    tilt = number("deg", _TILTED_DEG, LARGEST_TILT_DEG, 2.0)
-    field = number("mT", _STRAY_MT, LARGEST_STRAY_MT, 0.1)
+    length = number("mm", LARGEST_SHIFT_MM, 0.1)
+    tilt = number("deg", LARGEST_TILT_DEG, 2.0)
+    field = number("mT", LARGEST_STRAY_MT, 0.1)
     return Effect(
         name=PLACEMENT,
         stage="magnet",
@@ -91,7 +94,7 @@ def moved_placement(assembly: Assembly, *, apart_rad: float, gap: bool) -> Effec
                 *(length(f"{one}_{axis}_mm", f"{one} off the shaft's axis") for one in _BODIES for axis in "xy"),
                 *(tilt(f"{one}_tilt_{axis}_deg", f"{one}'s tilt about {axis}") for one in _BODIES for axis in "xy"),
                 *(field(f"stray_{axis}_mT", f"stray field along {axis}") for axis in "xy"),
-                *([length("air_gap_mm", "from the magnet's face to the sensing plane")] if gap else []),
+                length("air_gap_mm", "from the magnet's face to the sensing plane"),
             ]
         ),
         forward=Moved(assembly, apart_rad),
@@ -110,8 +113,7 @@ def movable(chain: Chain) -> Chain:
     field = np.zeros((2, 1))
     for _, effect, values in chain.active("field"):
         field = effect.forward(field, Motion.from_angle(np.zeros(1)), values, None)
-    # What is described in millitesla and volts is another share of the field at another gap, and no effect of this one.
-    moved = moved_placement(chain.magnet, apart_rad=float(field[1, 0] - field[0, 0]), gap=not chain.described)
+    moved = moved_placement(chain.magnet, apart_rad=float(field[1, 0] - field[0, 0]))
     return replace(chain, effects=in_order((moved, *chain.effects)))
 
 
@@ -124,4 +126,6 @@ def settled(chain: Chain) -> Chain:
     kept = replace(chain.without(PLACEMENT), effects=effects)
     if not values or chain.magnet is None:
         return kept
-    return kept.with_magnet(placed(chain.magnet, values))
+    there = placed(chain.magnet, values)
+    gap = float(there.placement.air_gap_mm)
+    return (kept if gap == chain.magnet.placement.air_gap_mm else at_air_gap(kept, gap)).with_magnet(there)

@@ -36,10 +36,12 @@ def changes(state: State) -> State:
     offered = _named(state)
     told = Differences.of(full, twin, state.own, effects=len(offered))
     found = told.changes(full, twin)
-    other = another_device(full, told.free, found) or _counts_otherwise(state)
+    counts_otherwise = _counts_otherwise(state)
+    other = another_device(full, told.free, found) or counts_otherwise
     fit = _with(state, found)
     together = _leaves_more_than_chance(state, fit, told.threshold)
-    if (found or state.keys or together) and not other:
+    # Moved by much, a magnet moves all that is counted in its field, as another device would.
+    if (found or state.keys or together) and not counts_otherwise:
         placement = _placement_instead(state, found, fit, told)
         if placement is not None and not _leaves_more_than_chance(state, placement.fit, told.threshold):
             return placement

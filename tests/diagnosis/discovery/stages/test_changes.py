@@ -19,6 +19,7 @@ from diagnosis.discovery.stages.own_shapes import own_shapes
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.sweeps import Made, bench_of, start_of, through, truth_of
+from twin.air_gap import at_air_gap
 from twin.chain import Chain
 from twin.magnet.assembly import Assembly
 from twin.magnet.placement import Placement
@@ -137,3 +138,20 @@ def test_a_magnet_that_was_moved_is_named_by_the_number_of_its_placement() -> No
     assert found.extended.magnet is not None
     assert float(found.extended.magnet.placement.sensor_x_mm) == pytest.approx(change["is"], rel=1e-6)
     assert set(found.extended.values) <= {*twin.values, "gain_mismatch", "phase", "quadratic_nonlinearity", "zero"}
+
+
+@pytest.mark.parametrize(("name", "value", "known_to"), [("sensor_tilt_y_deg", 8.0, 0.1), ("air_gap_mm", 2.2, 0.1)])
+def test_a_magnet_moved_by_much_is_no_other_device(name: str, value: float, known_to: float) -> None:
+    """It moves offset, gain and phase together, as another device would; ``known_to``: some standard deviations."""
+    place = Placement(air_gap_mm=1.5, sensor_x_mm=0.4, sensor_y_mm=0.2, magnet_y_mm=0.2, sensor_tilt_y_deg=3.0)
+    twin = Chain().with_magnet(Assembly(placement=place)).with_effect("offset", x_percent=0.3, y_percent=-0.2)
+    twin = twin.with_effect("noise", rms_deg=0.03)
+    there = replace(place, **{name: value})
+    device = at_air_gap(twin, value) if name == "air_gap_mm" else twin.with_magnet(Assembly(placement=there))
+    sweep = device.simulate(Motion.from_angle(np.radians(np.arange(0.0, 720.0, 2.0))), seed=3)
+    answer = explain(sweep, twin=twin).to_dict()
+    assert not answer["other_device"]
+    (change,) = answer["changed"]
+    assert change["parameter"] == f"magnet.placement.{name}"
+    assert change["is"] == pytest.approx(value, abs=known_to)
+    assert answer["causes"] == []

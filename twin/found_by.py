@@ -23,7 +23,8 @@ class Line:
     angle (orders), time (Hz), or a channel's value (a bit's weight, %). ``limits`` maps a motion to the lowest and
     highest order, frequency or weight worth looking at; ``within`` maps an array of these to a mask of those that
     belong to the effect; ``multiples`` are multiples of it at which the same source shows again. ``begin`` maps such a
-    value, and the sign with which the shape matches a residual, to the shape parameters that a search sets out from.
+    value to further shape parameters that a search sets out from. ``waves``: forms that a value's wave may have, each
+    as the phase of its fundamental, of modulus 1, and the shape parameters that stand for it.
     """
 
     param: str
@@ -31,11 +32,12 @@ class Line:
     limits: Callable[[Motion], tuple[float, float]]
     within: Callable[[Array], BoolArray]
     multiples: tuple[int, ...] = ()
-    begin: Callable[[float, float], Mapping[str, float]] | None = None
+    begin: Callable[[float], Mapping[str, float]] | None = None
+    waves: tuple[tuple[complex, Mapping[str, float]], ...] = ()
 
-    def begun(self, value: float, sign: float = 1.0) -> Mapping[str, float]:
+    def begun(self, value: float) -> Mapping[str, float]:
         """The shape that a search sets out from at this order, frequency or weight."""
-        return {self.param: value, **({} if self.begin is None else self.begin(value, sign))}
+        return {self.param: value, **({} if self.begin is None else self.begin(value))}
 
     def some(self, motion: Motion) -> Array:
         """Orders, frequencies or weights (m,) of the effect, ascending, over all its limits, whole ones among them."""

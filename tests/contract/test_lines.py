@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from twin.angles import TAU
+from twin.catalogue import find
 from twin.chain import Chain
 from twin.motion import Motion
 
@@ -74,3 +75,38 @@ def test_a_stuck_bit_is_a_square_wave_in_the_channels_value(level: float) -> Non
     volts = ideal[0] - step * (level - 0.5)
     near = np.abs(volts) < step
     np.testing.assert_array_equal(np.sign(moved[0][near]), np.where(volts[near] >= 0.0, 1.0, -1.0))
+
+
+@pytest.mark.parametrize("level", [0, 1])
+def test_the_lower_bits_make_up_for_a_bit_that_is_stuck_inside_the_approximation(level: int) -> None:
+    """Against the approximation itself, bit after bit; what it shifts in the mean, a quarter of the bit, is offset."""
+    bits, stuck = 16, 10
+    value = np.linspace(20_000.3, 44_000.3, 3001)
+    held = np.zeros_like(value)
+    for bit in range(bits - 1, -1, -1):
+        on = np.full(value.size, bool(level)) if bit == stuck else value >= held + 2.0**bit
+        held += np.where(on, 2.0**bit, 0.0)
+    step = 2.0**stuck / 2.0 ** (bits - 1)
+    # The codes count from the lowest one; mid-scale is no signal.
+    signal = value / 2.0 ** (bits - 1) - 1.0
+    mean = step * (0.25 if level else -0.25)
+    params = {"step_percent": 100.0 * step, "level": float(level), "in_approximation": 1.0, "blur_percent": 0.0}
+    rest = Motion.from_angle(np.zeros(value.size))
+    found = find("adc_stuck_bit").forward(np.stack([signal + mean] * 2), rest, params, None)
+    # A code stands for all values up to the next one.
+    assert np.max(np.abs(found[0] - (held / 2.0 ** (bits - 1) - 1.0))) <= 2.0 ** (1 - bits) * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize(("number", "power"), [(0, 8 / np.pi**2), (1, 8 / np.pi**2), (2, 0.683), (3, 0.683)])
+def test_the_waves_of_a_stuck_bit_are_its_fundamentals(number: int, power: float) -> None:
+    """In phase; of the power of a square it has 8 / pi^2, of half a saw's, 5 / 48, half of 4 / pi^4 + 1 / pi^2."""
+    effect = find("adc_stuck_bit")
+    assert effect.line is not None
+    phase, form = effect.line.waves[number]
+    value = np.linspace(-1.0, 1.0, 4000, endpoint=False)
+    rest = Motion.from_angle(np.zeros(value.size))
+    values = {"step_percent": 1.0, **form}
+    wave = effect.forward(0.01 * value, rest, values, None) - 0.01 * value
+    fundamental = 2.0 * np.mean(wave * np.exp(-1j * np.pi * value))
+    assert fundamental / abs(fundamental) == pytest.approx(phase, abs=2e-3)
+    assert 0.5 * abs(fundamental) ** 2 / np.var(wave) == pytest.approx(power, abs=0.002)

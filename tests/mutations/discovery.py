@@ -69,6 +69,15 @@ _MECHANISMS: tuple[Mutation, ...] = (
         (f"{_TESTS}/stages/test_listed.py::test_a_cause_that_may_be_nothing_is_dropped_and_the_rest_fitted_anew",),
     ),
     Mutation(
+        "listed.grid_not_asked",
+        "diagnosis/discovery/stages/listed.py",
+        " or find(key, state.fit.chain.effects).output_grid",
+        "",
+        (
+            f"{_TESTS}/stages/test_listed.py::test_a_grid_with_which_held_out_readings_are_no_nearer_does_not_limit_them",
+        ),
+    ),
+    Mutation(
         "listed.gain_not_asked",
         "diagnosis/discovery/stages/listed.py",
         "cause.after_deg >= cause.before_deg",

@@ -76,6 +76,13 @@ FORMS: tuple[Mutation, ...] = tuple(
             f"{_FORMS}::test_a_drive_has_one_order_and_its_multiples",
         ),
         (
+            "forms.a_stuck_bit_has_one_wave",
+            "diagnosis/discovery/search/periodogram.py",
+            "for phase, form in effect.line.waves:",
+            "for phase, form in effect.line.waves[:2]:",
+            f"{_FORMS}::test_a_bit_stuck_inside_the_approximation_is_a_stuck_bit",
+        ),
+        (
             "forms.no_detail_is_freed",
             "diagnosis/discovery/search/exchange.py",
             "detailed(retuned(fit, held), held, plan.threshold, plan.effects)",

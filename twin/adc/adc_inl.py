@@ -1,4 +1,4 @@
-"""adc_inl: the converter's transfer curve is not straight: a bow, an S, and bits whose weights are off."""
+"""adc_inl: the converter's transfer curve is not straight: a bow, an S, bits whose weights are off, a stage's gain."""
 
 from __future__ import annotations
 
@@ -43,6 +43,9 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     for bit, error in enumerate(errors, start=1):
         if np.any(error):
             curve = curve + 0.5 * np.asarray(error) * (_level(u, bit, blurred=rng is None) - u)
+    first_stage = values.get("first_stage_lsb", 0.0)
+    if np.any(first_stage):
+        curve = curve + first_stage * (_first_digit(u, blurred=rng is None) - u)
     return np.asarray(signal + 0.01 * STEP_PERCENT * full_scale * curve)
 
 
@@ -52,6 +55,13 @@ def _level(u: Array, bit: int, *, blurred: bool) -> Array:
     # Beyond its range a converter stays at its last code.
     wave = -np.sin(half_period * (np.clip(u, BLUR - 1.0, 1.0 - BLUR) + 1.0))
     return np.asarray(np.tanh(wave / (half_period * BLUR)) if blurred else np.sign(wave))
+
+
+def _first_digit(u: Array, *, blurred: bool) -> Array:
+    """What a pipeline's first stage of 1.5 bits decides of u in [-1, 1): -1, 0 or 1, at a quarter to either side."""
+    if blurred:
+        return np.asarray(0.5 * (np.tanh((u - 0.25) / BLUR) + np.tanh((u + 0.25) / BLUR)))
+    return np.asarray(0.5 * (np.sign(u - 0.25) + np.sign(u + 0.25)))
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -71,6 +81,12 @@ ADC_INL = Effect(
         "bow_lsb": _lsb("largest deviation of a bow, in steps of 14 bit", mirror=0),
         "s_lsb": _lsb("largest deviation of an S", role="level", aside=True),
         **{f"bit{bit}_lsb": _lsb(f"error of the weight of bit {bit}; 1: the largest") for bit in range(1, BITS + 1)},
+        "first_stage_lsb": _lsb(
+            "step where the first stage of a pipeline changes its digit, as its gain is off",
+            role="shape",
+            aside=True,
+            detail=True,
+        ),
         "full_scale_percent": Param(
             unit="%",
             null=125.0,

@@ -21,22 +21,51 @@ WORDS = (12, 16)
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     # Mid-scale is a multiple of two steps for all but the highest two bits, so the bit's value depends on the signal
-    # and the step alone, not on full scale. A bit held at its level shifts the mean by half a step one way or the
+    # and the step alone, not on full scale. A bit held at its level shifts the mean by a share of a step one way or the
     # other; that shift belongs to the offset, so the bit is read from the signal with it taken back.
     step = 0.01 * np.abs(np.asarray(values["step_percent"], dtype=np.float64))
     safe = np.where(step > 0.0, step, 1.0)
-    level = np.asarray(values.get("level", 0.0))
-    blur = 0.01 * np.asarray(values.get("blur_percent", 0.0))
-    if rng is not None or np.all(blur == 0.0):
-        held = 0.5 - np.floor(signal / safe + (0.5 - level)) % 2.0
-    else:
-        # In expectation, noise ahead of the converter smooths the square wave: each harmonic by its own Gaussian.
-        held = np.zeros(np.broadcast_shapes(signal.shape, np.shape(step)))
-        for k in range(1, 2 * HARMONICS, 2):
-            sign = (1.0 - 2.0 * level) * (-1.0) ** (k // 2)
-            damping = np.exp(-0.5 * (np.pi * k * blur / safe) ** 2)
-            held = held + sign * (2.0 / (np.pi * k)) * damping * np.cos(np.pi * k * signal / safe)
-    return signal + np.where(step > 0.0, step * held, 0.0)
+    # Counted from the level at which it is held: a bit held at one does to -c what one held at zero does to c.
+    side = 1.0 - 2.0 * np.asarray(values.get("level", 0.0))
+    blur = 0.01 * np.asarray(values.get("blur_percent", 0.0)) / safe
+    made_up = np.asarray(values.get("in_approximation", 0.0))
+    value, exact = side * signal / safe, rng is not None or bool(np.all(blur == 0.0))
+    moved = np.where(made_up == 1.0, 0.0, (_missed if exact else _missed_series)(value, blur))
+    if np.any(made_up == 1.0):
+        moved = np.where(made_up == 1.0, (_made_up if exact else _made_up_series)(value, blur), moved)
+    return signal + np.where(step > 0.0, step * side * moved, 0.0)
+
+
+def _missed(value: Array, blur: Array) -> Array:
+    """What a bit held at zero leaves of a value, both in its steps, less its mean: half a step more, or less."""
+    return np.asarray(0.5 - np.floor(value + 0.5) % 2.0)
+
+
+def _missed_series(value: Array, blur: Array) -> Array:
+    """The same in expectation: noise ahead of the converter smooths the square wave, each harmonic by its Gaussian."""
+    out = np.zeros(np.broadcast_shapes(value.shape, np.shape(blur)))
+    for k in range(1, 2 * HARMONICS, 2):
+        out += (-1.0) ** (k // 2) * (2.0 / (np.pi * k)) * _damped(k, blur) * np.cos(np.pi * k * value)
+    return out
+
+
+def _made_up(value: Array, blur: Array) -> Array:
+    """The same where the lower bits fill up in its place: what is beyond them is cut off."""
+    return np.asarray(0.25 - np.maximum((value + 0.25) % 2.0 - 1.0, 0.0))
+
+
+def _made_up_series(value: Array, blur: Array) -> Array:
+    """The same in expectation."""
+    out = np.zeros(np.broadcast_shapes(value.shape, np.shape(blur)))
+    for k in range(1, 2 * HARMONICS):
+        phase = np.pi * k * (value + 0.25)
+        saw = np.sin(phase) / (np.pi * k) - (2.0 * np.cos(phase) / (np.pi * k) ** 2 if k % 2 else 0.0)
+        out += _damped(k, blur) * saw
+    return out
+
+
+def _damped(harmonic: int, blur: Array) -> Array:
+    return np.asarray(np.exp(-0.5 * (np.pi * harmonic * blur) ** 2))
 
 
 def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
@@ -58,12 +87,20 @@ def within(step_percent: Array) -> BoolArray:
     return np.asarray((step_percent > 0.0) & (step_percent < 30.0))
 
 
-def begin(step_percent: float, sign: float) -> Mapping[str, float]:
-    """Held at 0 the bit leaves +cos(pi x / step) once its mean is in the offset; held at 1, the opposite.
+def begin(step_percent: float) -> Mapping[str, float]:
+    """Noise ahead of the bit of a fifth of its weight to begin with: a fit finds its own."""
+    return {"blur_percent": 0.2 * step_percent}
 
-    Noise ahead of the bit of a fifth of its weight to begin with: a fit finds its own.
-    """
-    return {"level": 0.0 if sign > 0.0 else 1.0, "blur_percent": 0.2 * step_percent}
+
+_CUT_OFF = np.exp(0.25j * np.pi) * (-2.0 / np.pi**2 - 1j / np.pi)
+"""Fundamental of what is left of a value where the lower bits make up for one held at zero."""
+WAVES: tuple[tuple[complex, Mapping[str, float]], ...] = (
+    (1.0, {"level": 0.0, "in_approximation": 0.0}),
+    (-1.0, {"level": 1.0, "in_approximation": 0.0}),
+    (complex(_CUT_OFF / abs(_CUT_OFF)), {"level": 0.0, "in_approximation": 1.0}),
+    (complex(-np.conj(_CUT_OFF) / abs(_CUT_OFF)), {"level": 1.0, "in_approximation": 1.0}),
+)
+"""Direction of each form's fundamental, c of Re[c exp(i pi x / step)], with its mean in the offset."""
 
 
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
@@ -87,6 +124,16 @@ ADC_STUCK_BIT = Effect(
         ),
         # With y turned over a bit held at one is a bit held at zero, but in y alone: no level does that.
         "level": Param(unit="1", null=0.0, lower=0.0, upper=1.0, doc="stuck at", role="shape", counts=True, mirror=0),
+        "in_approximation": Param(
+            unit="1",
+            null=0.0,
+            lower=0.0,
+            upper=1.0,
+            doc="1: it is stuck inside the approximation, so that the lower bits fill up or run empty in its place",
+            role="shape",
+            counts=True,
+            aside=True,
+        ),
         "blur_percent": Param(
             unit="%",
             null=0.0,
@@ -103,8 +150,16 @@ ADC_STUCK_BIT = Effect(
     derived=derived,
     zoomed=("step_percent",),
     fitted_shapes=("step_percent", "blur_percent"),
-    line=Line(param="step_percent", clock="channels", limits=lambda motion: (0.04, 4.0), within=within, begin=begin),
+    line=Line(
+        param="step_percent",
+        clock="channels",
+        limits=lambda motion: (0.04, 4.0),
+        within=within,
+        begin=begin,
+        waves=WAVES,
+    ),
     drawing=drawing,
-    source="offset binary code with one bit held; its mean goes into the offset",
-    signature="0 or one step per channel: a square pattern in code",
+    source="offset binary code with one bit held, behind the converter or in its successive approximation; its mean "
+    "goes into the offset",
+    signature="0 or one step per channel: a square pattern in code, or a half of a saw where lower bits make up",
 )

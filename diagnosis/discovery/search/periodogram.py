@@ -171,9 +171,9 @@ def _level(power: Array, oversampling: int) -> Array:
 def _weights_of_a_bit(
     weighted: Array, fit: Fit, effect: Effect, *, peaks: int
 ) -> tuple[Sequence[Mapping[str, float]], float]:
-    """Weights [%] at which a square wave in the channels' value matches the residual (n,) best.
+    """Weights [%] at which a wave in the channels' value matches the residual (n,) best, in each of its forms.
 
-    Its fundamental has a period of two steps: one transform over the value serves all weights, its sign the level.
+    Its fundamental has a period of two steps: one transform over the value serves all weights, its phase the forms.
     """
     assert effect.line is not None
     low, high = effect.line.limits(fit.linear.motion)
@@ -191,10 +191,12 @@ def _weights_of_a_bit(
         grid += np.bincount((left + 1) % bins, signal * (place - left), bins)
     frequency = np.arange(bins // 2) / period
     inside = (frequency > 100.0 / (2.0 * high)) & (frequency < highest)
-    # Its mean is in the offset: the match is with a cosine, whose sign tells the bit's level.
-    match = np.where(inside, np.fft.fft(grid)[: bins // 2].real, 0.0)
-    size = np.abs(match)
-    peak = np.flatnonzero((size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:])) + 1
-    chosen = peak[np.argsort(size[peak])[::-1][: 2 * peaks]]
-    looks = max(2.0 * float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
-    return [effect.line.begun(float(50.0 / frequency[k]), float(match[k])) for k in chosen], looks
+    match = np.where(inside, np.fft.fft(grid)[: bins // 2], 0.0)
+    found: list[Mapping[str, float]] = []
+    for phase, form in effect.line.waves:
+        size = np.real(phase * np.conj(match))
+        peak = np.flatnonzero((size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:]) & (size[1:-1] > 0.0)) + 1
+        chosen = peak[np.argsort(size[peak])[::-1][:peaks]]
+        found += [{**effect.line.begun(float(50.0 / frequency[k])), **form} for k in chosen]
+    looks = max(len(effect.line.waves) * float(np.count_nonzero(inside)) / OVERSAMPLING, 1.0)
+    return found, looks

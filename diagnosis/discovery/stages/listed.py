@@ -9,6 +9,7 @@ from diagnosis.discovery.stages.answer import answer
 from diagnosis.discovery.stages.final_fit import final_fit
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.state import State
+from twin.catalogue import find
 
 
 def listed(state: State) -> State:
@@ -19,19 +20,20 @@ def listed(state: State) -> State:
     while idle := _idle(state):
         fit = state.fit
         for key in idle:
-            fit, _ = settle(drop(fit, key))
-        proven = {*state.keys}
+            if key in state.keys:
+                fit, _ = settle(drop(fit, key))
+        gone = {*state.keys, *idle}
         state = state.with_(
             fit,
             keys=tuple(key for key in state.keys if key not in idle),
-            findings=tuple(one for one in state.findings if one.keys[0] not in proven),
+            findings=tuple(one for one in state.findings if one.keys[0] not in gone),
         )
         state = answer(final_fit(held_out_selection(state)))
     return state
 
 
 def _idle(state: State) -> tuple[str, ...]:
-    """Keys of the joint fit's causes that the answer does not bear out."""
+    """Keys of the causes that the answer does not bear out."""
     may_be_nothing = tuple(key for key in state.keys if may_be_null(state.fit, key))
     if may_be_nothing:
         return may_be_nothing
@@ -40,5 +42,10 @@ def _idle(state: State) -> tuple[str, ...]:
 
 
 def _gains_nothing(state: State, cause: Finding) -> bool:
-    """Whether a cause in the mean leaves the held-out readings no nearer; unknown where none was held out."""
-    return all(key in state.keys for key in cause.keys) and cause.after_deg >= cause.before_deg
+    """Whether a cause that ought to leaves the held-out readings no nearer; unknown where none was held out.
+
+    Those in the mean ought to, and the output's grid, which is said to limit the readings. What shows in the spread, in
+    single readings or in the words themselves need not.
+    """
+    ought = (key in state.keys or find(key, state.fit.chain.effects).output_grid for key in cause.keys)
+    return all(ought) and cause.after_deg >= cause.before_deg

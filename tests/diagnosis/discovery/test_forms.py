@@ -147,6 +147,37 @@ def test_a_tracking_loop_is_one_latency() -> None:
     assert told["variance_ms2"]["value"] == pytest.approx(-2e6 / natural_rad_s**2, rel=0.1)
 
 
+def approximated(axis: Array, *, stuck: int) -> Array:
+    """An axis (n,) in codes of 12 bits and a range of 1.25, by successive approximation with one bit held at zero."""
+    value, held = (axis + 1.25) / 2.5 * 4096.0, np.zeros_like(axis)
+    for bit in range(11, -1, -1):
+        held += np.where((value >= held + 2.0**bit) & (bit != stuck), 2.0**bit, 0.0)
+    return np.asarray((held + 0.5) / 4096.0 * 2.5 - 1.25)
+
+
+def test_a_bit_stuck_inside_the_approximation_is_a_stuck_bit() -> None:
+    """A step of 8 codes, 0.49 % of an amplitude, seen at 80 angles, each of them four times."""
+    shaft = turns(80, 4)
+    noisy = channels(shaft) + np.radians(NOISE_DEG) * np.random.default_rng(6).standard_normal((2, shaft.size))
+    x, y = (approximated(axis, stuck=3) for axis in noisy)
+    found = named({"reference_deg": np.degrees(shaft), "measured_deg": np.degrees(np.arctan2(y, x))})
+    assert list(found) == ["adc_stuck_bit"]
+    told = found["adc_stuck_bit"]
+    assert told["in_approximation"]["value"] == 1.0
+    assert told["level"]["value"] == 0.0
+    assert told["step_percent"]["value"] == pytest.approx(100.0 * 8 * 2.5 / 4096.0, rel=0.005)
+
+
+def test_a_pipeline_whose_first_gain_is_short_is_one_nonlinearity() -> None:
+    """1 % short: the residue of the digits -1, 0 and 1 comes back too small, a saw with teeth of half the range."""
+    shaft = turns(100, 4)
+    x, y = channels(shaft) / 1.25
+    short = [
+        1.25 * (axis - 0.01 * (axis - 0.5 * (np.sign(axis - 0.25) + np.sign(axis + 0.25)) / 2.0)) for axis in (x, y)
+    ]
+    assert list(named(sweep(shaft, np.stack(short), 8))) == ["adc_inl"]
+
+
 @pytest.mark.parametrize("seed", [1, 2])
 def test_what_physics_forbids_has_no_name(seed: int) -> None:
     """A curve that runs ahead of the field, and a sensor ahead of the direction: `saturation` and lags lie at zero."""

@@ -15,7 +15,7 @@ from diagnosis.discovery.stages.listed import listed
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.sweeps import Made, before
 
-SATURATION, HARMONIC = "saturation", "magnet_harmonic"
+SATURATION, HARMONIC, GRID = "saturation", "magnet_harmonic", "output_quantisation"
 MADE = Made(causes=((SATURATION, 0.08),), points=96)
 
 
@@ -68,6 +68,18 @@ def test_a_cause_without_held_out_gain_is_dropped(monkeypatch: pytest.MonkeyPatc
     assert after.causes == ()
     assert after.keys == ()
     assert not np.any([key == SATURATION for key in after.fit.chain.values])
+
+
+def test_a_grid_with_which_held_out_readings_are_no_nearer_does_not_limit_them() -> None:
+    """It stays in the model: the readings lie on it."""
+    state = before(listed, Made(bits=12, points=96, turns=2, noise_deg=0.02))
+    assert [cause.keys for cause in state.causes] == [(GRID,)]
+    assert listed(state) is state
+    worse = tuple(replace(cause, after_deg=cause.before_deg * (1.0 + 1e-6)) for cause in state.causes)
+    after = listed(state.with_(causes=worse))
+    assert after.causes == ()
+    assert after.findings == ()
+    assert GRID in after.fit.chain.values
 
 
 def test_an_interval_is_students() -> None:

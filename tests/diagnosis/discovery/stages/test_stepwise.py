@@ -155,9 +155,9 @@ PAIRS = {
     "a drift without a name": Made(
         causes=(("zero_drift", 0.4), ("bearing_wobble", 0.4)), seed=1, **{**SLOW, "points": 72}
     ),
-    # Found first, the bit holds on to edges that the lag had shifted; beside them the lag is no gain.
+    # Found first, the bit holds on to edges that the play had shifted; beside them the play is no gain.
     "edges that were shifted": Made(
-        causes=(("adc_stuck_bit", 0.1), ("hysteresis", 0.15)), points=96, back=True, seed=4
+        causes=(("adc_stuck_bit", 0.12), ("backlash", 0.15)), points=180, back=True, seed=4
     ),
 }
 

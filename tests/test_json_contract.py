@@ -31,7 +31,19 @@ SWEEPS: dict[str, tuple[list[str], str | None, int]] = {
     "oven": (["offset_drift"], None, 16),
 }
 BASELINE = {"Vx_over_Ax": "1", "Vy_over_Ay": "1", "gain_ratio": "1", "beta_deg": "deg", "quad": "1", "zero_deg": "deg"}
-KINDS = {"order", "time_frequency", "step", "drift", "temperature", "direction", "speed", "local", "code", "noise"}
+KINDS = {
+    "order",
+    "time_frequency",
+    "step",
+    "drift",
+    "creep",
+    "temperature",
+    "direction",
+    "speed",
+    "local",
+    "code",
+    "noise",
+}
 VERDICTS = {(False, False): "adequate", (True, False): "explained", (False, True): "unnamed"}
 NAMES = {e.name for e in CATALOGUE if not e.baseline and not e.name.startswith("unnamed")}
 

@@ -101,7 +101,7 @@ class DiscoverySettings:
     # ---- odds between descriptions ----------------------------------------------------------------------------------
 
     unnamed_log_odds: float = _nats(6.0)
-    """Odds. A shape without a name must gain so many nats more than a cause with one (400 to 1): the ten empirical
+    """Odds. A shape without a name must gain so many nats more than a cause with one (400 to 1): the eleven empirical
     shapes with their orders, places and frequencies together describe anything nearly."""
     swap_log_odds: float = _nats(2.0)
     """Odds. What one cause in another's place must gain: two descriptions that are equally good differ by a nat or so

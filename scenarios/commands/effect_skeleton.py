@@ -242,6 +242,22 @@ def _speed(structure: Mapping[str, Any], sweep: Mapping[str, Any]) -> Parts:
     )
 
 
+def _creep(structure: Mapping[str, Any], sweep: Mapping[str, Any]) -> Parts:
+    constant, at = (
+        float(structure.get(name, default)) for name, default in (("time_constant_s", 10.0), ("at_s", 100.0))
+    )
+    return _waves(
+        {**structure, "order": 1.0},
+        factor=" * grown",
+        words=" that creeps in time",
+        needs=("time_s",),
+        constants=f'TIME_CONSTANT_S = {_number(constant)}\n"""In which it settles, as found."""\n'
+        f'AT_S = {_number(at)}\n"""Time from the first reading at which the amplitude is given."""\n',
+        first=f"{_AMPLITUDE_RAD}elapsed_s = motion.time_s - motion.time_s[:1]\n"
+        "grown = np.expm1(-elapsed_s / TIME_CONSTANT_S) / np.expm1(-AT_S / TIME_CONSTANT_S)\n",
+    )
+
+
 def _tone(structure: Mapping[str, Any], sweep: Mapping[str, Any]) -> Parts:
     hertz = float(structure.get("frequency_Hz", 50.0))
     return Parts(
@@ -356,6 +372,7 @@ KINDS: Mapping[str, Callable[[Mapping[str, Any], Mapping[str, Any]], Parts]] = {
     "speed": _speed,
     "time_frequency": _tone,
     "drift": _drift,
+    "creep": _creep,
     "local": _local,
     "noise": _noise,
 }

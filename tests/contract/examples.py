@@ -87,6 +87,12 @@ def _stuck(motion: Motion, p: Params) -> Array:
     return shift(motion, *moved)
 
 
+def _creep(motion: Motion, p: Params) -> Array:
+    """An offset, seen from the angle, that settles from the first reading on."""
+    grown = (1.0 - np.exp(-(motion.time_s - motion.time_s[0]) / 3.0)) / (1.0 - np.exp(-8.0 / 3.0))
+    return np.asarray(_rad(p["amplitude_deg"]) * grown * np.sin(_rad(p["phase_deg"]) - motion.shaft_rad))
+
+
 def _stepper(motion: Motion, p: Params) -> Array:
     """A two-phase stepper with p electrical periods a turn and a constant current too much in each phase.
 
@@ -354,6 +360,11 @@ EXAMPLES: dict[str, Example] = {
         strengths={"mode1_deg": 0.2, "mode2_deg": -0.1, "mode3_deg": 0.05, "mode4_deg": 0.05},
         shapes={},
         signature=_modes,
+    ),
+    "unnamed_creep": Example(
+        strengths=_LINE,
+        shapes={**_PHASE, "time_constant_s": 3.0, "at_s": 8.0},
+        signature=_creep,
     ),
     "unnamed_bump": Example(
         strengths={"height_deg": 0.3}, shapes={"centre_deg": 77.0, "width_deg": 12.0}, signature=_bump

@@ -83,6 +83,13 @@ FORMS: tuple[Mutation, ...] = tuple(
             f"{_FORMS}::test_a_bit_stuck_inside_the_approximation_is_a_stuck_bit",
         ),
         (
+            "forms.offsets_do_not_creep",
+            "twin/empirical/__init__.py",
+            "    UNNAMED_CREEP,\n    UNNAMED_BUMP",
+            "    UNNAMED_BUMP",
+            f"{_FORMS}::test_an_offset_that_creeps_after_switching_on_is_seen",
+        ),
+        (
             "forms.no_detail_is_freed",
             "diagnosis/discovery/search/exchange.py",
             "detailed(retuned(fit, held), held, plan.threshold, plan.effects)",

@@ -33,6 +33,7 @@ STRUCTURES: dict[str, dict[str, Any]] = {
     "speed_squared": {"kind": "speed", "order": 0.0, "amplitude_deg": 0.1, "power": -2.0},
     "time_frequency": {"kind": "time_frequency", "frequency_Hz": 33.3, "amplitude_deg": 0.1, "phase_deg": 3.0},
     "drift": {"kind": "drift", "mode1_deg": 0.1, "mode2_deg": -0.3, "mode3_deg": 0.0, "mode4_deg": 0.0},
+    "creep": {"kind": "creep", "amplitude_deg": 0.1, "time_constant_s": 7.3, "at_s": 60.0},
     "local": {"kind": "local", "centre_deg": 77.123, "width_deg": 8.4567, "height_deg": 0.2},
     "noise": {"kind": "noise", "first_row": 10.0, "last_row": 200.0, "rms_deg": 0.3},
     "of_a_kind_to_come": {"kind": "step", "step_deg": 0.3},

@@ -23,7 +23,7 @@ WHOLE = {
     },
     "recording": {
         *("noise", "zero_drift", "index_slip", "reference_rezero", "stale_frames", "bus_glitch"),
-        *("unnamed_tone", "unnamed_drift", "unnamed_burst"),
+        *("unnamed_tone", "unnamed_drift", "unnamed_creep", "unnamed_burst"),
     },
 }
 """Effects that belong to another than the device, which all others belong to."""

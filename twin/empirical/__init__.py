@@ -14,7 +14,7 @@ from twin.empirical.orders import (
     UNNAMED_TEMPERATURE_ORDER,
 )
 from twin.empirical.spread import UNNAMED_BURST
-from twin.empirical.time import UNNAMED_DRIFT, UNNAMED_TONE
+from twin.empirical.time import UNNAMED_CREEP, UNNAMED_DRIFT, UNNAMED_TONE
 
 EFFECTS = (
     UNNAMED_ORDER,
@@ -25,6 +25,7 @@ EFFECTS = (
     UNNAMED_SPEED,
     UNNAMED_TONE,
     UNNAMED_DRIFT,
+    UNNAMED_CREEP,
     UNNAMED_BUMP,
     UNNAMED_BURST,
 )

@@ -178,6 +178,21 @@ def test_a_pipeline_whose_first_gain_is_short_is_one_nonlinearity() -> None:
     assert list(named(sweep(shaft, np.stack(short), 8))) == ["adc_inl"]
 
 
+def test_an_offset_that_creeps_after_switching_on_is_seen() -> None:
+    """It has no name here, but is one thing: its size at the end and its time constant are those that were put in."""
+    shaft = turns(90, 4)
+    time_s = 0.4 * np.arange(shaft.size)
+    grown = np.radians(0.25) * -np.expm1(-time_s / 30.0)
+    signal = channels(shaft) + np.stack([0.6 * grown, -0.8 * grown])
+    answer = explain(sweep(shaft, signal, 9, time_s=time_s, vx=signal[0], vy=signal[1])).to_dict()
+    assert [cause["name"] for cause in answer["causes"]] == ["unnamed"]
+    (structure,) = answer["unexplained"]["structure"]
+    assert structure["kind"] == "creep"
+    # 360 readings tell each parameter to 0.02 deg / sqrt(360 / 2), a hundredth of it
+    assert structure["amplitude_deg"] == pytest.approx(0.25 * -np.expm1(-time_s[-1] / 30.0), rel=0.05)
+    assert structure["time_constant_s"] == pytest.approx(30.0, rel=0.15)
+
+
 @pytest.mark.parametrize("seed", [1, 2])
 def test_what_physics_forbids_has_no_name(seed: int) -> None:
     """A curve that runs ahead of the field, and a sensor ahead of the direction: `saturation` and lags lie at zero."""

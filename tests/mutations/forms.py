@@ -83,6 +83,13 @@ FORMS: tuple[Mutation, ...] = tuple(
             f"{_FORMS}::test_a_bit_stuck_inside_the_approximation_is_a_stuck_bit",
         ),
         (
+            "forms.a_bump_ends_at_its_bound",
+            "diagnosis/discovery/search/likelihood_ratio.py",
+            "return bool(effect.kind) and not all(inside)",
+            "return False",
+            f"{_FORMS}::test_a_field_that_bends_beside_the_shaft_is_no_bump",
+        ),
+        (
             "forms.offsets_do_not_creep",
             "twin/empirical/__init__.py",
             "    UNNAMED_CREEP,\n    UNNAMED_BUMP",

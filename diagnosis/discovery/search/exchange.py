@@ -16,6 +16,7 @@ from diagnosis.discovery.search.likelihood_ratio import (
     degrees,
     doubt_beside,
     drop,
+    ends_at_bound,
     handicap,
     judged_p,
     likelihood,
@@ -76,7 +77,8 @@ def _held_or_exchanged(fit: Fit, key: str, keys: list[str], plan: Search) -> tup
     """The fit with this cause, without it, or with another in its place."""
     others = [other for other in keys if other != key]
     removal = Removal.of(fit, key)
-    if removal.log_p + handicap(removal.effect, fit) > plan.level_beside(fit, others):
+    idle = removal.log_p + handicap(removal.effect, fit) > plan.level_beside(fit, others)
+    if idle or ends_at_bound(fit, key):
         return removal.without, others, plan
     for rival in _rivals(fit, removal, plan.contenders.get(key, plan.effects), others):
         trial = Trial.of(removal.removed, rival)

@@ -12,6 +12,7 @@ from diagnosis.discovery.fitting.noise.plausible import either
 from diagnosis.discovery.search.likelihood_ratio import (
     Trial,
     degrees,
+    ends_at_bound,
     handicap,
     judged_p,
     likelihood,
@@ -105,6 +106,9 @@ def best_addition(
     members = either(*(t.members for t in trials))
     judged = [(t.log_p(fit, members, base.dof) + handicap(t.candidate.effect, fit), k) for k, t in enumerate(trials)]
     score, place = min(judged)
+    if ends_at_bound(trials[place].fit, trials[place].key):
+        others = [effect for effect in effects if effect.name != trials[place].candidate.effect.name]
+        return best_addition(fit, base, others, keys, threshold)
     if score > threshold:
         return None
     trial, chosen = trials[place], trials[place].candidate

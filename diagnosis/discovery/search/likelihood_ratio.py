@@ -178,6 +178,13 @@ def handicap(effect: Effect, fit: Fit) -> float:
     return stairs + effect.handicap + (settings.unnamed_log_odds if unnamed(effect.name) else 0.0)
 
 
+def ends_at_bound(fit: Fit, key: str) -> bool:
+    """Whether structure without a name is something else than it is called: its shape ends at a bound of what is."""
+    effect, values = find(key, fit.chain.effects), fit.chain.values[key]
+    inside = (effect.params[one].lower < values[one] < effect.params[one].upper for one in effect.fitted_shapes)
+    return bool(effect.kind) and not all(inside)
+
+
 def doubt_beside(fit: Fit, keys: Sequence[str]) -> float:
     """What a cause has to gain more [nats] beside a shape without a name.
 

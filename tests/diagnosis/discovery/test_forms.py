@@ -193,6 +193,15 @@ def test_an_offset_that_creeps_after_switching_on_is_seen() -> None:
     assert structure["time_constant_s"] == pytest.approx(30.0, rel=0.15)
 
 
+def test_a_field_that_bends_beside_the_shaft_is_no_bump() -> None:
+    """Orders that fall in proportion bend the angle at one place, more broadly than what is local."""
+    shaft = turns(120, 4)
+    bent = sum(np.radians(0.5 * 0.45 ** (order - 3)) * np.sin(order * (shaft - 2.1)) for order in (3, 4, 5, 6))
+    answer = explain(sweep(shaft, channels(shaft + bent), 10)).to_dict()
+    assert "magnet_harmonic" in [cause["name"] for cause in answer["causes"]]
+    assert "local" not in [structure["kind"] for structure in answer["unexplained"]["structure"]]
+
+
 @pytest.mark.parametrize("seed", [1, 2])
 def test_what_physics_forbids_has_no_name(seed: int) -> None:
     """A curve that runs ahead of the field, and a sensor ahead of the direction: `saturation` and lags lie at zero."""

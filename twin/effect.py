@@ -275,6 +275,19 @@ class Effect:
             return 0.0
         return TAU / self.attainable(values).size if self.stair is None else self.stair(values)
 
+    @property
+    def drawn(self) -> tuple[str, ...]:
+        """Strengths that are draws from one distribution, as a zero for each turn is; others may be of any size."""
+        return tuple(
+            name
+            for name, param in self.params.items()
+            if param.role == "per turn" or (param.role == "strength" and param.prior_sd > 0.0)
+        )
+
+    def drawn_of(self, terms: int) -> int:
+        """How many of so many linear coefficients are draws from one distribution."""
+        return terms if self.roles("per turn") else len(self.drawn)
+
     def alone(self, name: str) -> Effect:
         """The same effect where one of its parameters is its only strength, and all others stay at their null."""
         params = {other: replace(param, role="shape") for other, param in self.params.items()}

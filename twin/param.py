@@ -74,7 +74,8 @@ class Param:
         there. Not given: what follows from its role and from the signal that the effect acts on.
     prior_sd : float
         For a shape that a fit moves: standard deviation of what is known of it before any sweep; 0: anything goes. One
-        that a sweep does not show then stays where the search set out, and its interval says so.
+        that a sweep does not show then stays where the search set out, and its interval says so. For a strength: that
+        of the distribution that it is a draw from.
     prior_mean : float, optional
         What is most likely before any sweep: it pulls the fit, as one more reading would. Not given: nothing is.
     aside : bool

@@ -214,6 +214,26 @@ PARTS: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
+        f"{_D}/search/likelihood_ratio.py",
+        _T,
+        (
+            "likelihood.weights_may_be_off_by_anything",
+            "and fit.free[k].name in effect.drawn]",
+            "and fit.free[k].turn is not None]",
+            "search/test_likelihood_ratio.py::test_a_converters_weights_pay_for_the_room_that_they_have",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/search/screening.py",
+        _T,
+        (
+            "screening.draws_are_sizes_like_any",
+            "    if drawn := effect.drawn_of(terms):",
+            "    if drawn := 0:",
+            "search/test_likelihood_ratio.py::test_to_first_order_draws_pay_half_the_log_of_their_evidence",
+        ),
+    ),
+    *of_one_file(
         f"{_D}/search/every_start.py",
         _T,
         (
@@ -262,7 +282,7 @@ PARTS: tuple[Mutation, ...] = (
         ),
         (
             "likelihood_ratio.each_turn_costs_a_coefficient",
-            'return 1 if effect.roles("per turn") else terms',
+            "return terms - effect.drawn_of(terms) or 1",
             "return terms",
             "search/test_likelihood_ratio.py::test_zeros_of_the_turns_cost_the_one_scatter_that_they_are_drawn_with",
         ),

@@ -15,6 +15,9 @@ STEP_PERCENT = 100.0 / 2**13
 """One step of a 14-bit converter, in percent of its full scale (the paper's converter)."""
 BITS = 6
 """Bits whose weights may be off: the next one's steps, of 1/64 of the range, are as narrow as strong noise."""
+LARGEST_SD_LSB = 15.0
+"""Standard deviation of the first bit's error before anything is known of it: about four steps of 12 bit, of a poor
+converter, a typical assumption."""
 HEAD_ROOM_PERCENT = 30.0
 """Standard deviation of the range before anything is known of it: from hardly more than an amplitude to twice one."""
 BLUR = 3e-4
@@ -72,6 +75,13 @@ def _lsb(doc: str, **about: Any) -> Param:
     return Param(unit="LSB", null=0.0, lower=-200.0, upper=200.0, doc=doc, typical=15.0, **about)
 
 
+def _weight(bit: int) -> Param:
+    # The errors of so many units of capacitance, each with its own, add up as squares: that of half the weight is
+    # smaller by the root of two.
+    sd = LARGEST_SD_LSB / float(np.sqrt(2.0 ** (bit - 1)))
+    return _lsb(f"error of the weight of bit {bit}; 1: the largest", prior_sd=sd, prior_mean=0.0)
+
+
 ADC_INL = Effect(
     name="adc_inl",
     stage="adc",
@@ -80,7 +90,7 @@ ADC_INL = Effect(
         # With y turned over a bow is one of the other sign in y alone: no value does that.
         "bow_lsb": _lsb("largest deviation of a bow, in steps of 14 bit", mirror=0),
         "s_lsb": _lsb("largest deviation of an S", role="level", aside=True),
-        **{f"bit{bit}_lsb": _lsb(f"error of the weight of bit {bit}; 1: the largest") for bit in range(1, BITS + 1)},
+        **{f"bit{bit}_lsb": _weight(bit) for bit in range(1, BITS + 1)},
         "first_stage_lsb": _lsb(
             "step where the first stage of a pipeline changes its digit, as its gain is off",
             role="shape",
@@ -101,9 +111,7 @@ ADC_INL = Effect(
     },
     forward=forward,
     needs=frozenset({"one turn"}),
-    # Seven sizes at once describe a good deal of anything: it must explain far more than a plainer cause. An S is what
-    # a saturation is, which says it more plainly: no search sets it.
-    handicap=20.0,
+    # An S is what a saturation is, which says it more plainly: no search sets it.
     shapes=shapes,
     zoomed=("full_scale_percent",),
     fitted_shapes=("full_scale_percent",),

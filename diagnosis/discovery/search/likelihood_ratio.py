@@ -26,8 +26,9 @@ SETTLING = 3
 def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
     """Restricted log likelihood of a fit at the best noise of ``members`` (its own plausible ones if not given).
 
-    The baseline's coefficients are integrated out, and so are the turns' own zeros, which are draws from a
-    distribution with the scatter that they show: a common cause of many turns' zeros gains by making them scatter less.
+    The baseline's coefficients are integrated out, and so are strengths that are draws from a distribution: the turns'
+    own zeros with the scatter that they show, so that a common cause of many of them gains by making them scatter less;
+    the weights of a converter's bits with the scatter that converters show.
     """
     return max(_likelihoods(fit, members or fit.weighting.plausible).values())
 
@@ -35,11 +36,12 @@ def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
 def _likelihoods(fit: Fit, members: Sequence[int]) -> dict[int, float]:
     """The same by family member."""
     family = fit.weighting.family
-    base = [k for k, free in enumerate(fit.free) if find(free.key, fit.chain.effects).baseline]
-    turns = [k for k, free in enumerate(fit.free) if free.turn is not None]
-    integrated = [*base, *turns]
+    effects = [find(free.key, fit.chain.effects) for free in fit.free]
+    base = [k for k, effect in enumerate(effects) if effect.baseline]
+    drawn = [k for k, effect in enumerate(effects) if not effect.baseline and fit.free[k].name in effect.drawn]
+    integrated = [*base, *drawn]
     dof = fit.rows * fit.observations.observables - len(base)
-    prior = float(np.sum(np.log(fit.strengths[turns]))) if turns else 0.0
+    prior = float(np.sum(np.log(fit.strengths[drawn]))) if drawn else 0.0
     cost = family.cost(fit.rows)
     found = {}
     for member in members:
@@ -55,8 +57,8 @@ def judged_p(gain: float, terms: int, dof: int, looks: float) -> float:
 
 
 def degrees(effect: Effect, terms: int) -> int:
-    """Degrees of freedom of an effect in the likelihood: one, the scatter, where coefficients are integrated out."""
-    return 1 if effect.roles("per turn") else terms
+    """Degrees of freedom of an effect in the likelihood: one a coefficient that is not integrated out, at least one."""
+    return terms - effect.drawn_of(terms) or 1
 
 
 def refit(chain: Chain, free: Sequence[Free], like: Fit, *, iterations: int = 12) -> Fit:

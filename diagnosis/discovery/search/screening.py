@@ -160,11 +160,11 @@ def candidate_at(
 
 def by_chance(base: Base, effect: Effect, gain: Array, terms: int, looks: float) -> Array:
     """Log of the probability that noise gains as much by an effect at the best of so many looks."""
-    if effect.roles("per turn"):
+    if drawn := effect.drawn_of(terms):
         # Draws from a distribution of their own: integrating them out costs each about half the log of its evidence
-        # (Laplace), and what is left to test is one scatter.
-        return log_probability(gain - terms * (1.0 + np.log(np.maximum(gain / terms, 1.0))), 1, base.dof)
-    return np.asarray(log_probability(gain, terms, base.dof) + np.log(looks))
+        # (Laplace), and what is left to test is one scatter, or what stands beside them.
+        gain = gain - drawn * (1.0 + np.log(np.maximum(gain / drawn, 1.0)))
+    return np.asarray(log_probability(gain, terms - drawn or 1, base.dof) + np.log(looks))
 
 
 def matched(base: Base) -> list[Array]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.result import Discovery
+from diagnosis.report.change_words import change_name
 from diagnosis.report.facts import angle_error_deg
 from diagnosis.report.fitted_rows import fitted
 from diagnosis.report.plotting import DIRECTIONS, drawing
@@ -31,9 +32,10 @@ def residual_figure(found: Discovery) -> Figure:
     sweep, kept = found.sweep, fitted(found)
     angle, way = np.mod(sweep.reference_deg, 360.0), sweep.motion().direction
     error_deg = angle_error_deg(found.baseline, sweep)
+    start = "error model" if found.given is None else "given twin"
     columns = (
         ("as measured", error_deg - np.mean(error_deg[kept])),
-        ("left by the error model", np.degrees(raw_residual(found.baseline, sweep))),
+        (f"left by the {start}", np.degrees(raw_residual(found.baseline, sweep))),
         ("left by the extended twin", np.degrees(raw_residual(found.fit, sweep))),
     )
     rows = _rows(found, kept)
@@ -51,7 +53,8 @@ def residual_figure(found: Discovery) -> Figure:
         for axis in axes[0, 1:]:
             axis.set_ylim(-limit, limit)
         axes[0, 0].legend(loc="best", markerscale=2.5)
-        named = ", ".join(cause.name for cause in found.causes) or "no cause"
+        changed = [change_name({"parameter": change.name}) for change in found.changed]
+        named = ", ".join([*changed, *(cause.name for cause in found.causes)]) or "no cause"
         apart = int(np.count_nonzero(~drawn))
         figure.suptitle(f"{sweep.name}: {named}" + (f"; {apart} readings not drawn" if apart else ""), fontsize=10)
     return figure

@@ -216,16 +216,22 @@ def moved_words(answer: Mapping[str, Any]) -> str:
     )
 
 
+_MIRRORED = ("Vy_over_Ay", "beta_deg", "zero_deg")
+"""What has another sign in the mirrored twin of one recording."""
+
+
 def senses_words(answer: Mapping[str, Any]) -> str:
     """That sensor and output may as well count the other way; empty where the readings tell."""
     senses = answer.get("senses")
-    # The turn of a sensor between two recordings has no mirror here.
-    if senses is None or senses["decided"] or not senses["mirrored"] or answer.get("recordings"):
+    if senses is None or senses["decided"] or not senses["mirrored"]:
         return ""
     mirrored = senses["mirrored"]
     parameters = (answer["extended"] if answer["causes"] else answer["baseline"])["parameters"]
     there = []
-    for key in ("Vy_over_Ay", "beta_deg", "zero_deg"):
+    for key in LABELS:
+        # A sensor that was turned between recordings is another one in the mirror, not the same with other signs.
+        if key not in _MIRRORED and parameters[key]["low"] <= mirrored[key] <= parameters[key]["high"]:
+            continue
         # As many digits as the interval of the one that is shown.
         text, _ = figure({**parameters[key], **around(parameters[key], mirrored[key])}, SCALES[key])
         there.append(f"{LABELS[key]} {text} {UNITS[key]}")

@@ -18,6 +18,7 @@ from diagnosis.discovery.stages.own_parameters import own_parameters
 from diagnosis.discovery.stages.own_shapes import own_shapes
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.state import State
+from diagnosis.report.explain_plot import residual_figure
 from tests.diagnosis.discovery.sweeps import Made, bench_of, start_of, through, truth_of
 from twin.air_gap import at_air_gap
 from twin.chain import Chain
@@ -134,6 +135,8 @@ def test_a_magnet_that_was_moved_is_named_by_the_number_of_its_placement() -> No
     assert change["low"] < change["is"] < change["high"]
     assert change["heldout_rms_deg_after"] < 0.04 < change["heldout_rms_deg_before"]
     assert found.causes == ()
+    assert "magnet.placement sensor x" in (title := residual_figure(found.discovery).get_suptitle())
+    assert "no cause" not in title
     # The extended twin is one whose magnet is described where it is.
     assert found.extended.magnet is not None
     assert float(found.extended.magnet.placement.sensor_x_mm) == pytest.approx(change["is"], rel=1e-6)

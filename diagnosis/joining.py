@@ -16,7 +16,7 @@ import numpy as np
 from diagnosis.discovery.fitting.initial_fit import senses_of_channels
 from diagnosis.error_model.fit import fit_baseline
 from diagnosis.error_model.result import BaselineFit
-from diagnosis.factors.mounting import Mounting
+from diagnosis.factors.mounting import Mounting, held_at_one_size
 from diagnosis.mountings import own_zeros_deg, with_references
 from twin.angles import wrap_deg
 from twin.chain import Chain
@@ -124,13 +124,20 @@ def _at_gaps(sweeps: Sequence[Sweep], gaps: Sequence[float | None], magnet: Magn
         return [Setup(name=sweep.name) for sweep in sweeps]
     known = np.array(gaps, dtype=np.float64)
     field = Mounting(magnet=magnet, air_gap_mm=tuple(known)).field_mT(known)
+    held = False
     if all(sweep.vx is not None for sweep in sweeps) and np.ptp(known) > 0.0:
+        amplitude = np.array([np.median(np.hypot(sweep.vx, sweep.vy)) for sweep in sweeps])  # type: ignore[arg-type]
+        held = held_at_one_size(amplitude, field=field)
         # A gap set by hand is off by more than an amplitude that was read.
-        field = np.array([np.median(np.hypot(sweep.vx, sweep.vy)) for sweep in sweeps])  # type: ignore[arg-type]
+        field = field if held else amplitude
     distance = known + 0.5 * float(magnet.height_mm)
     return [
         Setup(
-            name=sweep.name, air_gap_mm=float(gap), field=float(strength / field[0]), distance=float(far / distance[0])
+            name=sweep.name,
+            air_gap_mm=float(gap),
+            field=float(strength / field[0]),
+            distance=float(far / distance[0]),
+            amplitude_held=held,
         )
         for sweep, gap, strength, far in zip(sweeps, known, field, distance, strict=True)
     ]

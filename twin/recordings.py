@@ -33,6 +33,8 @@ class Setup:
         Whether ``turned_deg`` is told by the readings alone.
     field, distance : float
         The magnet's field at the sensor, and the distance from its centre, against those of the first recording.
+    amplitude_held : bool
+        Whether vx and vy are of one size at all gaps, so that the magnet alone tells the field.
     """
 
     name: str = ""
@@ -43,6 +45,7 @@ class Setup:
     turn_told: bool = False
     field: float = 1.0
     distance: float = 1.0
+    amplitude_held: bool = False
 
 
 @dataclass(frozen=True, eq=False)

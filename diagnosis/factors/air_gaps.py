@@ -26,7 +26,7 @@ from diagnosis.factors.gap_sets import (
     joined,
     most_of_an_order,
 )
-from diagnosis.factors.mounting import Mounting
+from diagnosis.factors.mounting import Mounting, held_at_one_size
 from twin.angles import Array
 
 SURE = 6.3e-5
@@ -35,8 +35,6 @@ MISFIT = 1e-3
 """Probability of a chi2 as large below which no set of causes is said to hold the readings."""
 MOST_SWEEPS = 64
 """More are not fitted together: the work goes with the square of their number."""
-HELD_SHARE = 0.1
-"""Of the field's change over the gaps, in logarithms: channels that change by less do not follow the field."""
 SMALLEST_CHANGE = 0.1
 """Relative change of the field from which sweeps count as different air gaps."""
 _GAPS_TRIED = 15
@@ -228,14 +226,13 @@ def start_gaps(sweeps: Sequence[GapSweep], mounting: Mounting) -> Array | None:
 def without_held_amplitudes(sweeps: Sequence[GapSweep], mounting: Mounting) -> tuple[Sequence[GapSweep], bool]:
     """The sweeps, without their amplitudes where these do not follow the field of the stated gaps; whether they do not.
 
-    An automatic gain, or a record in shares of the amplitude, holds the channels at one size. They are taken for such
-    where they change by less than a tenth of what the field does.
+    See :func:`~diagnosis.factors.mounting.held_at_one_size`.
     """
     logs = [sweep.log_amplitude for sweep in sweeps]
     if len(mounting.air_gap_mm) != len(sweeps) or None in logs:
         return sweeps, False
-    demanded = np.ptp(np.log(mounting.field_mT(np.array(mounting.air_gap_mm))))
-    if np.ptp(np.array(logs, dtype=np.float64)) > HELD_SHARE * demanded:
+    field = mounting.field_mT(np.array(mounting.air_gap_mm))
+    if not held_at_one_size(np.exp(np.array(logs, dtype=np.float64)), field=field):
         return sweeps, False
     return [replace(sweep, log_amplitude=None) for sweep in sweeps], True
 

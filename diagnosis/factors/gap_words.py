@@ -11,7 +11,7 @@ from diagnosis.factors.displacement import Displacement, sensor_displacement, se
 from diagnosis.factors.gap_fit import GapFit
 from diagnosis.factors.gap_model import ROWS
 from diagnosis.factors.gap_sets import ON_AXIS
-from diagnosis.factors.mounting import Mounting
+from diagnosis.factors.mounting import HELD_WORDS, Mounting
 from twin.baseline import FACTORS
 
 _MOST_PLACES = 3
@@ -38,10 +38,7 @@ def sentences(found: AirGaps) -> tuple[str, ...]:
     given = f" (stated {stated} mm)" if len(found.mounting.air_gap_mm) == len(found.names) else ""
     said = [f"air gaps: fitted {gaps} mm{given} before {magnet_words(found.mounting)}"]
     if found.amplitudes_held:
-        said.append(
-            "air gaps: vx and vy are of one size at all gaps, as an automatic gain makes them: they gauge no gap, and "
-            "the stated ones are taken"
-        )
+        said.append(f"air gaps: {HELD_WORDS}: they gauge no gap, and the stated ones are taken")
     if found.misfit:
         return (*said, *_misfit(found))
     return (*said, *_order_2(found), *_order_1(found), *_magnet(found), _quadratic(found))

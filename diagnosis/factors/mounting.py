@@ -21,6 +21,23 @@ UNSTATED_ERROR_MM = 0.5
 """That of the twin's own air gap where nobody has stated any."""
 
 
+HELD_SHARE = 0.1
+"""Of the field's change over the gaps, in logarithms: channels that change by less do not follow the field."""
+
+
+HELD_WORDS = "vx and vy are of one size at all gaps, as an automatic gain makes them"
+"""What is said of channels that do not follow the field."""
+
+
+def held_at_one_size(amplitude: Array, *, field: Array) -> bool:
+    """Whether channels (sweeps,) do not follow the field (sweeps,) of their gaps, each in any unit.
+
+    An automatic gain, or a record in shares of the amplitude, holds the channels at one size. They are taken for such
+    where they change by less than a tenth of what the field does.
+    """
+    return bool(np.ptp(np.log(amplitude)) <= HELD_SHARE * np.ptp(np.log(field)))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mounting:
     """The magnet on the shaft and the distance of the sensor from it.

@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.discovery.proof.cross_validation import rms_deg
 from diagnosis.discovery.result import Discovery
+from diagnosis.factors.mounting import HELD_WORDS
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
 from diagnosis.report.wording import plain
 from twin.each_recording import acts_in
@@ -60,6 +61,7 @@ def _recording(found: Discovery, number: int) -> dict[str, Any]:
         "turns": part.turns,
         "air_gap_mm": setup.air_gap_mm,
         "field_ratio": setup.field,
+        "amplitude_held": setup.amplitude_held,
         "turned_deg": setup.turned_deg,
         "turn_stated_deg": setup.turn_stated_deg,
         "turn_told": setup.turn_told,
@@ -107,6 +109,8 @@ def recordings_notes(answer: Mapping[str, Any]) -> list[str]:
         said.append("held out by blocks of each recording: one alone could not show the causes found")
     if answer["columns_left_out"]:
         said.append(f"not used, as only some of the recordings have it: {', '.join(answer['columns_left_out'])}")
+    if any(one["amplitude_held"] for one in several):
+        said.append(f"{HELD_WORDS}: the fields at the stated gaps are the magnet's")
     said += [words for one in several[1:] if (words := turn_words(one, several[0]["name"]))]
     return said + [_not_shared(one) for one in several if one.get("differ")]
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from scenarios.commands.outputs import PICTURE, SWEEP, TABLE, OutputFiles
 from scenarios.commands.protocol import Protocol
 from scenarios.commands.trace import trace, trace_text
@@ -50,6 +52,12 @@ class Instead:
             chain = replace(chain, encoder=replace(chain.encoder or Encoder(), lines=self.reference_lines))
         return chain
 
+    def stated(self, sweep: Sweep) -> Sweep:
+        """The sweep with the air gap in a column of its own, where one was asked for."""
+        if self.air_gap_mm is None:
+            return sweep
+        return replace(sweep, air_gap_mm=np.full(len(sweep), self.air_gap_mm))
+
 
 _AS_IT_IS = Instead()
 
@@ -74,7 +82,7 @@ def run(
     chain = instead.of(read_twin_or_preset(twin, effects=effects_with(effect_files)))
     # A recorded motion holds the reference's readings: the shaft is where its errors are undone.
     motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded, max_bytes=max_bytes).motion())
-    sweep = chain.simulate(motion, seed=seed)
+    sweep = instead.stated(chain.simulate(motion, seed=seed))
     contents: dict[Path | None, Any] = {outputs.sweep: lambda: csv_text(sweep.columns)}
     if outputs.trace is not None or outputs.plot is not None:
         traced = trace(chain, motion, seed=seed)

@@ -16,12 +16,15 @@ from diagnosis.factors.mounting import Mounting
 from diagnosis.joining import joined
 from diagnosis.report.explain_plot import residual_figure
 from tests.command_line import halltwin
+from twin.air_gap import at_air_gap
 from twin.angles import Array
 from twin.catalogue import CATALOGUE
 from twin.chain import Chain
 from twin.each_recording import acts_in, everywhere
 from twin.errors import UserError
 from twin.files import read_twin
+from twin.magnet.assembly import Assembly
+from twin.magnet.placement import Placement
 from twin.motion import Motion
 from twin.sweep import Sweep
 
@@ -29,9 +32,11 @@ THERE = np.radians(np.arange(0.0, 720.0, 4.0))
 DEVICE = Chain().with_effect("offset", x_percent=0.8, y_percent=-0.5)
 
 
-def recorded(device: Chain, name: str, *, zero_deg: float, noise_deg: float = 0.02, **stated: float) -> Sweep:
+def recorded(
+    device: Chain, name: str, *, zero_deg: float, noise_deg: float = 0.02, channels: bool = False, **stated: float
+) -> Sweep:
     """One recording there and back, with its own zero, noise and conditions."""
-    motion = Motion.from_angle(np.concatenate([THERE, THERE[::-1]]))
+    motion = Motion.from_angle(np.concatenate([THERE, THERE[::-1]]), has_channels=channels)
     chain = device.with_effect("zero", zero_deg=zero_deg).with_effect("noise", rms_deg=noise_deg)
     columns: dict[str, Array] = {column: np.full(len(motion), value) for column, value in stated.items()}
     sweep = chain.simulate(motion, seed=sum(map(ord, name)))
@@ -243,3 +248,30 @@ def test_zeros_of_turns_are_their_recordings() -> None:
     assert answer["held_out_by"] == "recordings"
     # Half of a turn's 72 readings tell its zero to a sixth of the noise.
     assert answer["extended"]["heldout_rms_deg"] < 0.03
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_an_automatic_gain_gauges_no_gap(held: bool) -> None:
+    """A constant voltage is a larger share of a weaker field, whether or not the channels show how much weaker.
+
+    2 and 3 mm before a cylinder of 6 mm x 2.5 mm; the offset is known to some thousandths of a percent by 360 readings.
+    """
+    device = DEVICE.with_magnet(Assembly(placement=Placement(air_gap_mm=2.0)))
+    far = at_air_gap(device, 3.0)
+    assert device.magnet is not None
+    assert far.magnet is not None
+    ratio = far.magnet.nominal_mT / device.magnet.nominal_mT
+    sweeps = [
+        recorded(replace(chain, magnet=None), f"{gap} mm.csv", zero_deg=5.0, channels=True, air_gap_mm=gap)
+        for chain, gap in ((device, 2.0), (far, 3.0))
+    ]
+    assert sweeps[1].vx is not None
+    assert sweeps[1].vy is not None
+    if not held:
+        sweeps[1] = replace(sweeps[1], vx=ratio * sweeps[1].vx, vy=ratio * sweeps[1].vy)
+    answer = explain(sweeps).to_dict()
+    assert [one["amplitude_held"] for one in answer["recordings"]] == [held, held]
+    # The radius of so many readings tells the ratio to a thousandth.
+    assert answer["recordings"][1]["field_ratio"] == pytest.approx(ratio, rel=2e-3)
+    assert answer["causes"] == []
+    assert answer["baseline"]["parameters"]["Vx_over_Ax"]["value"] == pytest.approx(0.008, abs=1e-4)

@@ -213,7 +213,10 @@ def test_simulate_records_the_device_at_another_gap(tmp_path: Path) -> None:
         instead=simulate.Instead(air_gap_mm=3.0),
     )
     wanted = at_air_gap(read_preset("hall-misaligned"), 3.0).simulate(Protocol().motion(), seed=3)
-    np.testing.assert_allclose(Sweep.read(tmp_path / "far.csv").measured_deg, wanted.measured_deg, atol=1e-6)
+    recorded = Sweep.read(tmp_path / "far.csv")
+    np.testing.assert_allclose(recorded.measured_deg, wanted.measured_deg, atol=1e-6)
+    assert recorded.air_gap_mm is not None
+    assert set(recorded.air_gap_mm) == {3.0}
 
 
 def test_without_a_magnet_nothing_says_what_a_gap_does() -> None:

@@ -254,7 +254,7 @@ def _creep(structure: Mapping[str, Any], sweep: Mapping[str, Any]) -> Parts:
         constants=f'TIME_CONSTANT_S = {_number(constant)}\n"""In which it settles, as found."""\n'
         f'AT_S = {_number(at)}\n"""Time from the first reading at which the amplitude is given."""\n',
         first=f"{_AMPLITUDE_RAD}elapsed_s = motion.time_s - motion.time_s[:1]\n"
-        "grown = np.expm1(-elapsed_s / TIME_CONSTANT_S) / np.expm1(-AT_S / TIME_CONSTANT_S)\n",
+        "grown: Array = np.expm1(-elapsed_s / TIME_CONSTANT_S) / np.expm1(-AT_S / TIME_CONSTANT_S)\n",
     )
 
 

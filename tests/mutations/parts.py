@@ -116,8 +116,8 @@ PARTS: tuple[Mutation, ...] = (
         _T,
         (
             "exchange.nothing_is_removed",
-            "    if removal.log_p + handicap(removal.effect, fit) > plan.level_beside(fit, others):\n",
-            "    if False:\n",
+            "    idle = removal.log_p + handicap(removal.effect, fit) > plan.level_beside(fit, others)\n",
+            "    idle = False\n",
             "search/test_exchange.py::test_what_becomes_of_the_causes_held",
         ),
         (

@@ -66,13 +66,13 @@ STAGES: tuple[Mutation, ...] = (
         ),
         (
             "changes.the_other_way_round_is_the_same_device",
-            "other = another_device(full, told.free, found) or _counts_otherwise(state)",
+            "other = another_device(full, told.free, found) or counts_otherwise",
             "other = another_device(full, told.free, found)",
             "stages/test_changes.py::test_what_has_changed_is_named_and_the_rest_stays",
         ),
         (
             "changes.no_magnet_is_ever_moved",
-            "if (found or state.keys or together) and not other:",
+            "if (found or state.keys or together) and not counts_otherwise:",
             "if False:",
             "stages/test_changes.py::test_a_magnet_that_was_moved_is_named_by_the_number_of_its_placement",
         ),

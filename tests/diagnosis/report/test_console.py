@@ -287,7 +287,8 @@ def test_what_cannot_be_held_out_is_said_in_words() -> None:
 def test_a_mirrored_description_is_said_to_fit_as_well() -> None:
     answer = an_answer()
     assert senses_words(answer) == ""
-    own = {key: entry["value"] for key, entry in (parameters := answer["extended"]["parameters"]).items()}
+    parameters = answer["extended"]["parameters"]
+    own = {key: entry["value"] for key, entry in parameters.items()}
     mirrored = {**own, "Vy_over_Ay": 0.00712, "beta_deg": -0.1691, "zero_deg": -33.1201}
     answer["senses"] = {"sensor": 1, "output": 1, "decided": False, "log_odds": 0.3, "mirrored": mirrored}
     said = "The mirrored twin (s = -1, h = -1) fits as well, with offset y 0.712 %, phase -0.1691 deg and zero -33.1201 deg"

@@ -291,7 +291,8 @@ def test_a_mirrored_description_is_said_to_fit_as_well() -> None:
     own = {key: entry["value"] for key, entry in parameters.items()}
     mirrored = {**own, "Vy_over_Ay": 0.00712, "beta_deg": -0.1691, "zero_deg": -33.1201}
     answer["senses"] = {"sensor": 1, "output": 1, "decided": False, "log_odds": 0.3, "mirrored": mirrored}
-    said = "The mirrored twin (s = -1, h = -1) fits as well, with offset y 0.712 %, phase -0.1691 deg and zero -33.1201 deg"
+    said = "The mirrored twin (s = -1, h = -1) fits as well, "
+    said += "with offset y 0.712 %, phase -0.1691 deg and zero -33.1201 deg"
     assert senses_words(answer) == said
     assert said in " ".join(shown(answer, 160).split())
     # Of several recordings with a turned sensor the mirrored twin is another one.

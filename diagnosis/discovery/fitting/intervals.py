@@ -77,7 +77,12 @@ def intervals_95(fit: Fit) -> Mapping[tuple[str, str], tuple[float, float]]:
         value = value_of(fit.chain, Free(key, name))
         found[key, name] = (value - reach * one, value + reach * one)
     if fit.free and not fit.weighting.slopes:
-        known = [place for place, one in enumerate(fit.free) if 0.0 < deviation.get((one.key, one.name), 0.0) < np.inf]
+        # What a prior holds is as uncertain as that says, by whichever likelihood.
+        known = [
+            place
+            for place, one in enumerate(fit.free)
+            if 0.0 < deviation.get((one.key, one.name), 0.0) < np.inf and fit.strengths[place] == 0.0
+        ]
         ends = Profile(fit, fit.covariance(), reach).intervals(known)
         found |= {(fit.free[place].key, fit.free[place].name): both for place, both in ends.items()}
     return found

@@ -91,7 +91,12 @@ class AirGaps:
     @property
     def misfit(self) -> bool:
         """Whether no set of causes holds the readings, or only one that no reading is left to check."""
-        return self.fullest.p < MISFIT or self.unchecked
+        return not self.holds or self.unchecked
+
+    @property
+    def holds(self) -> bool:
+        """Whether the readings do not contradict some set of causes."""
+        return max(fit.p for fit in self.fits.values()) >= MISFIT
 
     @property
     def unchecked(self) -> bool:
@@ -119,7 +124,7 @@ class AirGaps:
         """The fit whose figures are told: the best one, or where none holds that which says by how much."""
         if not self.misfit:
             return self.best
-        return self.fullest if self.fullest.p < MISFIT else self.simpler
+        return self.simpler if self.holds else self.fullest
 
     def best_with(self, order_2: CauseSet) -> GapFit:
         """The best fit of those that have this set of order 2."""
@@ -147,14 +152,16 @@ class AirGaps:
         return hull([found for fit in self.equally_good if (found := tilt_on_axis(fit)) is not None])
 
     def magnet_bound(self, cause: str) -> float | None:
-        """Upper end of the magnet's displacement ``magnet`` [mm] or tilt ``magnet_tilt`` [deg], were it that alone.
+        """Upper end of the magnet's displacement ``magnet`` [mm] or tilt ``magnet_tilt`` [deg], beside what is named.
 
-        None where either is named, or where the sensor is not seen off the axis: then none can be told.
+        Were it that alone of the two; of several equally good sets of offsets the largest end. None where either is
+        named, where the sensor is not seen off the axis, or where no such fit holds the readings.
         """
         if "sensor" not in self.named or any(BESIDE_SENSOR & set(one) for one in self.order_1):
             return None
-        found = MEASURED[cause](self.fits[joined(("voltage", cause), self.full_2)])
-        return None if found is None else found.high
+        beside = (joined((*one, cause), self.full_2) for one in self.order_1 if len(one) < len(self.names))
+        fits = [fit for causes in beside if (fit := self.fits[causes]).p >= MISFIT]
+        return max((found.high for fit in fits if (found := MEASURED[cause](fit)) is not None), default=None)
 
     @cached_property
     def quadratic(self) -> Law:
@@ -180,9 +187,7 @@ def air_gaps(sweeps: Sequence[GapSweep], names: Sequence[str], mounting: Mountin
     sweeps, held = without_held_amplitudes(sweeps, mounting)
     fits = GapFits(Problem(tuple(sweeps), mounting, start), freedom)
     full_2, sets_1 = fits.full_2(), fits.order_1()
-    first = [one for one, _ in _simplest(fits, [(one, full_2) for one in sets_1])]
-    sets_2 = [two for two in ORDER_2 if set(two) <= set(full_2)]
-    pairs = _simplest(fits, [(one, two) for one in first for two in sets_2 if go_together(one, two)])
+    pairs = _simplest_pairs(fits, sets_1, full_2)
     full = [fits[joined(one, full_2)] for one in sets_1 if joined(one, full_2) in fits]
     most = max(len(fit.causes) for fit in full)
     found = AirGaps(
@@ -197,6 +202,20 @@ def air_gaps(sweeps: Sequence[GapSweep], names: Sequence[str], mounting: Mountin
     if found.misfit:
         return found
     return replace(found, parting_mm=_parts(found, 1), order_1_parting_mm=_parts(found, 0))
+
+
+def _simplest_pairs(fits: GapFits, sets_1: Sequence[CauseSet], full_2: CauseSet) -> tuple[Pair, ...]:
+    """The simplest sets of order 1 beside all of order 2, and with these the simplest pairs of both.
+
+    A pair that turns out better than the sets of order 1 were fitted from makes them better too: they are asked again.
+    """
+    sets_2 = [two for two in ORDER_2 if set(two) <= set(full_2)]
+    asked: list[CauseSet] = []
+    pairs: tuple[Pair, ...] = ()
+    while (first := [one for one, _ in _simplest(fits, [(one, full_2) for one in sets_1])]) != asked:
+        pairs = _simplest(fits, [(one, two) for one in first for two in sets_2 if go_together(one, two)])
+        asked = first
+    return pairs
 
 
 def _parts(found: AirGaps, order: int) -> float | None:
@@ -291,13 +310,15 @@ def _simplest(fits: GapFits, candidates: Sequence[Pair]) -> tuple[Pair, ...]:
     Once the misses of a pair are so few that two numbers more could not take away enough of them, no larger one is
     fitted.
     """
-    fitted: dict[Pair, GapFit] = {}
+    asked: list[Pair] = []
     for size in sorted({len(one) + len(two) for one, two in candidates}):
-        same = {pair: fits[joined(*pair)] for pair in candidates if len(joined(*pair)) == size}
-        fitted |= same
-        largest = min(same.values(), key=lambda fit: fit.chi2)
+        same = [pair for pair in candidates if len(joined(*pair)) == size]
+        asked += same
+        largest = min((fits[joined(*pair)] for pair in same), key=lambda fit: fit.chi2)
         if largest.chi2 < _limit(2, largest.readings) and largest.p >= MISFIT:
             break
+    # As they are by now: a simpler fit that turned out better has made others better.
+    fitted = {pair: fits[joined(*pair)] for pair in asked}
     held = [
         pair
         for pair, fit in fitted.items()

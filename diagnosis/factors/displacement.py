@@ -8,8 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.factors.gap_fit import GapFit
+from diagnosis.factors.gap_model import per_product
 from diagnosis.factors.modulus import modulus_interval
+from diagnosis.factors.mounting import coefficients
 from twin.angles import Array, wrap_deg
+from twin.magnet.magnet import Magnet
 
 _NORMAL_95 = 1.96
 
@@ -25,17 +28,21 @@ class Displacement:
     """From the sensor's x axis; of what is displaced or tilted together this or all opposite ones."""
     direction_half_deg: float
     """Half width of the direction's 95 % interval; 180 where it is open."""
+    period_deg: float = 360.0
+    """180 where the opposite direction is the same: that of a square."""
 
 
 def hull(found: Sequence[Displacement]) -> Displacement:
     """The first of several with the interval that holds all of theirs: one of them is true, and it is open which."""
     first = found[0]
-    turned = [abs(float(wrap_deg(one.direction_deg - first.direction_deg))) for one in found]
+    turns = 360.0 / first.period_deg
+    turned = [abs(float(wrap_deg(turns * (one.direction_deg - first.direction_deg)))) / turns for one in found]
+    half = max(one.direction_half_deg + off for one, off in zip(found, turned, strict=True))
     return replace(
         first,
         low=min(one.low for one in found),
         high=max(one.high for one in found),
-        direction_half_deg=max(one.direction_half_deg + off for one, off in zip(found, turned, strict=True)),
+        direction_half_deg=half if half < 0.5 * first.period_deg else 180.0,
     )
 
 
@@ -48,7 +55,7 @@ def sensor_displacement(fit: GapFit) -> Displacement | None:
     half = _half_angle(squared, _covariance(fit, "sensor"))
     # The square turns twice as far.
     value, low, high = (float(np.sqrt(one)) for one in (abs(squared), low, high))
-    return Displacement(value, low, high, 0.5 * _towards(squared), 0.5 * half)
+    return Displacement(value, low, high, 0.5 * _towards(squared), 0.5 * half, period_deg=180.0)
 
 
 def magnet_displacement(fit: GapFit) -> Displacement | None:
@@ -83,12 +90,16 @@ def tilt_on_axis(fit: GapFit) -> Displacement | None:
     value, low, high = (
         float(np.degrees(2.0 * np.arctan(np.sqrt(size)))) for size in (abs(share), *modulus_interval(abs(share), error))
     )
-    return Displacement(value, low, high, 0.5 * _towards(-share), 0.5 * _half_angle(share, covariance))
+    half = 0.5 * _half_angle(share, covariance)
+    return Displacement(value, low, high, 0.5 * _towards(-share), half, period_deg=180.0)
 
 
 @dataclass(frozen=True)
 class Product:
-    """The sensor's tilt times the magnet's displacement or tilt along its magnetisation, with the 95 % interval."""
+    """The sensor's tilt times the magnet's displacement or tilt along its magnetisation, with the 95 % interval.
+
+    The interval holds what the product's law, of the first order in each, neglects: see :func:`neglected`.
+    """
 
     value: float
     low: float
@@ -96,7 +107,7 @@ class Product:
     unit: str
 
 
-def upright_product(fit: GapFit, cause: str) -> Product | None:
+def upright_product(fit: GapFit, cause: str, *, magnet: Magnet) -> Product | None:
     """The product that ``tilt_and_magnet`` or ``both_tilts`` stands for; None where the fit holds none."""
     if cause not in fit.causes:
         return None
@@ -106,7 +117,33 @@ def upright_product(fit: GapFit, cause: str) -> Product | None:
         "both_tilts": (float(np.degrees(1.0)) ** 2, "deg^2"),
     }[cause]
     low, high = modulus_interval(abs(value), error)
-    return Product(scale * abs(value), scale * low, scale * high, unit)
+    least, most = neglected(fit, cause, magnet)
+    return Product(scale * abs(value), scale * low / most, scale * high / least, unit)
+
+
+def neglected(fit: GapFit, cause: str, magnet: Magnet) -> tuple[float, float]:
+    """The offsets in the field itself, over those of first order: from the least to the most, 1 between them.
+
+    The product alone does not say how large each of the two is. They are taken as where the share of order 2 is the
+    sensor's tilt, and the magnet's direction as up to 45 degrees off its magnetisation.
+    """
+    tilt = tilt_on_axis(fit)
+    if tilt is None or tilt.value == 0.0:
+        return 1.0, 1.0
+    product, _ = fit.pair(cause)
+    along = abs(product) / np.radians(tilt.value)
+    gaps = np.tile(fit.gap_mm, 3)
+    across = np.repeat([-along, 0.0, along], fit.gap_mm.size)
+    if cause == "tilt_and_magnet":
+        wrong = {"magnet_x_mm": np.full(gaps.size, along), "magnet_y_mm": across}
+    else:
+        # Leaning towards x is a turn about y, leaning towards y one backwards about x.
+        wrong = {"magnet_tilt_y_deg": np.full(gaps.size, np.degrees(along)), "magnet_tilt_x_deg": -np.degrees(across)}
+    field = coefficients(magnet, gaps, sensor_tilt_y_deg=np.full(gaps.size, tilt.value), **wrong)
+    offset = field[:, 0, 0] / np.hypot(field[:, 0, 1], field[:, 0, 2])
+    first = abs(product) * per_product(cause, magnet, gaps)
+    ratio = offset / first
+    return min(float(ratio.min()), 1.0), max(float(ratio.max()), 1.0)
 
 
 def _towards(value: complex) -> float:

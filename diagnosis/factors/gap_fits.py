@@ -13,8 +13,15 @@ CLEAR_CHI2 = SEEN_SIGMA**2
 """By how much worse electronics or sensor alone fit than the other for certain."""
 
 
+SAME_CHI2 = 1e-3
+"""Difference of chi2 that the fit's own tolerance may leave."""
+
+
 class GapFits(dict[CauseSet, GapFit]):
-    """Fits by their causes, made when they are first asked for, from the best simpler one that is there."""
+    """Fits by their causes, made when they are first asked for, from the best simpler one that is there.
+
+    None fits worse than one with some of its causes: where a simpler one turns out better, it is fitted anew from that.
+    """
 
     def __init__(self, problem: Problem, freedom: int) -> None:
         super().__init__()
@@ -23,11 +30,24 @@ class GapFits(dict[CauseSet, GapFit]):
     def __missing__(self, causes: CauseSet) -> GapFit:
         # What stands in a product beside the sensor's displacement has no slope where that is still none, and one of
         # two such causes may lead the other astray.
-        simpler = [self[tuple(other for other in causes if other != name)] for name in causes if name in BESIDE_SENSOR]
-        simpler += [fit for one, fit in self.items() if set(one) < set(causes)]
-        start = min(simpler, key=lambda fit: fit.chi2) if simpler else None
-        self[causes] = found = self.problem.fitted(causes, self.freedom, start=start)
-        return found
+        for name in causes:
+            if name in BESIDE_SENSOR:
+                self[tuple(other for other in causes if other != name)]
+        self[causes] = self.problem.fitted(causes, self.freedom, start=self._best_within(causes))
+        for one in sorted((one for one in self if set(causes) <= set(one)), key=len):
+            self._improve(one)
+        return self[causes]
+
+    def _best_within(self, causes: CauseSet) -> GapFit | None:
+        """The best of the fits with some of these causes."""
+        simpler = (fit for one, fit in self.items() if set(one) < set(causes))
+        return min(simpler, key=lambda fit: fit.chi2, default=None)
+
+    def _improve(self, causes: CauseSet) -> None:
+        """Fit again from a simpler fit that is better: this one ended in a local minimum."""
+        simpler = self._best_within(causes)
+        if simpler is not None and self[causes].chi2 > simpler.chi2 + SAME_CHI2:
+            self[causes] = self.problem.fitted(causes, self.freedom, start=simpler)
 
     @cached_property
     def sees_sensor(self) -> bool:

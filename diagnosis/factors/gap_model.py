@@ -185,7 +185,7 @@ def expected(sweeps: Sequence[GapSweep], magnet: Magnet, causes: Causes, gap_mm:
     flat = {name: np.repeat(value, count) for name, value in placed.items()}
     field = coefficients(magnet, gap_mm.ravel(), **flat).reshape(batch, count, 3, -1)
     nominal = coefficients(magnet, gap_mm.ravel()).reshape(batch, count, 3, -1)[:, :, 0, 1]
-    upright = _upright(magnet, causes, gap_mm, nominal)
+    upright = _upright(magnet, causes, gap_mm)
     factors, quad = (np.empty((batch, count, size)) for size in (len(ROWS), 1))
     for k, sweep in enumerate(sweeps):
         change = _change(sweep, field[:, k], causes, nominal_mT=nominal[:, k], upright=upright[:, k])
@@ -202,19 +202,25 @@ def _beside(pair: Array, sensor: NDArray[np.complex128], *, most: float) -> NDAr
     return np.asarray(found * np.minimum(1.0, most / np.maximum(np.abs(found), 1e-300)))
 
 
-def _upright(magnet: Magnet, causes: Causes, gap_mm: Array, nominal_mT: Array) -> Array:
+def _upright(magnet: Magnet, causes: Causes, gap_mm: Array) -> Array:
     """Offsets (batch, sweeps, 2) that a tilted sensor on the axis has by the upright field, in nominal amplitudes."""
     out = np.zeros((*gap_mm.shape, 2))
     if not (np.any(causes.tilt_and_magnet) or np.any(causes.both_tilts)):
         return out
-    near, far = np.maximum(gap_mm - _SLOPE_STEP_MM, SMALLEST_GAP_MM), gap_mm + _SLOPE_STEP_MM
-    before, behind = (coefficients(magnet, gap.ravel())[:, 0, 1].reshape(gap.shape) for gap in (near, far))
-    slope = (behind - before) / ((far - near) * nominal_mT)
-    height = gap_mm + 0.5 * float(magnet.height_mm)
+    by_displacement, by_tilt = (per_product(cause, magnet, gap_mm) for cause in ("tilt_and_magnet", "both_tilts"))
     return np.asarray(
-        causes.tilt_and_magnet[:, None] * slope[..., None]
-        + causes.both_tilts[:, None] * (1.0 + height * slope)[..., None]
+        causes.tilt_and_magnet[:, None] * by_displacement[..., None] + causes.both_tilts[:, None] * by_tilt[..., None]
     )
+
+
+def per_product(cause: str, magnet: Magnet, gap_mm: Array) -> Array:
+    """Offset in nominal amplitudes, of the shape of ``gap_mm``, for one of ``tilt_and_magnet`` or ``both_tilts``."""
+    near, far = np.maximum(gap_mm - _SLOPE_STEP_MM, SMALLEST_GAP_MM), gap_mm + _SLOPE_STEP_MM
+    before, here, behind = (
+        coefficients(magnet, gap.ravel())[:, 0, 1].reshape(gap.shape) for gap in (near, gap_mm, far)
+    )
+    slope = (behind - before) / ((far - near) * here)
+    return np.asarray(slope if cause == "tilt_and_magnet" else 1.0 + (gap_mm + 0.5 * float(magnet.height_mm)) * slope)
 
 
 def _change(sweep: GapSweep, field_mT: Array, causes: Causes, *, nominal_mT: Array, upright: Array) -> Array:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from diagnosis.factors.air_gaps import MISFIT, AirGaps
+from diagnosis.factors.air_gaps import AirGaps
 from diagnosis.factors.displacement import Displacement, sensor_displacement, sensor_tilt, upright_product
 from diagnosis.factors.gap_fit import GapFit
 from diagnosis.factors.gap_model import ROWS
@@ -46,7 +46,7 @@ def sentences(found: AirGaps) -> tuple[str, ...]:
 
 def _misfit(found: AirGaps) -> Iterator[str]:
     """By how much nothing fits, and where; or that what fits has a number for each reading and would fit anything."""
-    if found.fullest.p < MISFIT:
+    if not found.holds:
         fit = found.fullest
         yield (
             "air gaps: neither the electronics nor displacements and tilts of sensor and magnet explain how offset, "
@@ -200,7 +200,7 @@ def _parts_offsets(found: AirGaps) -> str:
 
 def _upright(found: AirGaps, cause: str) -> str:
     """A sensor tilted on the axis, which senses the upright field of a magnet off the shaft or tilted."""
-    product = upright_product(found.best, cause)
+    product = upright_product(found.best, cause, magnet=found.mounting.magnet)
     assert product is not None
     displaced = product.unit == "mm deg"
     of_magnet, way = ("off the shaft", "displacement") if displaced else ("tilted", "tilt")
@@ -233,7 +233,7 @@ def _magnet(found: AirGaps) -> Iterator[str]:
             f"air gaps: the magnet, were it upright, is off the shaft by less than {off_mm:.2g} mm, and were it "
             f"centred, tilted by less than {tilted_deg:.2g} deg (97.5 % each); beside each other the two may be larger"
         )
-    elif not set(ON_AXIS) & set(found.named):
+    elif "sensor" not in found.named and not set(ON_AXIS) & set(found.named):
         yield (
             "air gaps: a magnet off the shaft or tilted makes no error while the sensor is upright on the axis: sweeps "
             "with the sensor shifted on purpose, by half a millimetre, would show it"

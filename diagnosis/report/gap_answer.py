@@ -58,7 +58,7 @@ def _displacement(found: Displacement | None, unit: str = "mm") -> dict[str, flo
 
 def _product(found: AirGaps, cause: str, unit: str) -> dict[str, float] | None:
     """The sensor's tilt times what is wrong with the magnet, where that is named."""
-    product = upright_product(found.best, cause) if cause in found.named else None
+    product = upright_product(found.best, cause, magnet=found.mounting.magnet) if cause in found.named else None
     if product is None:
         return None
     return {f"{name}_{unit}": getattr(product, name) for name in ("value", "low", "high")}

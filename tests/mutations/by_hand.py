@@ -115,28 +115,6 @@ FACTORS: tuple[Mutation, ...] = (
         ("tests/diagnosis/correction/test_compensation.py::test_either_mirror_solution_makes_the_same_correction",),
     ),
     Mutation(
-        "air_gaps.misfit_passes",
-        _GAPS,
-        "return self.fullest.p < MISFIT or self.unchecked",
-        "return self.unchecked",
-        (f"{_GAP_TESTS}::test_what_nothing_explains_is_said_to_fit_nothing",),
-        short=True,
-    ),
-    Mutation(
-        "air_gaps.tilt_before_the_sensor",
-        "diagnosis/factors/gap_fits.py",
-        "for name in causes if name in BESIDE_SENSOR]",
-        "for name in causes if name in ()]",
-        (f"{_GAP_TESTS}::test_more_causes_never_fit_worse_than_some_of_them",),
-    ),
-    Mutation(
-        "air_gaps.as_many_causes_as_gaps",
-        _GAPS,
-        "return self.fullest.p < MISFIT or self.unchecked",
-        "return self.fullest.p < MISFIT",
-        (f"{_GAP_TESTS}::test_a_fourth_gap_tells_a_tilt_beside_the_electronics",),
-    ),
-    Mutation(
         "air_gaps.first_set_that_fits",
         _GAPS,
         "    fewest = min(len(joined(*pair)) for pair in held)\n",

@@ -6,6 +6,7 @@ from tests.mutations.by_hand import BY_HAND
 from tests.mutations.discovery import DISCOVERY
 from tests.mutations.files import FILES
 from tests.mutations.forms import FORMS
+from tests.mutations.gaps import GAPS
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
 from tests.mutations.paper import PAPER
@@ -22,6 +23,7 @@ def mutations() -> tuple[Mutation, ...]:
     """Every mutation, those by hand first."""
     return (
         *BY_HAND,
+        *GAPS,
         *NOISE,
         *DISCOVERY,
         *STAGES,

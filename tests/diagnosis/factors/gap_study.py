@@ -15,6 +15,11 @@ from diagnosis import Mounting, diagnose_many
 from diagnosis.factors.air_gaps import AirGaps
 from diagnosis.factors.displacement import MEASURED, Displacement
 from tests.diagnosis.factors.gap_sweeps import CASES, Truth
+from twin.chain import Chain
+from twin.magnet.assembly import Assembly
+from twin.magnet.magnet import Magnet
+from twin.magnet.placement import Placement
+from twin.motion import Motion
 
 GAPS_MM = (1.0, 2.0, 3.0)
 
@@ -26,6 +31,22 @@ def asked(truth: Truth, seed: int, *, channels: bool, gaps_mm: tuple[float, ...]
     true = np.array(gaps_mm) + mounting.gap_error_mm * rng.standard_normal(len(gaps_mm))
     sweeps = [truth.sweep(float(gap), rng, channels=channels) for gap in true]
     return diagnose_many(sweeps, output_sense=1, mounting=mounting).air_gap_fit
+
+
+def of_twin(gaps_mm: tuple[float, ...], channels: bool, *, first_seed: int = 0, **placed: float) -> AirGaps:
+    """What the fit says of a twin of this placement, at these gaps."""
+    motion = Motion.from_angle(np.radians(np.arange(0.0, 360.0)), has_channels=channels)
+    sweeps = []
+    for seed, gap in enumerate(gaps_mm, first_seed):
+        device = Chain(magnet=Assembly(Magnet(), Placement(air_gap_mm=gap, **placed)))
+        made = device.with_effect("noise", rms_deg=0.02).simulate(motion, seed=seed)
+        columns = {"reference_deg": made.reference_deg, "measured_deg": made.measured_deg}
+        if channels:
+            columns |= {"vx": np.asarray(made.vx), "vy": np.asarray(made.vy)}
+        sweeps.append(columns)
+    found = diagnose_many(sweeps, output_sense=1, mounting=Mounting(air_gap_mm=gaps_mm)).air_gap_fit
+    assert found is not None
+    return found
 
 
 @dataclass

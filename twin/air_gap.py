@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
 from twin.catalogue import find
 from twin.chain import Chain
+from twin.effect import Effect
 from twin.errors import UserError
+from twin.magnet.assembly import Assembly
 
 
 def at_air_gap(chain: Chain, air_gap_mm: float) -> Chain:
@@ -39,10 +43,7 @@ def at_air_gap(chain: Chain, air_gap_mm: float) -> Chain:
         raise UserError("the twin describes no magnet, whose field would say what another air gap does; add [magnet]")
     near = chain.magnet
     far = replace(near, placement=replace(near.placement, air_gap_mm=air_gap_mm))
-    ratios = {
-        "field_ratio": far.nominal_mT / near.nominal_mT,
-        "distance_ratio": float(far.distance_mm / near.distance_mm),
-    }
+    ratios = ratios_of(far, near)
     moved = chain.without(*chain.values)
     converter = chain.parts.converter
     if converter is not None:
@@ -52,9 +53,31 @@ def at_air_gap(chain: Chain, air_gap_mm: float) -> Chain:
     moved = moved.with_magnet(far)
     for key, params in chain.values.items():
         effect = find(key, chain.effects)
-        values = {**effect.null(), **params}
-        follow = {name: values[name] * effect.field_factor(name, values, **ratios) for name in effect.follow_field}
         # A stray field is counted in the magnet's own, which with_magnet has told.
-        own = effect.follow_field if effect.at_magnet is not None else ()
-        moved = moved.with_effect(key, **{**params, **{n: v for n, v in follow.items() if n not in own or n in params}})
+        own = effect.at_magnet is not None
+        names = [name for name in effect.follow_field if not own or name in params]
+        there = restated(effect, params, names=names, ratios=ratios)
+        # Plain numbers: what is out of range is printed.
+        moved = moved.with_effect(key, **{**there, **{name: float(there[name]) for name in names if name in there}})
     return moved
+
+
+def ratios_of(far: Assembly, near: Assembly) -> dict[str, Any]:
+    """Field and distance of one magnet, or of many (designs,), over those of another."""
+    return {
+        "field_ratio": far.nominal_mT / near.nominal_mT,
+        "distance_ratio": far.distance_mm / near.distance_mm,
+    }
+
+
+def restated(
+    effect: Effect, params: Mapping[str, Any], *, names: Iterable[str], ratios: Mapping[str, Any]
+) -> dict[str, Any]:
+    """An effect's parameters where field and distance are multiplied by these ratios: the named ones follow them.
+
+    What is not stated follows from its value of no effect; where the effect does nothing, nothing follows.
+    """
+    if effect.is_null(params):
+        return dict(params)
+    values = {**effect.null(), **params}
+    return {**params, **{name: values[name] * effect.field_factor(name, values, **ratios) for name in names}}

@@ -23,6 +23,7 @@ from twin.chain import Chain
 from twin.each_recording import in_setup
 from twin.errors import UserError
 from twin.example import full_motion
+from twin.limits import OutOfRangeError
 from twin.magnet.assembly import Assembly
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement
@@ -201,6 +202,17 @@ def test_a_described_converter_keeps_its_range_and_noise_in_volts() -> None:
     assert moved is not None
     assert moved.full_scale == pytest.approx(1.3 / ratio(3.0), rel=1e-6)
     assert moved.noise_rms == pytest.approx(0.002 / ratio(3.0), rel=1e-6)
+
+
+def test_a_converter_of_no_bits_has_no_range_to_follow() -> None:
+    ideal = device("adc_quantisation", bits=0.0)
+    assert at_air_gap(ideal, 3.0).values == ideal.values
+
+
+def test_what_is_out_of_range_at_another_gap_is_printed_plainly() -> None:
+    """A cubic loss of 20 % grows with the field's square."""
+    with pytest.raises(OutOfRangeError, match=rf"found {20.0 * ratio(0.5) ** 2:.4f}[0-9]*$"):
+        at_air_gap(device("saturation", k_percent=20.0), 0.5)
 
 
 def test_simulate_records_the_device_at_another_gap(tmp_path: Path) -> None:

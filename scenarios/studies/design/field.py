@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.air_gap import ratios_of, restated
 from twin.angles import Array, channels_of
 from twin.catalogue import find
 from twin.chain import Chain
@@ -164,18 +165,12 @@ def scaled_values(chain: Chain, magnet: Assembly) -> dict[str, dict[str, Any]]:
     set for the field, by hand or by itself.
     """
     assert chain.magnet is not None
-    ratios = {
-        "field_ratio": magnet.nominal_mT / chain.magnet.nominal_mT,
-        "distance_ratio": magnet.distance_mm / chain.magnet.distance_mm,
-    }
+    ratios = ratios_of(magnet, chain.magnet)
     scaled: dict[str, dict[str, Any]] = {}
     for key, params in chain.values.items():
         effect = find(key, chain.effects)
-        values = {**effect.null(), **params}
         # What is not stated is at the twin's own magnet, too: the field that a stray one is counted against.
-        factors = {name: effect.field_factor(name, values, **ratios) for name in followed(effect)}
-        stated = {**{name: values[name] for name in factors}, **params}
-        scaled[key] = {name: value * factors.get(name, 1.0) for name, value in stated.items()}
+        scaled[key] = restated(effect, params, names=followed(effect), ratios=ratios)
     return scaled
 
 

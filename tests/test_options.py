@@ -55,6 +55,8 @@ RIGHT: dict[str, str] = {
     "--timeout": "36.9",
     "--run-length": "36.9",
     "simulate --max-size": "36.9",
+    # A lag that is 0.1 deg at the preset's gap would be 22 deg there.
+    "simulate --air-gap": "",
     "compensate --tolerance": "0",
     "--most-causes": "0",
     "--min-yield": "0",

@@ -91,7 +91,7 @@ def test_what_was_found_beside_the_joint_fit_comes_after() -> None:
 
 
 def test_rivals_are_the_effects_that_fit_as_well() -> None:
-    """A turn without channels does not tell saturation from the magnet's fourth order; channels do, but not from an S."""
+    """A turn without channels leaves saturation, the magnet's fourth order and an S; channels only the last."""
     after = held_out_selection(before(held_out_selection, ONE))
     assert set(after.findings[0].rivals) == {"magnet_harmonic", "adc_inl"}
     recorded = Made(causes=((SATURATION, 0.08),), points=96, channels=True)

@@ -18,6 +18,7 @@ from diagnosis.error_model.fit import fit_baseline
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.mounting import Mounting, held_at_one_size
 from diagnosis.mountings import own_zeros_deg, with_references
+from twin.air_gap import at_air_gap
 from twin.angles import wrap_deg
 from twin.chain import Chain
 from twin.each_recording import MARK, in_each, in_one
@@ -67,6 +68,8 @@ def joined(
     ------
     SweepError
         Where they cannot belong together.
+    OutOfRangeError
+        Where a parameter of the twin is out of range at the first recording's air gap.
     """
     fits = _baselines(sweeps, rng)
     magnet = _magnet(mounting, given)
@@ -75,10 +78,18 @@ def joined(
     turned = list(mounting.turned_deg) if mounting is not None and mounting.turned_deg else []
     stated_deg = turned or _stated(sweeps, "mounting_deg")
     setups = with_references(_at_gaps(sweeps, gaps, magnet), stated_deg, fits, sweeps)
-    chain = fits[0].chain() if given is None else given
+    chain = fits[0].chain() if given is None else _in_first(given, setups[0])
     own = {f"{ZERO.name}{MARK}{k + 1}": {"zero_deg": _own_zero(fits, setups, k)} for k in range(1, len(sweeps))}
     start = replace(chain.with_values(own), effects=_effects(effects, setups, magnet))
     return Joined(_one_sweep(sweeps, setups), start, np.concatenate([fit.outliers for fit in fits]))
+
+
+def _in_first(given: Chain, first: Setup) -> Chain:
+    """The device's twin at the air gap of the first recording, whose percentages the others' are counted from."""
+    if given.magnet is None or first.air_gap_mm in (None, float(given.magnet.placement.air_gap_mm)):
+        return given
+    assert first.air_gap_mm is not None
+    return at_air_gap(given, first.air_gap_mm)
 
 
 def _magnet(mounting: Mounting | None, given: Chain | None) -> Magnet:

@@ -275,3 +275,12 @@ def test_an_automatic_gain_gauges_no_gap(held: bool) -> None:
     assert answer["recordings"][1]["field_ratio"] == pytest.approx(ratio, rel=2e-3)
     assert answer["causes"] == []
     assert answer["baseline"]["parameters"]["Vx_over_Ax"]["value"] == pytest.approx(0.008, abs=1e-4)
+
+
+def test_a_twin_is_held_against_recordings_at_their_gaps() -> None:
+    """Its offset in volts, 0.8 % at its own 1.5 mm, is a larger share at 3 mm and has not changed."""
+    twin = DEVICE.with_magnet(Assembly(placement=Placement(air_gap_mm=1.5))).with_effect("noise", rms_deg=0.02)
+    sweeps = [recorded(at_air_gap(twin, gap), f"{gap} mm.csv", zero_deg=5.0, air_gap_mm=gap) for gap in (3.0, 4.0)]
+    answer = explain(sweeps, twin=twin).to_dict()
+    assert answer["changed"] == []
+    assert not answer["other_device"]

@@ -280,7 +280,7 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
             # Of a phase no less can be known than nothing.
             low, high = max(low, value - 180.0), min(high, value + 180.0)
         figures[name] = _figure(value, low, high, param.unit)
-        figures[name] |= _hardly_told(param, deviation.get((key, name), 0.0))
+        figures[name] |= _marks(param, value, deviation.get((key, name), 0.0))
         if param.unit == "s" and name in effect.zoomed and (key, name) not in deviation:
             figures[name] |= _between_readings(fit, value)
     if effect.line is not None and effect.line.clock == "time":
@@ -307,9 +307,14 @@ def _derived(fit: Fit, key: str, name: str, figure: tuple[float, float, float, s
     return _figure(value, low, high, unit)
 
 
-def _hardly_told(param: Param, deviation: float) -> dict[str, Any]:
-    """The mark of a parameter that keeps more than half of the variance that was known before the sweep."""
-    return {"hardly_told": True} if 0.0 < param.prior_sd < np.sqrt(2.0) * deviation else {}
+def _marks(param: Param, value: float, deviation: float) -> dict[str, Any]:
+    """Marks of a fitted parameter.
+
+    It keeps more than half of the variance that was known before the sweep; it is a shape at the limit of the model.
+    """
+    marks = {"hardly_told": True} if 0.0 < param.prior_sd < np.sqrt(2.0) * deviation else {}
+    at_bound = param.role == "shape" and deviation > 0.0 and value in (param.lower, param.upper)
+    return {**marks, "at_bound": True} if at_bound else marks
 
 
 def _row_numbers(found: Discovery, key: str) -> dict[str, dict[str, Any]]:

@@ -173,7 +173,10 @@ def instances(parameters: Mapping[str, Any]) -> list[dict[str, Any]]:
 def parameter_line(parameters: Mapping[str, Any]) -> str:
     """One instance's parameters on one line; of those that the sweep hardly narrows the names alone."""
     told = {name: one for name, one in parameters.items() if not one.get("hardly_told")}
-    line = ", ".join(f"{label(name)} {with_unit(parameter)}" for name, parameter in told.items())
+    line = ", ".join(
+        f"{label(name)} {with_unit(parameter)}" + (" (at its limit)" if parameter.get("at_bound") else "")
+        for name, parameter in told.items()
+    )
     rest = ", ".join(label(name) for name in parameters if name not in told)
     return f"{line}; hardly told by this sweep: {rest}" if rest else line
 

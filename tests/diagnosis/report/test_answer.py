@@ -8,8 +8,12 @@ import numpy as np
 import pytest
 
 from diagnosis import explain
+from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.factors.mounting import Mounting
+from diagnosis.report.answer import parameters
+from diagnosis.report.wording import parameter_line
 from scenarios.commands.protocol import Protocol
+from twin.catalogue import find
 from twin.chain import Chain
 from twin.magnet.assembly import Assembly
 from twin.magnet.placement import Placement
@@ -95,3 +99,16 @@ def test_an_air_gap_that_is_stated_counts_for_the_assumed_magnet() -> None:
     assert cause["assumed"] == "a cylinder of 6 mm x 2.5 mm at an air gap of 3 mm"
     figure = cause["parameters"]["displacement_mm"]
     assert figure["low"] < 0.2**0.5 < figure["high"]
+
+
+def test_a_shape_at_the_limit_of_the_model_is_said_to_be_there() -> None:
+    chain = Chain().with_effect("hysteresis", lag_deg=0.1, memory_deg=8.0).with_effect("noise", rms_deg=0.02)
+    found = explain(chain.simulate(Protocol(turns=2, both_directions=True).motion(), seed=1)).discovery
+    (cause,) = found.causes
+    assert "limit" not in parameter_line(parameters(found, cause))
+    least = find("hysteresis").params["memory_deg"].lower
+    fit = found.fit
+    there = fit.chain.with_values({"hysteresis": {**fit.chain.values["hysteresis"], "memory_deg": least}})
+    told = parameters(replace(found, fit=evaluate(there, fit.free, fit.observations, fit.weighting)), cause)
+    assert told["memory_deg"]["at_bound"]
+    assert "(at its limit)" in parameter_line(told)

@@ -56,8 +56,8 @@ PAPER: tuple[Mutation, ...] = (
         _DISTANCE,
         (
             "design_field.nothing_follows_the_field",
-            "value * factors.get(name, 1.0)",
-            "value",
+            "names=followed(effect), ratios",
+            "names=(), ratios",
             "::test_the_least_is_where_saturation_and_hysteresis_balance",
         ),
     ),

@@ -12,6 +12,7 @@ from diagnosis.discovery.fitting.intervals import (
     Deviations,
     interval_of_derived,
     intervals_95,
+    parabola_95,
     quantile_95,
     standard_deviations,
 )
@@ -160,7 +161,12 @@ def _sweep(found: Discovery) -> dict[str, Any]:
 
 def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:
     """The six visible parameters of the paper's model with 95 % intervals; a given twin's are taken as known."""
-    known, answer = intervals_95(fit), {}
+    return _factors(fit, intervals_95(fit))
+
+
+def _factors(fit: Fit, known: Mapping[tuple[str, str], tuple[float, float]]) -> dict[str, dict[str, Any]]:
+    """The six visible parameters with these intervals."""
+    answer = {}
     for factor in FACTORS:
         declared = factor.effect.params[factor.param]
         value = float(fit.chain.values.get(factor.key, {}).get(factor.param, factor.null))
@@ -173,9 +179,9 @@ def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:
 
 def _extended_parameters(found: Discovery) -> dict[str, dict[str, Any]]:
     """The factors with the causes, as well known as all that explains the sweep as well leaves them."""
-    return over_class(
-        baseline_parameters(found.fit), [(everywhere(name), baseline_parameters(fit)) for name, fit in found.rival_fits]
-    )
+    # Where another explanation leaves a factor is what matters there; to follow each along its likelihood takes long.
+    others = [(everywhere(name), _factors(fit, parabola_95(fit))) for name, fit in found.rival_fits]
+    return over_class(baseline_parameters(found.fit), others)
 
 
 def moved(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[str]:

@@ -64,6 +64,16 @@ def interval_of_derived(fit: Fit, key: str, name: str) -> tuple[float, float]:
     return value / factor, value * factor
 
 
+def parabola_95(fit: Fit) -> dict[tuple[str, str], tuple[float, float]]:
+    """95 % interval of every free scalar parameter of a fit, in its own unit, by its standard deviation alone."""
+    reach = quantile_95(fit)
+    found = {}
+    for (key, name), one in standard_deviations(fit).items():
+        value = value_of(fit.chain, Free(key, name))
+        found[key, name] = (value - reach * one, value + reach * one)
+    return found
+
+
 @lru_cache(maxsize=4)
 def intervals_95(fit: Fit) -> Mapping[tuple[str, str], tuple[float, float]]:
     """95 % interval of every free scalar parameter of a fit, in its own unit; infinite where nothing is known of it.
@@ -71,11 +81,8 @@ def intervals_95(fit: Fit) -> Mapping[tuple[str, str], tuple[float, float]]:
     By the profile likelihood, which within an interval is mostly a parabola. Of stairs in the channels it is none at
     all: what scatters at their edges is in the standard deviation alone.
     """
+    found = parabola_95(fit)
     deviation, reach = standard_deviations(fit), quantile_95(fit)
-    found = {}
-    for (key, name), one in deviation.items():
-        value = value_of(fit.chain, Free(key, name))
-        found[key, name] = (value - reach * one, value + reach * one)
     if fit.free and not fit.weighting.slopes:
         # What a prior holds is as uncertain as that says, by whichever likelihood.
         known = [

@@ -61,7 +61,7 @@ def axis_lag(value: Array, lag: Array, memory: Array) -> Array:
 
 
 def on_axes(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    """Each axis with its own lag: of a short memory the angle lags by 4 / pi of it in the mean, and ripples about that."""
+    """Each axis with its own lag: of a short memory the angle lags by 4 / pi of it in the mean, and ripples."""
     height = np.reshape(np.pi / 4.0 * radians(values["lag_deg"]) * np.asarray(values["on_axes"]), (-1, 1))
     memory = np.reshape(radians(np.maximum(values["memory_deg"], 1e-3)), (-1, 1))
     if signal.ndim == 2:

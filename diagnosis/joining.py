@@ -19,7 +19,7 @@ from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.mounting import Mounting, held_at_one_size
 from diagnosis.mountings import own_zeros_deg, with_references
 from twin.air_gap import at_air_gap
-from twin.angles import wrap_deg
+from twin.angles import Array, wrap_deg
 from twin.chain import Chain
 from twin.each_recording import MARK, in_each, in_one
 from twin.effect import BoolArray, Effect
@@ -79,7 +79,8 @@ def joined(
     stated_deg = turned or _stated(sweeps, "mounting_deg")
     setups = with_references(_at_gaps(sweeps, gaps, magnet), stated_deg, fits, sweeps)
     chain = fits[0].chain() if given is None else _in_first(given, setups[0])
-    own = {f"{ZERO.name}{MARK}{k + 1}": {"zero_deg": _own_zero(fits, setups, k)} for k in range(1, len(sweeps))}
+    zeros_deg = _own_zeros(fits, setups)
+    own = {f"{ZERO.name}{MARK}{k + 1}": {"zero_deg": float(zeros_deg[k])} for k in range(1, len(sweeps))}
     start = replace(chain.with_values(own), effects=_effects(effects, setups, magnet))
     return Joined(_one_sweep(sweeps, setups), start, np.concatenate([fit.outliers for fit in fits]))
 
@@ -154,10 +155,10 @@ def _at_gaps(sweeps: Sequence[Sweep], gaps: Sequence[float | None], magnet: Magn
     ]
 
 
-def _own_zero(fits: Sequence[BaselineFit], setups: Sequence[Setup], place: int) -> float:
-    """The zero [deg] of a recording beside the first one's, once its reference is counted back."""
-    sense = fits[0].senses.sensor
-    return float(wrap_deg(own_zeros_deg(fits)[place] + sense * setups[place].reference_deg))
+def _own_zeros(fits: Sequence[BaselineFit], setups: Sequence[Setup]) -> Array:
+    """The zero [deg] of each recording beside the first one's, once its reference is counted back."""
+    counted_back = fits[0].senses.sensor * np.array([setup.reference_deg for setup in setups])
+    return wrap_deg(own_zeros_deg(fits) + counted_back)
 
 
 def _effects(effects: Sequence[Effect], setups: Sequence[Setup], magnet: Magnet) -> tuple[Effect, ...]:

@@ -18,6 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
+from diagnosis.discovery.fitting.projection import projected
 from diagnosis.error_model.result import BaselineFit
 from twin.angles import Array, wrap, wrap_deg
 from twin.mechanics.zero import ZERO
@@ -93,7 +94,7 @@ def _turned(fits: Sequence[BaselineFit], sweeps: Sequence[Sweep], place: int) ->
     one_device = np.concatenate([zeros, _waves(np.concatenate(with_field), _SENSOR_ORDERS)])
     also_bench = np.concatenate([one_device, _waves(np.concatenate(with_shaft), _BENCH_ORDERS)])
     y = np.concatenate(error)
-    together, turned = (_left(y, columns) for columns in (one_device, also_bench))
+    together, turned = (float(np.sum(projected(y, columns) ** 2)) for columns in (one_device, also_bench))
     dof = y.size - len(also_bench)
     if dof <= 0 or turned <= 0.0 or together < _CLOSER**2 * turned:
         return False
@@ -104,9 +105,3 @@ def _turned(fits: Sequence[BaselineFit], sweeps: Sequence[Sweep], place: int) ->
 def _waves(angle: Array, orders: Sequence[int]) -> Array:
     """Cosine and sine of each order over angles (n,) [rad]: (2 orders, n)."""
     return np.stack([turned(order * angle) for order in orders for turned in (np.cos, np.sin)])
-
-
-def _left(values: Array, columns: Array) -> float:
-    """Sum of the squares of values (n,) less all that the columns (p, n) can do."""
-    fitted = np.linalg.lstsq(columns.T, values, rcond=None)[0]
-    return float(np.sum((values - fitted @ columns) ** 2))

@@ -79,5 +79,4 @@ def restated(
     """
     if effect.is_null(params):
         return dict(params)
-    values = {**effect.null(), **params}
-    return {**params, **{name: values[name] * effect.field_factor(name, values, **ratios) for name in names}}
+    return {**params, **effect.in_field({**effect.null(), **params}, names, **ratios)}

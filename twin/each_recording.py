@@ -114,8 +114,7 @@ def in_setup(effect: Effect, values: Parameters, setup: Setup) -> Parameters:
     if setup.field == 1.0 and setup.distance == 1.0:
         return values
     following = [name for name in effect.follow_field if name in values]
-    ratios = {"field_ratio": setup.field, "distance_ratio": setup.distance}
-    return {**values, **{name: values[name] * effect.field_factor(name, values, **ratios) for name in following}}
+    return {**values, **effect.in_field(values, following, field_ratio=setup.field, distance_ratio=setup.distance)}
 
 
 def _at_gap(effect: Effect, magnet: Magnet, setup: Setup) -> Forward:

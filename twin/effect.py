@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, Protocol
@@ -326,6 +326,13 @@ class Effect:
         power = param.field_power(values) if callable(param.field_power) else param.field_power
         factor = field_ratio**power
         return factor if param.distance_power is None else factor * distance_ratio ** param.distance_power(values)
+
+    def in_field(
+        self, values: Parameters, names: Iterable[str], *, field_ratio: Any, distance_ratio: Any
+    ) -> dict[str, Any]:
+        """The named ones of its complete parameters where field and distance are multiplied by these ratios."""
+        ratios = {"field_ratio": field_ratio, "distance_ratio": distance_ratio}
+        return {name: values[name] * self.field_factor(name, values, **ratios) for name in names}
 
     @property
     def follow_field(self) -> tuple[str, ...]:

@@ -286,8 +286,8 @@ TWIN: tuple[Mutation, ...] = (
     ),
     Mutation(
         "air_gap.percentages_stay",
-        "twin/air_gap.py",
-        "values[name] * effect.field_factor(name, values, **ratios)",
+        "twin/effect.py",
+        "values[name] * self.field_factor(name, values, **ratios)",
         "values[name]",
         ("tests/twin/test_air_gap.py::test_expected_errors_at_each_gap_are_those_of_first_principles",),
     ),

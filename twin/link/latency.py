@@ -8,6 +8,7 @@ error's orders with the speed; a loop that overshoots has a negative variance.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -57,6 +58,11 @@ def _series(motion: Motion) -> tuple[Array, Array]:
     return waves, np.linalg.pinv(both.T, rcond=1e-3)[: ORDERS + 1]
 
 
+def _cumulant(unit: str, bound: float, doc: str) -> Param:
+    about: dict[str, Any] = {"role": "shape", "typical": 0.1, "aside": True, "detail": True}
+    return Param(unit=unit, null=0.0, lower=-bound, upper=bound, doc=doc, **about)
+
+
 LATENCY = Effect(
     name="latency",
     stage="link",
@@ -64,28 +70,8 @@ LATENCY = Effect(
     acts_on="shaft",
     params={
         "delay_us": Param(unit="us", null=0.0, lower=-1e6, upper=1e6, doc="age of the reading", typical=20.0),
-        "variance_ms2": Param(
-            unit="ms^2",
-            null=0.0,
-            lower=-1e6,
-            upper=1e6,
-            doc="of a filter's response about its delay; negative: it overshoots",
-            role="shape",
-            typical=0.1,
-            aside=True,
-            detail=True,
-        ),
-        "third_moment_ms3": Param(
-            unit="ms^3",
-            null=0.0,
-            lower=-1e9,
-            upper=1e9,
-            doc="third central moment of a filter's response",
-            role="shape",
-            typical=0.1,
-            aside=True,
-            detail=True,
-        ),
+        "variance_ms2": _cumulant("ms^2", 1e6, "of a filter's response about its delay; negative: it overshoots"),
+        "third_moment_ms3": _cumulant("ms^3", 1e9, "third central moment of a filter's response"),
     },
     forward=forward,
     behind=Behind(acts_on="angle", forward=filtered, params=("variance_ms2", "third_moment_ms3"), record_wide=True),

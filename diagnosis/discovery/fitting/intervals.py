@@ -82,15 +82,15 @@ def intervals_95(fit: Fit) -> Mapping[tuple[str, str], tuple[float, float]]:
     all: what scatters at their edges is in the standard deviation alone.
     """
     found = parabola_95(fit)
-    deviation, reach = standard_deviations(fit), quantile_95(fit)
     if fit.free and not fit.weighting.slopes:
         # What a prior holds is as uncertain as that says, by whichever likelihood.
+        deviation = standard_deviations(fit)
         known = [
             place
             for place, one in enumerate(fit.free)
             if 0.0 < deviation.get((one.key, one.name), 0.0) < np.inf and fit.strengths[place] == 0.0
         ]
-        ends = Profile(fit, fit.covariance(), reach).intervals(known)
+        ends = Profile(fit, fit.covariance(), quantile_95(fit)).intervals(known)
         found |= {(fit.free[place].key, fit.free[place].name): both for place, both in ends.items()}
     return found
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -133,6 +134,10 @@ class Fit:
 
     def covariance(self) -> Array:
         """Covariance (P, P) of the free parameters in their own units; a direction without information is infinite."""
+        return self._covariance
+
+    @cached_property
+    def _covariance(self) -> Array:
         r, j = self.whitened()
         scale = np.linalg.norm(j, axis=1)
         scale[scale == 0.0] = 1.0

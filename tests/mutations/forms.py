@@ -42,9 +42,9 @@ FORMS: tuple[Mutation, ...] = tuple(
         ),
         (
             "forms.a_profile_fits_nothing_beside",
-            "diagnosis/discovery/fitting/profile.py",
-            "rest = projected(left, jacobian)",
-            "rest = left",
+            "diagnosis/discovery/fitting/joint_fit.py",
+            "left = projected(*self.whitened())",
+            "left, _ = self.whitened()",
             f"{_PROFILE}::test_a_weak_amplitude_and_its_phase",
         ),
         (

@@ -12,6 +12,7 @@ from diagnosis.discovery.fitting.coefficients import observables_to_cosine, to_r
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import NoiseFamily
 from diagnosis.discovery.fitting.observations import Observations
+from diagnosis.discovery.fitting.projection import projected
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
 from twin.baseline import FACTORS
@@ -112,6 +113,12 @@ class Fit:
     def squares_of_readings(self) -> float:
         """Sum of the readings' whitened squared residuals, without what the priors add."""
         return cost_of(self) - float(np.sum(self.prior_residual**2))
+
+    @property
+    def squares_to_first_order(self) -> float:
+        """Sum of the whitened squares that would be left were the chain linear in the free parameters."""
+        left = projected(*self.whitened())
+        return float(left @ left)
 
     @property
     def prior_residual(self) -> Array:

@@ -21,7 +21,6 @@ from diagnosis.discovery.fitting.joint_fit import (
     tidy,
     value_of,
 )
-from diagnosis.discovery.fitting.projection import projected
 from twin.angles import Array, wrap_deg
 from twin.catalogue import find
 from twin.chain import Chain
@@ -136,9 +135,8 @@ class Profile:
         fit = self.fit
         others = [k for k in range(len(fit.free)) if k != place]
         free = tuple(fit.free[k] for k in others)
-        left, jacobian = evaluate(chain, free, fit.observations, fit.weighting, fit.strengths[others]).whitened()
-        rest = projected(left, jacobian)
-        return self._over(float(rest @ rest) + self._held(chain, place))
+        there = evaluate(chain, free, fit.observations, fit.weighting, fit.strengths[others])
+        return self._over(there.squares_to_first_order + self._held(chain, place))
 
     def _held(self, chain: Chain, place: int) -> float:
         """What a prior adds to the whitened squares for one parameter."""

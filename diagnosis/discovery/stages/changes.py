@@ -10,7 +10,6 @@ from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve, value_of
 from diagnosis.discovery.fitting.own_parameters import set_back
-from diagnosis.discovery.fitting.projection import projected
 from diagnosis.discovery.proof.changes import TWIN_VARIANCE, Change, Differences, another_device
 from diagnosis.discovery.search.likelihood_ratio import add, drop
 from diagnosis.discovery.search.rivals import judge
@@ -170,13 +169,7 @@ def _moved_placements(fit: Fit) -> list[Fit]:
             # On the axis what a displacement does is of second order: from there no fit sets out.
             moved = chain.with_values({PLACEMENT: {**effect.null(), name: param.null + side * param.typical}})
             begun.append(evaluate(moved, free, fit.observations, fit.weighting))
-    return [solve(one) for one in sorted(begun, key=_left_to_first_order)[:_TRIED]]
-
-
-def _left_to_first_order(fit: Fit) -> float:
-    """Chi-squared that a fit would leave were the chain linear in its free parameters."""
-    left = projected(*fit.whitened())
-    return float(left @ left)
+    return [solve(one) for one in sorted(begun, key=lambda one: one.squares_to_first_order)[:_TRIED]]
 
 
 def _with_rivals(state: State, found: Sequence[Change], fit: Fit, same: float) -> tuple[Change, ...]:

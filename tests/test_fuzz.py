@@ -71,10 +71,10 @@ def test_memory_beyond_ten_times_a_plain_run_is_a_failure() -> None:
 
 
 def blown_up() -> str:
-    """How a trial is judged that takes more than ten times the memory of a plain run."""
-    watch = MemoryWatch(plain_mb=peak_mb())
+    """How a trial is judged before and after the process has grown from eight to eleven times a plain run's memory."""
+    watch = MemoryWatch(plain_mb=peak_mb() / 8.0)
     calm = watch.judged(Ended(ANSWERED)).how
-    much = np.ones(int(11.0 * watch.plain_mb) << 17)
+    much = np.ones(int(3.0 * watch.plain_mb) << 17)
     return f"{calm} {watch.judged(Ended(ANSWERED)).how} {much.size > 0}"
 
 

@@ -19,6 +19,8 @@ from pathlib import Path
 from tests.mutations.mutation import ROOT, Mutation
 
 COPIED = ("twin", "diagnosis", "scenarios", "tests", "pyproject.toml", "README.md")
+BEING_WRITTEN = shutil.ignore_patterns("*.pyc.*")
+"""What Python is compiling in the tree just now has such a name for a moment; a copy would find it gone."""
 LONGEST_S = 600.0
 """Tests of one mutation that take longer are stopped: the mutation is then an error, neither killed nor survived."""
 KILLED, SURVIVED, ERROR = "killed", "survived", "error"
@@ -59,7 +61,7 @@ class Copies:
         for name in COPIED:
             source = self._root / name
             if source.is_dir():
-                shutil.copytree(source, copy / name)
+                shutil.copytree(source, copy / name, ignore=BEING_WRITTEN)
             elif source.exists():
                 shutil.copy2(source, copy / name)
         return copy

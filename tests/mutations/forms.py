@@ -97,6 +97,13 @@ FORMS: tuple[Mutation, ...] = tuple(
             f"{_FORMS}::test_an_offset_that_creeps_after_switching_on_is_seen",
         ),
         (
+            "forms.an_axis_returns_like_an_exponential",
+            "twin/concentrator/hysteresis.py",
+            "np.maximum(1.0 - path / (REACH * memory), 0.0) ** 2",
+            "np.exp(-path / memory)",
+            "tests/twin/test_lag_of_axes.py::test_is_what_plays_of_all_radii_up_to_one_do",
+        ),
+        (
             "forms.no_detail_is_freed",
             "diagnosis/discovery/search/exchange.py",
             "detailed(retuned(fit, held), held, plan.threshold, plan.effects)",

@@ -20,19 +20,29 @@ def _error_deg(motion: Motion, **hysteresis: float) -> np.ndarray:
     return np.degrees(wrap(chain.readings(motion) - motion.shaft_rad - np.radians(30.0)))
 
 
-def test_follows_the_equation_that_defines_it() -> None:
-    """Integrated in steps a hundredth of the memory, an explicit step errs by half of that share of the change."""
-    path = np.cos(np.linspace(0.3, 9.0, 20_001))
-    found = axis_lag(path, np.array([[0.01]]), np.array([[0.1]]))[0]
-    lag = np.empty_like(found)
-    lag[0] = found[0]
-    for row in range(1, path.size):
-        step = path[row] - path[row - 1]
-        lag[row] = lag[row - 1] + abs(step) * (-np.sign(step) * 0.01 - lag[row - 1]) / 0.1
-    assert np.max(np.abs(found - lag)) < 0.01 * 0.5 * np.max(np.abs(np.diff(path))) / 0.1 * 2.0
+def test_is_what_plays_of_all_radii_up_to_one_do() -> None:
+    """Rayleigh's law. 100 plays in the middles of as many parts of the radii err by the parts' width squared."""
+    path, reach = np.cos(np.linspace(0.3, 9.0, 5_001)), 0.3
+    radii = 0.5 * reach * (np.arange(100) + 0.5) / 100
+    behind = np.empty((path.size, radii.size))
+    # come from the upper end of the axis, each play rests for twice its radius and then is behind by its radius
+    state = np.maximum(1.0 - radii, np.minimum(1.0 - radii, path[0] + radii))
+    for row, at in enumerate(path):
+        state = np.clip(state, at - radii, at + radii)
+        behind[row] = state - at
+    found = axis_lag(path, np.array([[0.25 * reach]]), np.array([[reach / 3.0]]))[0]
+    assert np.max(np.abs(found - behind.mean(axis=1))) < 0.5 * reach * 0.01**2
+    assert np.max(found) == pytest.approx(0.25 * reach, rel=1e-3)
 
 
-def test_lags_by_as_much_in_the_mean_and_ripples_four_times_a_turn() -> None:
+@pytest.mark.parametrize("memory_deg", [0.3, 12.0, 60.0])
+def test_lags_by_the_stated_one_in_the_mean(memory_deg: float) -> None:
+    """However long the memory; a lag of 0.01 deg moves the turning points of the axes by as much, of 90 degrees."""
+    forth = _error_deg(_there_and_back(), lag_deg=0.01, memory_deg=memory_deg, on_axes=1.0)[1440:2880]
+    assert np.mean(forth) == pytest.approx(-0.01, rel=5e-3)
+
+
+def test_ripples_four_times_a_turn() -> None:
     """Small memory: |cos| + |sin| has the mean 4 / pi and an order 4 of 2 / 15 of that, which the reversals blunt."""
     motion = _there_and_back()
     error = _error_deg(motion, lag_deg=0.2, memory_deg=0.3, on_axes=1.0)

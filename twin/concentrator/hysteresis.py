@@ -15,6 +15,10 @@ from twin.drawing import log_span
 from twin.effect import Behind, Effect, Param, Parameters
 from twin.motion import Motion
 
+REACH = 3.0
+"""Path in memories after which nothing is left of the lag before a turning point: (1 - p/reach)^2 then holds over the
+path as much as an exponential."""
+
 
 def lag(motion: Motion, lag_rad: Array, memory_rad: Array) -> Array:
     """Lag angle (..., n) [rad]: dL/d|theta| = (-d h - L)/memory, steady at the first row."""
@@ -38,10 +42,11 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 
 def axis_lag(value: Array, lag: Array, memory: Array) -> Array:
-    """By how much one axis lags (..., n), in amplitudes: dL/d|c| = (-sign(dc) h - L)/memory.
+    """By how much one axis lags (..., n), in amplitudes: after each turning point by Rayleigh's law, in a parabola.
 
-    ``value`` (n,) is the path c of the axis, of amplitude 1; ``lag`` h and ``memory`` (..., 1) are in amplitudes too.
-    Before the first row the field has come from the end of the axis.
+    ``value`` (n,) is the path c of the axis, of amplitude 1; ``lag`` h and ``memory`` (..., 1) are in amplitudes too:
+    what is left of the lag before the turning point falls as (1 - p/reach)^2 of the path p, over a reach of three
+    memories. Before the first row the field has come from the end of the axis.
     """
     step = np.diff(value)
     moving = np.where(step != 0.0, np.arange(step.size), -1)
@@ -55,15 +60,28 @@ def axis_lag(value: Array, lag: Array, memory: Array) -> Array:
     for first, end in itertools.pairwise(cuts):
         target = -way[first] * lag
         path = np.abs(value[first:end] - before)
-        out[..., first:end] = target + (state - target) * np.exp(-path / memory)
+        out[..., first:end] = target + (state - target) * np.maximum(1.0 - path / (REACH * memory), 0.0) ** 2
         state, before = out[..., end - 1 : end], value[end - 1 : end]
     return out
 
 
+def mean_lag(memory: Array) -> Array:
+    """By how much the angle lags in the mean over a turn, of axes that lag by 1 at most: 4 / pi of a short memory.
+
+    An axis that is behind by L turns the angle by L sin a, so the mean is that of L over the way of the axis, of length
+    2, times 4 / pi. With the share f of what is before a turning point left after the whole way it turns from h to -h
+    by (1 - f) / (1 + f) only.
+    """
+    short = np.maximum(1.0 - 2.0 / (REACH * memory), 0.0)
+    held = REACH / 3.0 * memory * (1.0 - short**3)
+    return np.asarray(4.0 / np.pi * (1.0 - held / (1.0 + short**2)))
+
+
 def on_axes(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    """Each axis with its own lag: of a short memory the angle lags by 4 / pi of it in the mean, and ripples."""
-    height = np.reshape(np.pi / 4.0 * radians(values["lag_deg"]) * np.asarray(values["on_axes"]), (-1, 1))
+    """Each axis with its own lag: over a turn the angle lags by the stated one in the mean, and ripples."""
     memory = np.reshape(radians(np.maximum(values["memory_deg"], 1e-3)), (-1, 1))
+    mean = np.reshape(radians(values["lag_deg"]) * np.asarray(values["on_axes"]), (-1, 1))
+    height = mean / mean_lag(memory)
     if signal.ndim == 2:
         lags = np.stack([axis_lag(axis, height, memory) for axis in signal], axis=-2)
         return signal + (lags if len(lags) > 1 else lags[0])
@@ -91,7 +109,7 @@ HYSTERESIS = Effect(
             null=0.0,
             lower=0.0,
             upper=5.0,
-            doc="steady lag",
+            doc="steady lag, in the mean over a turn",
             field_power=-1.0,
         ),
         "memory_deg": Param(
@@ -121,6 +139,7 @@ HYSTERESIS = Effect(
     zoomed=("memory_deg",),
     fitted_shapes=("memory_deg",),
     drawing=drawing,
-    source="first-order return-point memory (Dahl's friction model, 1968) in the angle, or in each axis",
-    signature="-h d, relaxing exponentially after a reversal",
+    source="in the angle first-order return-point memory (Dahl's friction model, 1968); in each axis Rayleigh's law of "
+    "weak fields (Philosophical Magazine 23 (1887) 225)",
+    signature="-h d, relaxing exponentially after a reversal; of axes also order 4, with the direction and without",
 )

@@ -107,10 +107,9 @@ def test_plays_on_each_axis_are_one_hysteresis() -> None:
     columns = sweep(shaft, lagging * np.array([[1.0], [1.004]]) + np.array([[0.006], [-0.004]]), 5, direction=direction)
     found = named(columns)
     assert list(found) == ["hysteresis"]
-    # while an axis turns round its play rests: an arc of sqrt(4 r) or so, of the four quarters of a turn
-    assert found["hysteresis"]["lag_deg"]["value"] == pytest.approx(
-        np.degrees(0.005 * sum(radii) * 4.0 / np.pi), rel=0.1
-    )
+    # a play lags by its radius but for its way back, over which it is nothing in the mean: 2 r of the axis' 2
+    steady = np.degrees(sum(0.005 * radius * (1.0 - radius) for radius in radii) * 4.0 / np.pi)
+    assert found["hysteresis"]["lag_deg"]["value"] == pytest.approx(steady, rel=0.05)
     assert found["hysteresis"]["on_axes"]["value"] == pytest.approx(1.0, abs=0.15)
 
 

@@ -2,6 +2,9 @@
 
 Long studies are left out unless the marker expression asks for them (``-m study``). Tests of measured data are left out
 where these are absent, all but one, which says so.
+
+``pytest -n auto`` spreads the tests over processes. Each is handed whole files, so that what the tests of a file share
+is computed once.
 """
 
 from __future__ import annotations
@@ -11,10 +14,14 @@ import signal
 import sys
 import time
 import warnings
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from tests.measured import DATA
+
+if TYPE_CHECKING:
+    from xdist.scheduler import LoadFileScheduling
 
 if "numpy" in sys.modules and "OPENBLAS_NUM_THREADS" not in os.environ:
     warnings.warn(
@@ -27,6 +34,25 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("SOURCE_DATE_EPOCH", str(int(time.time())))
 # A shell lets what it runs in the background ignore Ctrl-C; tests send it to themselves.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+MOST_WORKERS = 4
+"""More gain little: one file, that of the measured sweeps, takes a quarter of the whole."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """One process for each core that this one may use, which in a container is fewer than there are."""
+    allowed = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(allowed, MOST_WORKERS)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> LoadFileScheduling:
+    """Whole files, in the order of :func:`pytest_collection_modifyitems`."""
+    from xdist.scheduler import LoadFileScheduling
+
+    config.option.loadscopereorder = False
+    return LoadFileScheduling(config, log)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -43,3 +69,5 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         config.hook.pytest_deselected(items=left_out)
         gone = set(left_out)
         items[:] = [item for item in items if item not in gone]
+    # The longest first: begun last, they would keep one process at work when the others have done.
+    items.sort(key=lambda item: item.get_closest_marker("measured") is None)

@@ -21,7 +21,7 @@ from diagnosis.mountings import own_zeros_deg, with_references
 from twin.air_gap import at_air_gap
 from twin.angles import Array, wrap_deg
 from twin.chain import Chain
-from twin.each_recording import MARK, in_each, in_one
+from twin.each_recording import MARK, over_recordings
 from twin.effect import BoolArray, Effect
 from twin.errors import SweepError
 from twin.magnet.magnet import Magnet
@@ -81,7 +81,7 @@ def joined(
     chain = fits[0].chain() if given is None else _in_first(given, setups[0])
     zeros_deg = _own_zeros(fits, setups)
     own = {f"{ZERO.name}{MARK}{k + 1}": {"zero_deg": float(zeros_deg[k])} for k in range(1, len(sweeps))}
-    start = replace(chain.with_values(own), effects=_effects(effects, setups, magnet))
+    start = replace(chain.with_values(own), effects=over_recordings(effects, setups, magnet))
     return Joined(_one_sweep(sweeps, setups), start, np.concatenate([fit.outliers for fit in fits]))
 
 
@@ -159,25 +159,6 @@ def _own_zeros(fits: Sequence[BaselineFit], setups: Sequence[Setup]) -> Array:
     """The zero [deg] of each recording beside the first one's, once its reference is counted back."""
     counted_back = fits[0].senses.sensor * np.array([setup.reference_deg for setup in setups])
     return wrap_deg(own_zeros_deg(fits) + counted_back)
-
-
-def _effects(effects: Sequence[Effect], setups: Sequence[Setup], magnet: Magnet) -> tuple[Effect, ...]:
-    """The effects common to all recordings, and those that each has by itself: its zero, and what belongs to it."""
-    found: list[Effect] = []
-    for effect in effects:
-        if effect.name == ZERO.name:
-            found += [effect, *(in_one(effect, number) for number in range(1, len(setups)))]
-        elif _belongs_to_recording(effect):
-            found += [in_one(effect, number) for number in range(len(setups))]
-        else:
-            found.append(in_each(effect, setups, magnet))
-    return tuple(found)
-
-
-def _belongs_to_recording(effect: Effect) -> bool:
-    """Whether an effect in the mean has parameters of the recording's; zeros of turns are their recording's already."""
-    own = any(effect.owner(name) == "recording" for name in effect.params)
-    return own and effect.footprint == "mean" and not effect.roles("per turn")
 
 
 def _left_out(sweeps: Sequence[Sweep]) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ remembers begins anew, and what follows the magnet's field or distance is that o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,6 +18,7 @@ from twin.effect import Effect, Forward, Parameters
 from twin.magnet.assembly import Assembly
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import Placement
+from twin.mechanics.zero import ZERO
 from twin.motion import Motion
 from twin.operations import with_forwards
 from twin.recordings import Setup
@@ -61,6 +62,28 @@ class InOne:
         out[...] = signal
         out[..., rows] = moved
         return out
+
+
+def over_recordings(effects: Iterable[Effect], setups: Sequence[Setup], magnet: Magnet) -> tuple[Effect, ...]:
+    """The effects over recordings of a device: common to all of them, or one for each where it is the recording's own.
+
+    ``magnet`` is the one whose air gaps the setups state.
+    """
+    found: list[Effect] = []
+    for effect in effects:
+        if effect.name == ZERO.name:
+            found += [effect, *(in_one(effect, number) for number in range(1, len(setups)))]
+        elif belongs_to_recording(effect):
+            found += [in_one(effect, number) for number in range(len(setups))]
+        else:
+            found.append(in_each(effect, setups, magnet))
+    return tuple(found)
+
+
+def belongs_to_recording(effect: Effect) -> bool:
+    """Whether an effect in the mean has parameters of the recording's; zeros of turns are their recording's already."""
+    own = any(effect.owner(name) == "recording" for name in effect.params)
+    return own and effect.footprint == "mean" and not effect.roles("per turn")
 
 
 def in_each(effect: Effect, setups: Sequence[Setup], magnet: Magnet) -> Effect:

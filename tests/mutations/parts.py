@@ -329,4 +329,20 @@ PARTS: tuple[Mutation, ...] = (
             "proof/test_selection.py::test_the_least_favourable_view_judges",
         ),
     ),
+    *of_one_file(
+        "diagnosis/discovery/further/another_recording.py",
+        "tests/diagnosis/discovery/further",
+        (
+            "further.the_sensor_stays_as_it_was",
+            "setups[0].turned_deg - setups[one].turned_deg",
+            "0.0",
+            "test_second_recording.py::test_an_error_of_the_sensor_in_two_mountings_by_hand",
+        ),
+        (
+            "further.as_quiet_in_the_weaker_field",
+            "seen[0] * float(factor)",
+            "seen[0]",
+            "test_power.py::test_a_second_air_gap_parts_a_coercive_field_from_a_play",
+        ),
+    ),
 )

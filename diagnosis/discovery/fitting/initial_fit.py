@@ -16,11 +16,11 @@ from diagnosis.discovery.fitting.joint_fit import (
     evaluate,
     free_of,
     solve,
-    tidy,
 )
 from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.fitting.own_zeros import own_zeros
+from diagnosis.discovery.fitting.tidy import tidy
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
 from twin.catalogue import find

@@ -46,7 +46,8 @@ class Weighting:
     are the family members that the noise may be; none given: all of them. ``radius_trusted``: what the radius does at
     some angles is taken for a cause's work, never for noise. ``coarse``: stairs
     make most of the spread. ``slopes``: those of blurred edges count, see
-    :class:`~diagnosis.discovery.fitting.linearised_chain.Linear`.
+    :class:`~diagnosis.discovery.fitting.linearised_chain.Linear`. ``to_come_rad`` is the RMS of the noise that readings
+    will have which are planned and not measured yet.
     """
 
     family: NoiseFamily
@@ -58,6 +59,7 @@ class Weighting:
     radius_trusted: bool = False
     coarse: bool = False
     slopes: bool = False
+    to_come_rad: float = 0.0
     settings: DiscoverySettings = field(default_factory=DiscoverySettings)
 
     @property
@@ -213,7 +215,7 @@ def evaluate(
         residual[1] -= (residual[1] @ basis.T) @ basis
         jacobian[:, 1] -= (jacobian[:, 1] @ basis.T) @ basis
     if strengths is None:
-        strengths = _prior_strengths(chain, free, observations, residual[0])
+        strengths = _prior_strengths(chain, free, _noise_rms(residual[0], observations, weighting))
     return Fit(
         chain=chain,
         free=free,
@@ -239,7 +241,12 @@ def radius_nuisance(observations: Observations) -> list[Array]:
     return columns
 
 
-def _prior_strengths(chain: Chain, free: tuple[Free, ...], observations: Observations, residual: Array) -> Array:
+def _noise_rms(residual: Array, observations: Observations, weighting: Weighting) -> float:
+    """RMS [rad] of the noise: of what the readings are off by, and of what planned ones will be off by beside that."""
+    return float(np.hypot(np.sqrt(np.mean(residual[observations.usable] ** 2)), weighting.to_come_rad))
+
+
+def _prior_strengths(chain: Chain, free: tuple[Free, ...], unit: float) -> Array:
     """How firmly each free parameter (P,) is held by what is known before the sweep, in units of the residual's RMS.
 
     Per-turn zeros scatter: each is held by the scatter of all. This makes them a random effect, so that an effect
@@ -250,8 +257,7 @@ def _prior_strengths(chain: Chain, free: tuple[Free, ...], observations: Observa
     """
     params = [find(f.key, chain.effects).params[f.name] for f in free]
     turns = [k for k, f in enumerate(free) if f.turn is not None]
-    # Whitened residuals are in radians: a prior of one sigma counts as one residual RMS.
-    unit = float(np.sqrt(np.mean(residual[observations.usable] ** 2)))
+    # Whitened residuals are in radians: a prior of one sigma counts as one RMS of the noise, the unit.
     strengths = np.array([unit / param.prior_sd if param.prior_sd > 0.0 else 0.0 for param in params])
     zeros = from_centre(chain, free)[turns]
     strengths[turns] = unit / max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
@@ -313,7 +319,8 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
         gained = cost - new_cost
         share = gained / max(float(step @ (2.0 * gradient - normal @ step)), 1e-300)
         damping *= eased(share)
-        fit = replace(trial, strengths=_prior_strengths(trial.chain, fit.free, fit.observations, trial.residual[0]))
+        noise_rms = _noise_rms(trial.residual[0], fit.observations, fit.weighting)
+        fit = replace(trial, strengths=_prior_strengths(trial.chain, fit.free, noise_rms))
         cost = cost_of(fit)
         if moved < tolerance * sigma or gained < SMALL_GAIN * sigma**2:
             break
@@ -379,20 +386,3 @@ def searched(effect: Effect, channels: bool) -> frozenset[str]:
     """Names of the shape and level parameters that a fit may move, with or without recorded channels."""
     names = {effect.line.param} if effect.line else set()
     return frozenset(names | set(effect.fitted_shapes) | (set(effect.channel_shapes) if channels else set()))
-
-
-def tidy(chain: Chain) -> Chain:
-    """Amplitudes made positive, phases and zeros brought to (-180, 180]."""
-    values = {key: dict(params) for key, params in chain.values.items()}
-    for key, params in values.items():
-        effect = find(key, chain.effects)
-        phases = effect.roles("phase")
-        for name in effect.roles("strength"):
-            if phases and float(params.get(name, 0.0)) < 0.0 and name == effect.roles("strength")[0]:
-                # The first strength is positive by convention; half a turn of the phase turns all of them.
-                for turned in effect.roles("strength"):
-                    params[turned] = -float(params[turned])
-                params[phases[0]] = float(params[phases[0]]) + 180.0
-        for name in (*phases, *((ZERO_ANGLE.name,) if key == ZERO_ANGLE.key else ())):
-            params[name] = float(-((-float(params[name]) + 180.0) % 360.0 - 180.0))
-    return replace(chain, values=values)

@@ -18,9 +18,9 @@ from diagnosis.discovery.fitting.joint_fit import (
     from_centre,
     moved_by,
     solve,
-    tidy,
     value_of,
 )
+from diagnosis.discovery.fitting.tidy import tidy
 from twin.angles import Array, wrap_deg
 from twin.catalogue import find
 from twin.chain import Chain

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, free_of, solve, tidy
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, free_of, solve
 from diagnosis.discovery.fitting.noise.plausible import plausible_members, radius_noise
+from diagnosis.discovery.fitting.tidy import tidy
 from diagnosis.discovery.search.screening import Base, Candidate
 from twin.catalogue import find, unnamed
 from twin.chain import Chain

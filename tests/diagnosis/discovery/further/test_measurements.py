@@ -15,7 +15,7 @@ import pytest
 
 from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
-from diagnosis.discovery.further.measurements import MENU, Recording
+from diagnosis.discovery.further.measurements import MENU
 from diagnosis.discovery.further.power import expected, separation_sigma
 from diagnosis.discovery.result import Discovery
 from tests.hidden.generator import draw
@@ -62,9 +62,9 @@ def planned(motion: twin_motion.Motion) -> Motion:
     )
 
 
-def achieved_sigma(found: Discovery, first: Fit, rival: Fit, recording: Recording) -> float:
+def achieved_sigma(found: Discovery, first: Fit, rival: Fit, plan: twin_motion.Motion) -> float:
     """Root of what the extended twin gains over the rival, fitted to the measured sweep in its place."""
-    start = expected(first, rival, recording)
+    start = expected(first, rival, plan)
     wrong = solve(evaluate(start.chain, start.free, found.fit.observations, found.fit.weighting), iterations=20)
     squares = [float(np.sum(one.whitened()[0] ** 2)) for one in (found.fit, wrong)]
     return float(
@@ -86,16 +86,15 @@ def test_advice_holds(case: Case, tmp_path: Path) -> None:
     assert sigma > first.fit.settings.sigma_enough
     plan = PLAN[advised](first.fit.observations.motion)
     assert plan is not None
-    (recording,) = plan
-    channels = "+" if recording.channels else "-"
+    channels = "+" if "vx" in plan.columns else "-"
     draw(
         [cause],
         seed=seed,
         strength=strength,
         protocol=f"{protocol}{channels}channels",
-        remeasured=planned(recording.motion),
+        remeasured=planned(plan),
     ).write_csv(path)
     second = explain(path).discovery
     assert {one.name: rival in one.rivals for one in second.causes} == {cause: False}
     told = separation_sigma(first.fit, named.rivals[rival], plan)
-    assert achieved_sigma(second, first.fit, named.rivals[rival], recording) == pytest.approx(told, rel=0.1, abs=4.0)
+    assert achieved_sigma(second, first.fit, named.rivals[rival], plan) == pytest.approx(told, rel=0.1, abs=4.0)

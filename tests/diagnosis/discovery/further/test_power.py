@@ -9,12 +9,13 @@ import pytest
 
 from diagnosis import explain
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
-from diagnosis.discovery.further.measurements import FINEST_DEG, MENU, Recording
+from diagnosis.discovery.further.measurements import FINEST_DEG, MENU
 from diagnosis.discovery.further.power import Option, advice, best, expected, separation_sigma
 from diagnosis.discovery.result import Discovery
 from scenarios.commands.protocol import Protocol
 from twin.chain import Chain
 from twin.motion import Motion
+from twin.recordings import Setup
 
 PLAN = {entry.name: entry.plan for entry in MENU}
 ONE_WAY = Protocol(turns=2, points=120, channels=False).motion()
@@ -25,44 +26,53 @@ BRINGS = {
     "other direction": "both directions",
     "second speed": "two speeds",
     "second temperature": "two temperatures",
+    "second mounting": "two mountings",
+    "second air gap": "two air gaps",
 }
 
 
-def one(name: str, motion: Motion) -> Recording:
+def plan_of(name: str, motion: Motion) -> Motion:
     planned = PLAN[name](motion)
     assert planned is not None
-    (recording,) = planned
-    return recording
+    return planned
+
+
+def farther(plan: Motion) -> Setup:
+    assert plan.recordings is not None
+    return plan.recordings.setups[-1]
 
 
 @pytest.mark.parametrize("motion", [ONE_WAY, SPINNING], ids=["stopping", "spinning"])
 @pytest.mark.parametrize(("name", "brings"), BRINGS.items())
 def test_a_measurement_brings_what_it_is_named_for(name: str, brings: str, motion: Motion) -> None:
     assert brings not in motion.provides
-    recording = one(name, motion)
-    assert brings in recording.motion.provides
-    assert PLAN[name](recording.motion) is None
-    assert recording.channels == (name == "raw channels")
+    plan = plan_of(name, motion)
+    assert brings in plan.provides
+    assert PLAN[name](plan) is None
+    assert ("vx" in plan.columns) == (name == "raw channels")
 
 
 @pytest.mark.parametrize("name", [entry.name for entry in MENU])
 @pytest.mark.parametrize("motion", [ONE_WAY, BOTH_WAYS, SPINNING], ids=["stopping", "both ways", "spinning"])
 def test_a_planned_shaft_goes_on_from_where_it_stands_and_so_does_the_clock(name: str, motion: Motion) -> None:
-    for recording in PLAN[name](motion) or ():
-        plan = recording.motion
-        assert np.all(np.diff(plan.time_s) > 0.0)
-        assert np.max(np.abs(np.diff(plan.shaft_rad))) < 1.5 * np.max(np.abs(np.diff(motion.shaft_rad)))
-        np.testing.assert_array_equal(plan.shaft_rad[: len(motion)], motion.shaft_rad)
-        moved = np.diff(plan.shaft_rad) != 0.0
-        np.testing.assert_array_equal(np.sign(np.diff(plan.shaft_rad))[moved], plan.direction[1:][moved])
-        pace = np.diff(plan.shaft_rad) / np.diff(plan.time_s)
-        steady = (plan.speed_rad_s[1:] == plan.speed_rad_s[:-1]) & (plan.speed_rad_s[1:] != 0.0)
-        within = steady & (np.diff(plan.time_s) < 0.02)
-        np.testing.assert_allclose(pace[within], plan.speed_rad_s[1:][within], rtol=1e-6)
+    plan = PLAN[name](motion)
+    if plan is None:
+        return
+    assert np.all(np.diff(plan.time_s) > 0.0)
+    for part in plan.parts:
+        assert np.max(np.abs(np.diff(part.shaft_rad))) < 1.5 * np.max(np.abs(np.diff(motion.shaft_rad)))
+        begun = part.shaft_rad[: len(motion)] - part.shaft_rad[0]
+        np.testing.assert_allclose(begun, motion.shaft_rad - motion.shaft_rad[0], atol=1e-12)
+        moved = np.diff(part.shaft_rad) != 0.0
+        np.testing.assert_array_equal(np.sign(np.diff(part.shaft_rad))[moved], part.direction[1:][moved])
+        pace = np.diff(part.shaft_rad) / np.diff(part.time_s)
+        steady = (part.speed_rad_s[1:] == part.speed_rad_s[:-1]) & (part.speed_rad_s[1:] != 0.0)
+        within = steady & (np.diff(part.time_s) < 0.02)
+        np.testing.assert_allclose(pace[within], part.speed_rad_s[1:][within], rtol=1e-6)
 
 
 def test_points_after_a_reversal_are_as_dense_as_said() -> None:
-    plan = one("denser points after a reversal", BOTH_WAYS).motion
+    plan = plan_of("denser points after a reversal", BOTH_WAYS)
     steps = np.degrees(np.abs(np.diff(plan.shaft_rad[len(BOTH_WAYS) :])))
     assert np.min(steps) == pytest.approx(FINEST_DEG[0], rel=1e-6)
     assert np.max(steps) == pytest.approx(5.0, rel=0.01)
@@ -71,10 +81,10 @@ def test_points_after_a_reversal_are_as_dense_as_said() -> None:
 
 
 def test_a_second_air_gap_weakens_the_field() -> None:
-    planned = PLAN["second air gap"](ONE_WAY)
-    assert planned is not None
-    near, far = planned
-    assert (near.field, near.distance) == (1.0, 1.0)
+    recordings = plan_of("second air gap", ONE_WAY).recordings
+    assert recordings is not None
+    near, far = recordings.setups
+    assert (near.field, near.distance, near.air_gap_mm, far.air_gap_mm) == (1.0, 1.0, 1.5, 3.0)
     # Between a dipole's third power of the distance and none at all.
     assert far.distance**-3 < far.field < 1.0
 
@@ -112,10 +122,9 @@ def test_expected_separation_is_the_mean_of_what_noise_then_shows(name: str) -> 
     found = saturated(3)
     (cause,) = found.causes
     assert "magnet_harmonic" in cause.rivals
-    plan = PLAN[name](ONE_WAY)
-    assert plan is not None
+    plan = plan_of(name, ONE_WAY)
     told = separation_sigma(found.fit, cause.rivals["magnet_harmonic"], plan)
-    right, wrong = (expected(found.fit, rival, plan[0]) for rival in (found.fit, cause.rivals["magnet_harmonic"]))
+    right, wrong = (expected(found.fit, rival, plan) for rival in (found.fit, cause.rivals["magnet_harmonic"]))
     rng, sigma, gains = np.random.default_rng(8), np.radians(0.02), []
     for _ in range(30):
         noisy = replace(
@@ -133,18 +142,21 @@ def test_expected_separation_is_the_mean_of_what_noise_then_shows(name: str) -> 
 
 
 def test_a_second_air_gap_parts_saturation_from_a_harmonic_of_the_magnet() -> None:
-    """By hand: fourth orders of a saturation shrink with its power of the field, the magnet's by its distance."""
+    """By hand: fourth orders of a saturation shrink with its power of the field, the magnet's by its distance.
+
+    The noise is the same in volts: in the weaker field an amplitude is known the less.
+    """
     found = saturated(3)
-    planned = PLAN["second air gap"](ONE_WAY)
-    assert planned is not None
-    far = planned[1]
+    plan = plan_of("second air gap", ONE_WAY)
+    far = farther(plan)
     values = found.fit.chain.values["saturation"]
     k = 0.01 * float(values["k_percent"])
     rows = len(ONE_WAY)
     apart = 0.25 * k * abs(far.field ** float(values["exponent"]) - far.distance**-4)
     # Amplitudes of two recordings of a common scale: each known to sqrt(2 / n), the difference shared between them.
-    by_hand = apart * np.sqrt(rows / 2.0) / np.radians(0.02) / np.hypot(1.0, far.distance**-4)
-    told = separation_sigma(found.fit, found.causes[0].rivals["magnet_harmonic"], planned)
+    shared = far.field / np.hypot(1.0, far.field * far.distance**-4)
+    by_hand = apart * shared * np.sqrt(rows / 2.0) / np.radians(0.02)
+    told = separation_sigma(found.fit, found.causes[0].rivals["magnet_harmonic"], plan)
     assert told == pytest.approx(by_hand, rel=0.15)
 
 
@@ -155,12 +167,11 @@ def test_a_second_air_gap_parts_a_coercive_field_from_a_play() -> None:
     found = explain(chain.simulate(motion, seed=1)).discovery
     (cause,) = found.causes
     assert {cause.name, *cause.rivals} == {"hysteresis", "backlash"}
-    planned = PLAN["second air gap"](motion)
-    assert planned is not None
-    grown = 1.0 / planned[1].field
-    # Amplitudes (1, 1) of a play and (1, grown) of a lag, in two recordings of as many readings: what the lag leaves of
-    # the play is the less of the two. The fitted noise is known to 1/sqrt(2 n), 4 %, the amplitude to 2 %.
-    by_hand = 0.1 * (grown - 1.0) / np.hypot(1.0, grown) * np.sqrt(len(motion)) / 0.02
+    grown = 1.0 / farther(plan_of("second air gap", motion)).field
+    # Amplitudes (1, 1) of a play and (1, grown) of a lag, in two recordings of as many readings, of which the second is
+    # louder by as much as the lag grows: (1, 1 / grown) and (1, 1) over the noise. What the lag leaves of the play is
+    # the less of the two. The fitted noise is known to 1/sqrt(2 n), 4 %, the amplitude to 2 %.
+    by_hand = 0.1 * (1.0 - 1.0 / grown) / np.sqrt(2.0) * np.sqrt(len(motion)) / 0.02
     (told,) = (option.sigma for option in cause.options if option.name == "second air gap")
     assert told == pytest.approx(by_hand, rel=3.0 * np.hypot(0.04, 0.02))
 

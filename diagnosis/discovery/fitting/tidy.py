@@ -1,0 +1,26 @@
+"""One of the equivalent ways to write a chain down: amplitudes above zero, phases within a turn."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from diagnosis.discovery.fitting.joint_fit import ZERO_ANGLE
+from twin.catalogue import find
+from twin.chain import Chain
+
+
+def tidy(chain: Chain) -> Chain:
+    """Amplitudes made positive, phases and zeros brought to (-180, 180]."""
+    values = {key: dict(params) for key, params in chain.values.items()}
+    for key, params in values.items():
+        effect = find(key, chain.effects)
+        phases = effect.roles("phase")
+        for name in effect.roles("strength"):
+            if phases and float(params.get(name, 0.0)) < 0.0 and name == effect.roles("strength")[0]:
+                # The first strength is positive by convention; half a turn of the phase turns all of them.
+                for turned in effect.roles("strength"):
+                    params[turned] = -float(params[turned])
+                params[phases[0]] = float(params[phases[0]]) + 180.0
+        for name in (*phases, *((ZERO_ANGLE.name,) if key == ZERO_ANGLE.key else ())):
+            params[name] = float(-((-float(params[name]) + 180.0) % 360.0 - 180.0))
+    return replace(chain, values=values)

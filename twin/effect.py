@@ -288,10 +288,19 @@ class Effect:
         """How many of so many linear coefficients are draws from one distribution."""
         return terms if self.roles("per turn") else len(self.drawn)
 
-    def alone(self, name: str) -> Effect:
-        """The same effect where one of its parameters is its only strength, and all others stay at their null."""
+    @property
+    def sought_alone(self) -> tuple[Effect, ...]:
+        """The effect with one strength alone, for each that a search sets by itself, within the bounds of that."""
+        return tuple(self.alone(name, within=param.sought) for name, param in self.params.items() if param.sought)
+
+    def alone(self, name: str, *, within: tuple[float, float] | None = None) -> Effect:
+        """The same effect where one of its parameters is its only strength, and all others stay at their null.
+
+        ``within`` are its bounds in place of those of its declaration.
+        """
         params = {other: replace(param, role="shape") for other, param in self.params.items()}
-        params[name] = replace(params[name], role="strength")
+        lower, upper = within or (params[name].lower, params[name].upper)
+        params[name] = replace(params[name], role="strength", lower=lower, upper=upper)
         return replace(
             self, params=params, shapes=_one_shape, zoomed=(), fitted_shapes=(), channel_shapes=(), line=None
         )

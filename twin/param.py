@@ -79,7 +79,10 @@ class Param:
     prior_mean : float, optional
         What is most likely before any sweep: it pulls the fit, as one more reading would. Not given: nothing is.
     aside : bool
-        Whether an answer gives it only where it is not at null: a detail that no search sets.
+        Whether an answer gives it only where it is not at null: a detail that no search sets, or only by itself.
+    sought : tuple of float, optional
+        Of a level that stands aside: the lowest and highest value at which a search sets it by itself. Not given: none,
+        as another effect says the same more plainly.
     detail : bool
         Whether a fit moves it from its null only where the readings call for it, as they must for a cause.
     scatter : float
@@ -103,6 +106,7 @@ class Param:
     prior_sd: float = 0.0
     prior_mean: float | None = None
     aside: bool = False
+    sought: tuple[float, float] | None = None
     detail: bool = False
     scatter: float = 0.0
     owner: Owner | None = None

@@ -76,6 +76,20 @@ FORMS: tuple[Mutation, ...] = tuple(
             f"{_FORMS}::test_a_drive_has_one_order_and_its_multiples",
         ),
         (
+            "forms.no_search_sets_an_s",
+            "diagnosis/discovery/search/forward_step.py",
+            "for form in (effect, *effect.sought_alone)",
+            "for form in (effect,)",
+            f"{_FORMS}::test_a_curve_that_runs_ahead_is_an_s_of_the_converter[True]",
+        ),
+        (
+            "forms.an_s_bends_either_way",
+            "twin/adc/adc_inl.py",
+            "sought=(-200.0, 0.0)",
+            "sought=(-200.0, 200.0)",
+            "tests/twin/test_adc_inl.py::test_an_s_that_a_saturation_may_be_is_not_sought",
+        ),
+        (
             "forms.a_stuck_bit_has_one_wave",
             "diagnosis/discovery/search/periodogram.py",
             "for phase, form in effect.line.waves:",

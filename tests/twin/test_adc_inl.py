@@ -31,3 +31,14 @@ def test_in_twice_the_field_a_step_is_half_as_much_of_the_amplitude() -> None:
     # The same volts are twice the amplitudes of the weaker field.
     np.testing.assert_allclose(added(0.5 * signal, **stronger), 0.5 * added(signal), rtol=1e-9)
     assert Chain().with_effect("adc_inl", bit1_lsb=1.0).values
+
+
+def test_an_s_that_a_saturation_may_be_is_not_sought() -> None:
+    """Alone, without the bits, and only where its channels run ahead of the field."""
+    (form,) = ADC_INL.sought_alone
+    assert form.roles("strength") == ("s_lsb",)
+    low, high = form.params["s_lsb"].lower, form.params["s_lsb"].upper
+    assert high == 0.0
+    signal = np.array([[0.2, 0.6, 1.0]])
+    sharper = added(signal, **{**ADC_INL.null(), "s_lsb": 0.1 * low})
+    assert np.all(np.diff(sharper / signal) > 0.0)

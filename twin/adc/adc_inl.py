@@ -72,7 +72,7 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
 
 
 def _lsb(doc: str, **about: Any) -> Param:
-    return Param(unit="LSB", null=0.0, lower=-200.0, upper=200.0, doc=doc, typical=15.0, **about)
+    return Param(unit="LSB", null=0.0, lower=-200.0, upper=200.0, doc=doc, typical=15.0, aside=True, **about)
 
 
 def _weight(bit: int) -> Param:
@@ -89,12 +89,12 @@ ADC_INL = Effect(
     params={
         # With y turned over a bow is one of the other sign in y alone: no value does that.
         "bow_lsb": _lsb("largest deviation of a bow, in steps of 14 bit", mirror=0),
-        "s_lsb": _lsb("largest deviation of an S", role="level", aside=True),
+        # One that bends down is what a saturation is, which says it more plainly; nothing else bends up.
+        "s_lsb": _lsb("largest deviation of an S", role="level", sought=(-200.0, 0.0)),
         **{f"bit{bit}_lsb": _weight(bit) for bit in range(1, BITS + 1)},
         "first_stage_lsb": _lsb(
             "step where the first stage of a pipeline changes its digit, as its gain is off",
             role="shape",
-            aside=True,
             detail=True,
         ),
         "full_scale_percent": Param(
@@ -111,12 +111,11 @@ ADC_INL = Effect(
     },
     forward=forward,
     needs=frozenset({"one turn"}),
-    # An S is what a saturation is, which says it more plainly: no search sets it.
     shapes=shapes,
     zoomed=("full_scale_percent",),
     fitted_shapes=("full_scale_percent",),
     source="integral non-linearity, IEEE Std 1241; binary-weighted capacitors: J. L. McCreary and P. R. Gray, IEEE J. "
     "Solid-State Circuits 10 (1975) 371",
-    signature="bow: order 3, the same as quadratic_nonlinearity; S: order 4, the same as saturation; weights: steps at "
-    "the major codes, many orders",
+    signature="bow: order 3, the same as quadratic_nonlinearity; S: order 4 in angle and radius, the same as "
+    "saturation where it bends down; weights: steps at the major codes, many orders",
 )

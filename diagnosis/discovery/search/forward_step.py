@@ -30,7 +30,8 @@ _HIGHEST_SHARE = 0.9
 def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
     """Every effect that may still be added, at its best shape, best first after the handicap."""
     present = {base_name(key) for key in keys}
-    found = screen(base, [effect for effect in effects if effect.name not in present])
+    absent = [effect for effect in effects if effect.name not in present]
+    found = screen(base, [form for effect in absent for form in (effect, *effect.sought_alone)])
     further = (one_more(base, effect, keys) for effect in effects if effect.name in present)
     found += [candidate for candidate in further if candidate is not None]
     found += multiples(base, effects, keys)
@@ -112,10 +113,10 @@ def best_addition(
     if score > threshold:
         return None
     trial, chosen = trials[place], trials[place].candidate
-    fair = {c.effect.name: c.effect for c in ranked if c.gain > fit.settings.fair_share * chosen.gain}
+    fair = {c.effect.name for c in ranked if c.gain > fit.settings.fair_share * chosen.gain}
     return Step(
         trial.fit,
-        {trial.key: list(fair.values())},
+        {trial.key: [effect for effect in effects if effect.name in fair]},
         degrees(chosen.effect, chosen.terms),
         float(np.log(chosen.looks)) + handicap(chosen.effect, fit),
     )

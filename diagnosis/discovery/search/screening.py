@@ -269,6 +269,8 @@ def _allowed(effect: Effect, terms: tuple[Term, ...], coefficients: Array) -> Ar
             ok &= (coefficients[..., place] > 0.5) & (coefficients[..., place] < 1.6)
         elif term.phase_deg is None and term.turn is None and param.lower == 0.0:
             ok &= coefficients[..., place] > 0.0
+        elif term.phase_deg is None and term.turn is None and param.upper == 0.0:
+            ok &= coefficients[..., place] < 0.0
     return ok
 
 

@@ -63,6 +63,23 @@ def test_any_curve_that_falls_behind_is_one_saturation(curve: Callable[[Array], 
     assert found["saturation"]["k_percent"]["value"] == pytest.approx(k_percent, abs=0.06)
 
 
+@pytest.mark.parametrize("raw", [True, False])
+def test_a_curve_that_runs_ahead_is_an_s_of_the_converter(raw: bool) -> None:
+    """No saturation does that; in angles alone a magnet's harmonic does the same.
+
+    A channel c + k c^3 with k = 0.02 has, straight through both ends of a range R of 1.25 amplitudes, an S of
+    2 k R^2 / sqrt(27) / (1 + k R^2) of its amplitude: 95.5 steps of 14 bit over that range.
+    """
+    shaft = turns(90, 4)
+    signal = channels(shaft, lambda field: field + 0.02 * field**3)
+    answer = explain(sweep(shaft, signal, 7, **({"vx": signal[0], "vy": signal[1]} if raw else {}))).to_dict()
+    (cause,) = answer["causes"]
+    assert {cause["name"], *cause["indistinguishable_from"]} == {"adc_inl"} | (set() if raw else {"magnet_harmonic"})
+    if cause["name"] == "adc_inl":
+        assert set(cause["parameters"]) == {"s_lsb", "full_scale_percent"}
+        assert cause["parameters"]["s_lsb"]["low"] < -95.5 < cause["parameters"]["s_lsb"]["high"]
+
+
 def follower(shaft_rad: Array, radius: float) -> Array:
     """A vector that is dragged by the unit vector at these angles on a leash of this length, as complex (n,)."""
     path = np.concatenate([np.linspace(a, b, 30) for a, b in itertools.pairwise(shaft_rad)])

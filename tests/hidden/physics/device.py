@@ -29,6 +29,8 @@ class Mechanism:
     """Field on the sensor, mean amplitude 1, from the magnet's angle to the sensor's axes in radians."""
     disk: Callable[[Channels], Channels] | None = None
     """What a concentrator gathers of the field, whatever plates are below it."""
+    axes: Callable[[Channels, Motion], Channels] | None = None
+    """How the plates' axes lie in the field."""
     plates: Callable[[Channels], Channels] | None = None
     """What answers to the field along each channel's own axis."""
     electric: Callable[[Channels, Motion], Channels] | None = None
@@ -89,6 +91,8 @@ def sensed(device: Device, shaft_deg: Array, motion: Motion) -> Channels:
         bx, by = acts.disk((bx, by))
     beta = np.radians(own.phase_deg)
     by = by * np.cos(beta) + bx * np.sin(beta)
+    if acts.axes is not None:
+        bx, by = acts.axes((bx, by), motion)
     if acts.plates is not None:
         bx, by = acts.plates((bx, by))
     x = own.offset_x + own.amplitude_x * (bx + own.quadratic * bx**2)

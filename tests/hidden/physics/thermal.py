@@ -74,11 +74,11 @@ def turned_plate(rng: np.random.Generator, setting: Setting) -> Planned:
     """Stress of the package turns one plate's axis with temperature."""
     slope = float(rng.choice((-1, 1)) * rng.uniform(0.15, 0.4)) / _farthest(setting)
 
-    def electric(channels: Channels, motion: Motion) -> Channels:
+    def axes(field: Channels, motion: Motion) -> Channels:
         turned = np.radians(slope * motion.warmth)
-        return channels[0], channels[1] * np.cos(turned) + channels[0] * np.sin(turned)
+        return field[0], field[1] * np.cos(turned) + field[0] * np.sin(turned)
 
-    return Planned(Mechanism(electric=electric), 0.25, {"phase_drift": {"deg_per_K": slope}})
+    return Planned(Mechanism(axes=axes), 0.25, {"phase_drift": {"deg_per_K": slope}})
 
 
 def expanding_frame(rng: np.random.Generator, setting: Setting) -> Planned:

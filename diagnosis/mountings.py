@@ -22,7 +22,7 @@ from diagnosis.discovery.fitting.projection import projected
 from diagnosis.error_model.result import BaselineFit
 from twin.angles import Array, wrap, wrap_deg
 from twin.mechanics.zero import ZERO
-from twin.motion import LEAST_TURN_RAD
+from twin.motion import LEAST_SPAN_K, LEAST_TURN_RAD
 from twin.recordings import Setup
 from twin.sweep import Sweep
 
@@ -33,9 +33,8 @@ _SENSOR_ORDERS, _BENCH_ORDERS = (1, 2, 3, 4), (1, 2)
 _LOG_P = float(np.log(1e-6))
 """Chance of a turn that is none: it is told once for a set of recordings, and much follows from it."""
 _CLOSER = 1.2
-"""The turn has to leave an RMS that is smaller by this: one below it is no reason to take a statement for granted."""
-_ALIKE_C, _ALIKE_FIELD = 5.0, 1.02
-"""Recordings at other temperatures or gaps differ for reasons of their own."""
+"""The turn has to leave an RMS smaller by this, so that it is a third of the squares left without it (1 - 1 / 1.44).
+In long records a far smaller share is beyond chance, but may be of what neither describes, such as higher orders."""
 
 
 def with_references(
@@ -48,7 +47,7 @@ def with_references(
         setup, zero_deg, value = setups[place], float(zeros_deg[place]), stated[place]
         if value is None or stated[0] is None:
             far = bool(abs(np.radians(zero_deg)) > LEAST_TURN_RAD)
-            turned = far and _alike(setups, sweeps, place) and _turned(fits, sweeps, place)
+            turned = far and _alike(setups, fits, sweeps, place) and _turned(fits, sweeps, place)
             by = zero_deg if turned else 0.0
             setup = replace(setup, turn_told=turned)
         else:
@@ -69,13 +68,32 @@ def own_zeros_deg(fits: Sequence[BaselineFit]) -> Array:
     return np.asarray(wrap_deg(zeros - zeros[0]))
 
 
-def _alike(setups: Sequence[Setup], sweeps: Sequence[Sweep], place: int) -> bool:
-    """Whether a recording was made in the first one's conditions, so that the device read alike in both."""
-    ratio = setups[place].field / setups[0].field
-    if not 1.0 / _ALIKE_FIELD < ratio < _ALIKE_FIELD:
+def _alike(setups: Sequence[Setup], fits: Sequence[BaselineFit], sweeps: Sequence[Sweep], place: int) -> bool:
+    """Whether a recording was made in the first one's conditions, as far as these are known: the device read alike.
+
+    In another field its errors are larger or smaller by as large a share; that must not show beside the noise.
+    """
+    share = abs(setups[place].field / setups[0].field - 1.0)
+    error = _away(fits[0], sweeps[0])
+    if share * float(np.std(error)) > max(fits[0].rms_rad, fits[place].rms_rad) * np.sqrt(2.0 / error.size):
         return False
-    warm = [np.nan if one.temperature_c is None else np.median(one.temperature_c) for one in (sweeps[0], sweeps[place])]
-    return not bool(abs(warm[1] - warm[0]) > _ALIKE_C)
+    first_c, here_c = _temperature_c(sweeps[0]), _temperature_c(sweeps[place])
+    return first_c is None or here_c is None or abs(here_c - first_c) <= LEAST_SPAN_K
+
+
+def _temperature_c(sweep: Sweep) -> float | None:
+    """The temperature of a recording [C], the median of what was recorded of it; None where nothing was."""
+    if sweep.temperature_c is None or not np.isfinite(sweep.temperature_c).any():
+        return None
+    return float(np.nanmedian(sweep.temperature_c))
+
+
+def _away(fit: BaselineFit, sweep: Sweep) -> Array:
+    """Errors [rad] of the readings in use, about their mean."""
+    shaft = np.radians(sweep.reference_deg)[~fit.outliers]
+    read = np.radians(sweep.measured_deg)[~fit.outliers] * fit.senses.output
+    away = wrap(read - fit.senses.sensor * shaft)
+    return np.asarray(wrap(away - np.angle(np.mean(np.exp(1j * away)))))
 
 
 def _turned(fits: Sequence[BaselineFit], sweeps: Sequence[Sweep], place: int) -> bool:
@@ -85,8 +103,7 @@ def _turned(fits: Sequence[BaselineFit], sweeps: Sequence[Sweep], place: int) ->
         kept = ~fits[k].outliers
         shaft = np.radians(sweeps[k].reference_deg)[kept]
         read = np.radians(sweeps[k].measured_deg)[kept] * fits[k].senses.output
-        away = wrap(read - fits[k].senses.sensor * shaft)
-        error.append(wrap(away - np.angle(np.mean(np.exp(1j * away)))))
+        error.append(_away(fits[k], sweeps[k]))
         with_field.append(read)
         with_shaft.append(shaft)
         number.append(np.full(shaft.size, index))

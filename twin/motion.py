@@ -23,6 +23,8 @@ LEAST_TURN_RAD = 0.17
 
 RPM = TAU / 60.0
 """One revolution a minute [rad/s]."""
+LEAST_SPAN_K = 5.0
+"""Span of temperatures, or difference between two recordings, from which on drifts may show."""
 NOMINAL_C = 25.0
 """Temperature [C] at which figures are stated, from which drifts count, and of readings that record none."""
 
@@ -251,7 +253,7 @@ class Motion:
             found.add("one turn")
         if np.ptp(self.shaft_rad) > 1.8 * TAU:
             found.add("several turns")
-        if np.ptp(self.temperature_c) > 5.0:
+        if np.ptp(self.temperature_c) > LEAST_SPAN_K:
             found.add("two temperatures")
         if self.turn.max(initial=0) > 0:
             found.add("two turns")
@@ -267,7 +269,7 @@ class Motion:
         shown = {
             "both directions": np.ptp(self.direction) > 0.0,
             "two speeds": fast - slow > 0.2 * fast,
-            "two temperatures": np.ptp(self.temperature_c) > 5.0,
+            "two temperatures": np.ptp(self.temperature_c) > LEAST_SPAN_K,
             "two air gaps": max(setup.field for setup in setups) > LEAST_FIELD_RATIO * min(one.field for one in setups),
             "two mountings": float(np.max(np.abs(np.exp(1j * (turned - turned[0])) - 1.0))) > LEAST_TURN_RAD,
         }

@@ -47,6 +47,11 @@ class Setup:
     distance: float = 1.0
     amplitude_held: bool = False
 
+    @property
+    def turn_contradicted(self) -> bool:
+        """Whether a turn of the sensor was stated that does not agree with the zero."""
+        return bool(self.turn_stated_deg) and self.reference_deg != 0.0
+
 
 @dataclass(frozen=True, eq=False)
 class Recordings:

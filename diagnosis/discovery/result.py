@@ -121,16 +121,23 @@ class Discovery:
         return settled(device_of(self.fit.chain))
 
     @property
+    def _turn_contradicted(self) -> bool:
+        recordings = self.sweep.recordings
+        return recordings is not None and any(setup.turn_contradicted for setup in recordings.setups)
+
+    @property
     def verdict(self) -> str:
         """adequate, explained, partly explained or unnamed; stopped where the search was before it found anything.
 
-        Explained is only what leaves no structure, is no misfit, and was searched to the end.
+        Explained is only what leaves no structure, is no misfit, was searched to the end, and is parted by no turn of
+        the sensor that the readings contradict.
         """
         named = bool(self.changed) or self.fitted_anew or any(cause.name != "unnamed" for cause in self.causes)
         without_name = any(cause.name == "unnamed" for cause in self.causes)
         open_still = without_name or bool(self.misfits)
         if named:
-            return "partly explained" if open_still or self.cut_short is not None else "explained"
+            left = open_still or self.cut_short is not None or self._turn_contradicted
+            return "partly explained" if left else "explained"
         if self.cut_short is not None and not without_name:
             return "stopped"
         return "unnamed" if open_still else "adequate"

@@ -216,5 +216,6 @@ def _recordings(answer: Mapping[str, Any]) -> RenderableType | None:
 
 def _invisible(answer: Mapping[str, Any]) -> RenderableType | None:
     said = statements.invisible_words(answer)
-    words = filter(None, (said and f"Not visible in this sweep: {said}", in_factors_words(answer)))
+    where = statements.recordings_shown(answer)
+    words = filter(None, (said and f"Not visible in {where}: {said}", in_factors_words(answer)))
     return Text(". ".join(words), "dim") if said else None

@@ -41,7 +41,7 @@ def residual_figure(found: Discovery) -> Figure:
     rows = _rows(found, kept)
     drawn = np.any([mask for _, mask in rows], axis=0)
     with drawing() as new_figure:
-        figure = new_figure(figsize=(10.0, 3.2 if len(rows) == 1 else 0.8 + 2.2 * len(rows)), layout="constrained")
+        figure = new_figure(figsize=(10.0, 3.4 if len(rows) == 1 else 0.8 + 2.4 * len(rows)), layout="constrained")
         axes = figure.subplots(len(rows), len(columns), sharex=True, sharey="col", squeeze=False)
         for row, (name, mask) in zip(axes, rows, strict=True):
             for axis, (title, values) in zip(row, columns, strict=True):
@@ -74,6 +74,6 @@ def _panel(axis: Any, angle: Array, way: Array, values: Array, title: str) -> No
         if np.any(way == sense):
             drawn = {"ms": 2.4, "mew": 0.6, "color": colour, "alpha": 0.7}
             axis.plot(angle[way == sense], values[way == sense], mark, label=label, **drawn)
-    axis.set_title(f"{title}: {np.sqrt(np.mean(values**2)):.3g} deg RMS", fontsize=9)
+    axis.set_title(f"{title}:\n{np.sqrt(np.mean(values**2)):.3g} deg RMS", fontsize=9)
     axis.set_xticks(range(0, 361, 90))
     axis.grid(alpha=0.3)

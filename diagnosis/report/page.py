@@ -247,9 +247,10 @@ def _recordings(answer: Mapping[str, Any]) -> str:
 def _invisible(answer: Mapping[str, Any]) -> str:
     if not answer["not_visible"]:
         return ""
-    words = "<p>These causes were not searched for, because this sweep could not have shown them."
+    where = statements.recordings_shown(answer)
+    words = f"<p>These causes were not searched for, because {where} could not have shown them."
     words = f"{words} {statements.sentence(_text(in_factors_words(answer)))}</p>"
-    return f"<h2>Not visible in this sweep</h2>{words}{tables.invisible(answer['not_visible'])}"
+    return f"<h2>Not visible in {where}</h2>{words}{tables.invisible(answer['not_visible'], where)}"
 
 
 def _provenance(answer: Mapping[str, Any]) -> str:

@@ -121,8 +121,9 @@ def turn_words(one: Mapping[str, Any], first: str) -> str:
     if one["turn_told"]:
         return (
             f"the zero of {name} has moved by {_degrees(one['turned_deg'])} deg, and its errors are those of one "
-            "device only if the sensor was turned by that: taken as turned, which nobody has stated; --mounting states "
-            "it, or with 0 for each that it was not"
+            "device only if sensor and reference were turned against each other by that. Which of the two was turned "
+            "they do not tell: the sensor is taken as turned, which nobody has stated; --mounting states it, or with 0 "
+            "for each that it was not"
         )
     if not on_deg:
         return ""

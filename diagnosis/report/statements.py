@@ -381,6 +381,11 @@ def invisible_words(answer: Mapping[str, Any]) -> str:
     return "; ".join(f"{', '.join(names)} ({missing})" for names, missing, _ in groups)
 
 
+def recordings_shown(answer: Mapping[str, Any]) -> str:
+    """What was measured, as causes are not visible in it."""
+    return "these recordings" if answer.get("recordings") else "this sweep"
+
+
 def not_visible(missing: Mapping[str, Iterable[str]]) -> list[tuple[list[str], str, str]]:
     """Causes that a sweep cannot show, grouped: (names, what is missing, what to do); the largest group first."""
     groups: dict[str, tuple[list[str], str]] = {}

@@ -143,13 +143,13 @@ def structure(lines: Sequence[str]) -> str:
     return f"<ol>{items}</ol>"
 
 
-def invisible(missing: Mapping[str, Iterable[str]]) -> str:
-    """What this sweep could not have shown, and what would."""
+def invisible(missing: Mapping[str, Iterable[str]], where: str) -> str:
+    """What this sweep, or these recordings, could not have shown, and what would."""
     rows = [
         [", ".join(f'<span class="name">{escape(name)}</span>' for name in names), escape(lacks), escape(todo)]
         for names, lacks, todo in not_visible(missing)
     ]
-    return table(["cause", "this sweep has", "to see it"], rows)
+    return table(["cause", f"{where}: what there is", "to see it"], rows)
 
 
 def chain(values: Iterable[str], new: Mapping[str, int], effects: tuple[Effect, ...]) -> str:

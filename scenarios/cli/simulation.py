@@ -47,6 +47,13 @@ def simulate(
             help="Air gap in mm, in place of the twin's: what is constant in volts is then another share of the field.",
         ),
     ] = None,
+    mounting: Annotated[
+        float | None,
+        typer.Option(
+            metavar="deg",
+            help="Turn of the sensor about the shaft in deg: its errors turn with it, the reference's do not.",
+        ),
+    ] = None,
     trace: Annotated[Path | None, written("Write every intermediate signal with its unit as CSV.")] = None,
     plot: Annotated[Path | None, written("Draw the trace: .png, .svg or .pdf.")] = None,
     force: Force = False,
@@ -74,7 +81,7 @@ def simulate(
         max_bytes=bytes_of(max_size),
         protocol=protocol,
         seed=seed,
-        instead=Instead(reference_lines=reference_lines, air_gap_mm=air_gap),
+        instead=Instead(reference_lines=reference_lines, air_gap_mm=air_gap, mounting_deg=mounting),
         effect_files=effects or (),
     )
 

@@ -53,6 +53,8 @@ def over_temperature_figure(judged: Sequence[Judged], laws: OverTemperature) -> 
     marks = ((False, "o", "-", "readings held out"), (True, "D", "", "temperature held out"))
     for alone, mark, line, what in marks:
         shown = [one for one in judged if one.part and one.alone == alone]
+        if not shown:
+            continue
         at = [float(np.mean(one.tested.temperature_c)) for one in shown]
         for place, colour, when in ((0, _BEFORE, "before"), (1, _AFTER, "after")):
             rms = [one.found.rms_deg[place] for one in shown]

@@ -17,11 +17,13 @@ from twin.air_gap import at_air_gap
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.chain import Chain
 from twin.extensions import effects_with
+from twin.motion import Motion
 from twin.presets import read_twin_or_preset
 from twin.reference.encoder import Encoder
 from twin.shown_name import shown_name
 from twin.sweep import Sweep
 from twin.sweep_file import csv_text
+from twin.turned_sensor import with_sensor_turned
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,10 +41,12 @@ class Outputs:
 
 @dataclass(frozen=True, kw_only=True)
 class Instead:
-    """What is other than the twin says: lines of the reference encoder, and the air gap [mm]; None: as there."""
+    """What is other than the twin says: lines of the reference encoder, air gap [mm], the sensor's turn about the shaft
+    [deg]; None: as there."""
 
     reference_lines: int | None = None
     air_gap_mm: float | None = None
+    mounting_deg: float | None = None
 
     def of(self, chain: Chain) -> Chain:
         """The twin as it is then: the same device at that gap."""
@@ -52,11 +56,15 @@ class Instead:
             chain = replace(chain, encoder=replace(chain.encoder or Encoder(), lines=self.reference_lines))
         return chain
 
+    def turned(self, chain: Chain, motion: Motion) -> tuple[Chain, Motion]:
+        """The twin and its motion with the sensor turned, where that was asked for."""
+        return (chain, motion) if self.mounting_deg is None else with_sensor_turned(chain, motion, self.mounting_deg)
+
     def stated(self, sweep: Sweep) -> Sweep:
-        """The sweep with the air gap in a column of its own, where one was asked for."""
-        if self.air_gap_mm is None:
-            return sweep
-        return replace(sweep, air_gap_mm=np.full(len(sweep), self.air_gap_mm))
+        """The sweep with air gap and mounting in columns of their own, where they were asked for."""
+        asked = {"air_gap_mm": self.air_gap_mm, "mounting_deg": self.mounting_deg}
+        told: dict[str, Any] = {name: np.full(len(sweep), value) for name, value in asked.items() if value is not None}
+        return replace(sweep, **told) if told else sweep
 
 
 _AS_IT_IS = Instead()
@@ -82,6 +90,7 @@ def run(
     chain = instead.of(read_twin_or_preset(twin, effects=effects_with(effect_files)))
     # A recorded motion holds the reference's readings: the shaft is where its errors are undone.
     motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded, max_bytes=max_bytes).motion())
+    chain, motion = instead.turned(chain, motion)
     sweep = instead.stated(chain.simulate(motion, seed=seed))
     contents: dict[Path | None, Any] = {outputs.sweep: lambda: csv_text(sweep.columns)}
     if outputs.trace is not None or outputs.plot is not None:

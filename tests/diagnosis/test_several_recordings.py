@@ -15,6 +15,7 @@ from diagnosis.explanation import Explanation
 from diagnosis.factors.mounting import Mounting
 from diagnosis.joining import joined
 from diagnosis.report.explain_plot import residual_figure
+from diagnosis.report.plotting import drawing
 from tests.command_line import halltwin
 from twin.air_gap import at_air_gap
 from twin.angles import Array
@@ -113,7 +114,11 @@ def test_a_turned_sensor_parts_the_reference_from_the_sensor() -> None:
     assert setup["turn_told"]
     assert setup["turn_stated_deg"] is None
     assert abs(setup["turned_deg"]) == pytest.approx(90.0, abs=1.0)
-    assert "taken as turned, which nobody has stated" in " ".join(untold.summary().split())
+    said = " ".join(untold.summary().split())
+    assert "the sensor is taken as turned, which nobody has stated" in said
+    # An encoder that is turned on the shaft makes the same two recordings.
+    assert "only if sensor and reference were turned against each other by that. Which of the two was turned" in said
+    assert "Not visible in these recordings: " in said
 
 
 def test_a_zero_that_has_moved_is_the_references_where_nothing_tells_otherwise() -> None:
@@ -131,9 +136,37 @@ def test_a_stated_turn_that_the_zero_contradicts_is_said() -> None:
     found = explain([first, recorded(DEVICE, "turned.csv", zero_deg=-25.0, mounting_deg=90.0)])
     said = " ".join(found.summary().split())
     assert "The turn stated of turned.csv does not agree with the zero found there." in said
+    # Nothing was found, and nothing that the turn would have parted.
+    assert found.verdict == "adequate"
     assert re.search(r"turn of 90 deg that is stated of turned.csv does not agree with its zero, by 45.0 deg", said)
     # The table shows it as it was stated, and not as the sensor's axes count.
     assert re.search(r"turned.csv 360 90 ", said)
+
+
+def test_what_a_contradicted_turn_has_parted_is_partly_explained() -> None:
+    device = DEVICE.with_effect("hysteresis", lag_deg=0.1, memory_deg=8.0)
+    first = recorded(device, "first.csv", zero_deg=20.0, mounting_deg=0.0)
+    found = explain([first, recorded(device, "turned.csv", zero_deg=-25.0, mounting_deg=90.0)])
+    assert [cause.name for cause in found.causes] == ["hysteresis"]
+    assert found.verdict == "partly explained"
+
+
+@pytest.mark.parametrize(
+    ("temperature_c", "alike"), [((25.0, 60.0), False), ((25.0, 27.0), True), ((25.0, None), True)]
+)
+def test_a_turn_is_told_of_recordings_that_are_alike_as_far_as_is_known(
+    temperature_c: tuple[float | None, ...], alike: bool
+) -> None:
+    """An encoder's errors of 0.3 deg beside a sensor that was turned; a reading without a temperature says nothing."""
+    device = DEVICE.with_effect("reference_eccentricity", amplitude_deg=0.3, phase_deg=40.0)
+    sweeps = []
+    for name, zero_deg, warm_c in zip(("a", "b"), (20.0, -70.0), temperature_c, strict=True):
+        sweep = recorded(device, name, zero_deg=zero_deg)
+        column = None if warm_c is None else np.where(np.arange(len(sweep)) == 7, np.nan, warm_c)
+        sweeps.append(replace(sweep, temperature_c=column))
+    start = joined(sweeps, CATALOGUE, mounting=None, given=None, rng=np.random.default_rng(1))
+    assert start.sweep.recordings is not None
+    assert start.sweep.recordings.setups[1].turn_told is alike
 
 
 def test_recordings_of_two_devices_are_told() -> None:
@@ -225,6 +258,8 @@ def test_the_report_shows_them_side_by_side(tmp_path: Path) -> None:
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert "The recordings side by side" in page
     assert "loud.csv" in page.split("The recordings side by side")[1]
+    assert "Not visible in these recordings" in page
+    assert "this sweep could not" not in page
 
 
 def test_the_picture_has_a_row_for_each() -> None:
@@ -234,6 +269,17 @@ def test_the_picture_has_a_row_for_each() -> None:
     left = [float(re.search(r"([\d.]+) deg RMS", axis.get_title())[1]) for axis in figure.axes[2::3]]  # type: ignore[index]
     # Each by itself, as the table has them.
     assert left == pytest.approx([0.02, 0.06], rel=0.1)
+
+
+def test_no_title_of_the_picture_is_cut_at_its_edge() -> None:
+    figure = residual_figure(lagging().discovery)
+    with drawing():
+        figure.canvas.draw()
+        for axis in figure.axes:
+            place = axis.title.get_window_extent()
+            assert figure.bbox.x0 <= place.x0 < place.x1 <= figure.bbox.x1
+            # Room for five digits more.
+            assert place.width < 0.8 * figure.bbox.width / 3.0
 
 
 def test_zeros_of_turns_are_their_recordings() -> None:

@@ -82,13 +82,13 @@ STAGES: tuple[Mutation, ...] = (
         "tests/diagnosis",
         (
             "mountings.a_turn_is_known_from_statements_alone",
-            "turned = far and _alike(setups, sweeps, place) and _turned(fits, sweeps, place)",
+            "turned = far and _alike(setups, fits, sweeps, place) and _turned(fits, sweeps, place)",
             "turned = False",
             "test_several_recordings.py::test_a_turned_sensor_parts_the_reference_from_the_sensor",
         ),
         (
             "mountings.a_zero_that_has_moved_is_always_a_turn",
-            "turned = far and _alike(setups, sweeps, place) and _turned(fits, sweeps, place)",
+            "turned = far and _alike(setups, fits, sweeps, place) and _turned(fits, sweeps, place)",
             "turned = far",
             "test_several_recordings.py::test_a_zero_that_has_moved_is_the_references_where_nothing_tells_otherwise",
         ),

@@ -71,6 +71,16 @@ def test_several_sweeps_and_one_at_a_temperature_between(folder: Path) -> None:
     assert halltwin("compensate", f"{folder}/one_*.csv", "--check", folder / "between.csv").out == ended.out
 
 
+def test_what_is_not_drawn_is_not_in_the_legend(folder: Path, tmp_path: Path) -> None:
+    """Of two temperatures neither can be made without the other."""
+    pytest.importorskip("matplotlib")
+    two = sorted(folder.glob("one_*.csv"))[:2]
+    assert halltwin("compensate", *two, "--plot", tmp_path / "two.svg").code == 0
+    picture = (tmp_path / "two.svg").read_text(encoding="utf-8")
+    assert "after, readings held out" in picture
+    assert "temperature held out" not in picture
+
+
 def test_a_correction_that_is_worse_at_one_temperature_is_not_hidden_in_the_mean(tmp_path: Path) -> None:
     """Made of a sensor without drift, tried on one whose gain runs away with the heat."""
     # At 85 C the drift undoes the mismatch: there the sensor is best without any correction.

@@ -80,3 +80,7 @@ def test_has_an_entry_of_its_own_in_the_trace() -> None:
     traced = Chain().with_effect("hysteresis", lag_deg=0.1, on_axes=0.5).trace(motion)
     assert {"hysteresis", "hysteresis in channels"} <= set(traced)
     assert "hysteresis in channels" not in Chain().with_effect("hysteresis", lag_deg=0.1).trace(motion)
+
+
+def test_no_reading_lags_by_nothing() -> None:
+    assert axis_lag(np.zeros(0), np.array([[0.1]]), np.array([[0.2]])).shape == (1, 0)

@@ -54,6 +54,8 @@ def axis_lag(value: Array, lag: Array, memory: Array) -> Array:
     # A row at rest goes on as the one before it, the first ones as the first that moves.
     way = np.sign(step[np.where(last >= 0, last, np.argmax(moving >= 0))]) if step.size else np.zeros(0)
     way = np.concatenate([way[:1], way]) if way.size else np.zeros(value.size)
+    if not value.size:
+        return np.zeros((*np.broadcast_shapes(lag.shape, memory.shape)[:-1], 0))
     cuts = [0, *(np.flatnonzero(np.diff(way)) + 1).tolist(), value.size]
     out = np.empty((*np.broadcast_shapes(lag.shape, memory.shape)[:-1], value.size))
     state, before = way[:1] * lag, -way[:1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import signal
 import threading
@@ -21,6 +22,12 @@ from tests.diagnosis.discovery.sweeps import ONCE, Made, before, start_of, sweep
 from twin.errors import UserError
 
 TWO = Made(causes=(("saturation", 0.08), ("hysteresis", 0.08)), points=96, back=True)
+
+
+@functools.cache
+def unwatched() -> Explanation:
+    """The answer that nobody listens to."""
+    return explain(sweep_of(TWO))
 
 
 def when(condition: Callable[[Progress], bool], act: Callable[[], None]) -> tuple[Listener, list[Progress]]:
@@ -65,7 +72,7 @@ def test_every_stage_is_told_in_order_with_the_causes_held() -> None:
 
 
 def test_nobody_who_listens_changes_the_answer() -> None:
-    assert explain(sweep_of(TWO), progress=lambda progress: None).to_dict() == explain(sweep_of(TWO)).to_dict()
+    assert explain(sweep_of(TWO), progress=lambda progress: None).to_dict() == unwatched().to_dict()
 
 
 def test_nothing_is_printed_by_default(capsys: pytest.CaptureFixture[str]) -> None:
@@ -81,8 +88,7 @@ def stopped_with_one() -> Iterator[tuple[str, Explanation, list[Progress]]]:
 
 
 def test_what_a_stopped_search_holds_is_finished_and_proven() -> None:
-    whole = explain(sweep_of(TWO))
-    assert len(whole.causes) == 2
+    assert len(unwatched().causes) == 2
     for way, found, heard in stopped_with_one():
         assert found.discovery.cut_short == "stepwise", way
         (cause,) = found.causes

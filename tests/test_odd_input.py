@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -119,7 +120,19 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("case", SAME_SWEEP)
-def test_format_does_not_matter(case: str, tmp_path: Path, plain: dict[str, Any]) -> None:
+def test_format_does_not_matter(case: str, tmp_path: Path) -> None:
+    """What is read is the same sweep, bit for bit; all else follows from it."""
+    read = []
+    for folder, content in (("plain", PLAIN.encode()), ("odd", SAME_SWEEP[case])):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "sweep.csv").write_bytes(content)
+        read.append(Sweep.read(tmp_path / folder / "sweep.csv"))
+    plain, odd = ({one.name: getattr(sweep, one.name) for one in fields(Sweep)} for sweep in read)
+    np.testing.assert_equal(odd, plain)
+
+
+@pytest.mark.parametrize("case", ["gzip", "unknown columns twice", "empty columns"])
+def test_nor_does_it_for_the_answer(case: str, tmp_path: Path, plain: dict[str, Any]) -> None:
     assert ask(tmp_path, SAME_SWEEP[case]) == plain
 
 

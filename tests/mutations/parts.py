@@ -178,7 +178,7 @@ PARTS: tuple[Mutation, ...] = (
         _T,
         (
             "rivals.not_held_against_the_cause",
-            "return trial if rival_gain > gain - same else None",
+            "return trial if rival_gain > gain - _same(fit, trial) else None",
             "return trial",
             "search/test_rivals.py::test_as_good_is_within_three_sigma_and_beside_coarse_stairs_within_six",
         ),
@@ -343,6 +343,16 @@ PARTS: tuple[Mutation, ...] = (
             "seen[0] * float(factor)",
             "seen[0]",
             "test_power.py::test_a_second_air_gap_parts_a_coercive_field_from_a_play",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/discovery/search/rivals.py",
+        "tests/diagnosis/discovery/further",
+        (
+            "rivals.shapes_that_follow_the_noise_part_them",
+            "    return float(chdtri(1 + more, chdtrc(1, usual))) if more else usual",
+            "    return usual",
+            "test_second_recording.py::test_shapes_that_follow_the_noise_do_not_part_what_one_sweep_cannot",
         ),
     ),
 )

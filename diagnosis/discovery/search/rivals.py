@@ -11,7 +11,7 @@ from diagnosis.discovery.search.forward_step import may_come_again, one_more
 from diagnosis.discovery.search.likelihood_ratio import TO_THE_END, add, likelihood
 from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import screen_one
-from twin.catalogue import base_name, unnamed
+from twin.catalogue import base_name, find, unnamed
 from twin.effect import Effect
 
 
@@ -88,4 +88,23 @@ def _in_its_place(fit: Fit, removal: Removal, other: Effect) -> Fit | None:
     if other.roles("per turn"):
         # A step between two turns is a special case of a zero for each turn: what fits counts, not its price.
         rival_gain = max(rival_gain, rival.gain)
-    return trial if rival_gain > gain - same else None
+    return trial if rival_gain > gain - _same(fit, trial) else None
+
+
+def _same(fit: Fit, rival: Fit) -> float:
+    """By how much twice the log likelihood of two fits may differ that cannot be told apart.
+
+    Each shape that a prior alone holds, and the rival has not, may follow the noise: with all of them the difference is
+    as improbable by chance as the usual one is with a single parameter.
+    """
+    from scipy.special import chdtrc, chdtri
+
+    usual = fit.settings.same_fit(coarse=fit.weighting.coarse)
+    more = max(_held_shapes(fit) - _held_shapes(rival), 0)
+    return float(chdtri(1 + more, chdtrc(1, usual))) if more else usual
+
+
+def _held_shapes(fit: Fit) -> int:
+    """How many of the free shapes have a prior."""
+    params = (find(free.key, fit.chain.effects).params[free.name] for free in fit.free)
+    return sum(param.role == "shape" and param.prior_sd > 0.0 for param in params)

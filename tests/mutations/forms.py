@@ -76,6 +76,13 @@ FORMS: tuple[Mutation, ...] = tuple(
             f"{_FORMS}::test_a_drive_has_one_order_and_its_multiples",
         ),
         (
+            "forms.no_channel_is_cut_off_by_a_third",
+            "twin/adc/clipping.py",
+            "*np.arange(40.0, 84.0, 2.0), ",
+            "",
+            f"{_FORMS}::test_channels_that_are_cut_off_by_a_third_are_clipped[0.67]",
+        ),
+        (
             "forms.no_search_sets_an_s",
             "diagnosis/discovery/search/forward_step.py",
             "for form in (effect, *effect.sought_alone)",

@@ -140,15 +140,15 @@ STAGES: tuple[Mutation, ...] = (
         _T,
         (
             "repeated_frames.not_masked",
-            "after.with_(without_rows(after.fit, after.touched))",
+            "after.with_(without_rows(solve(anew.fit), after.touched))",
             "after",
             "stages/test_repeated_frames.py::test_every_repeated_frame_is_named_and_masked",
         ),
         (
             "repeated_frames.named_again",
-            " and not state.has(effect)",
-            "",
-            "stages/test_repeated_frames.py::test_every_repeated_frame_is_named_and_masked",
+            "anew = given_back(state, effect)",
+            "anew = state",
+            "stages/test_repeated_frames.py::test_readings_that_the_fit_has_come_to_tell_are_given_back",
         ),
         (
             "repeated_frames.earlier_claims_forgotten",

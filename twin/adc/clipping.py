@@ -19,7 +19,8 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     # Near the amplitude half a percent halves or doubles what is cut off: a coarser grid would step over it.
-    return [{"level_percent": float(level)} for level in np.linspace(84.0, 116.0, 65)]
+    levels = (*np.arange(40.0, 84.0, 2.0), *np.linspace(84.0, 116.0, 65))
+    return [{"level_percent": float(level)} for level in levels]
 
 
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:

@@ -56,6 +56,13 @@ def without_rows(fit: Fit, raw: BoolArray) -> Fit:
     return solve(evaluate(fit.chain, fit.free, fit.observations.masked(fit.observations.usable & ~rows), fit.weighting))
 
 
+def with_rows(fit: Fit, raw: BoolArray) -> Fit:
+    """The fit as it stands, with the marked raw rows (n_raw,) in use again where they are sure."""
+    observations = fit.observations
+    usable = observations.usable | (rows_of(observations, raw) & observations.sure)
+    return evaluate(fit.chain, fit.free, observations.masked(usable), fit.weighting)
+
+
 def scaled(fit: Fit, variance: Array) -> Fit:
     """The fit with its rows weighed by a variance (n,)."""
     observations = replace(fit.observations, scale=row_scale(fit.observations, variance) * fit.observations.level)

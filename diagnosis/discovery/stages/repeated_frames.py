@@ -2,23 +2,44 @@
 
 from __future__ import annotations
 
-from diagnosis.discovery.marks.row_masks import without_rows
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import solve
+from diagnosis.discovery.marks.row_masks import with_rows, without_rows
 from diagnosis.discovery.marks.sequence import touched_rows
 from diagnosis.discovery.state import State
+from twin.catalogue import base_name
 from twin.effect import Effect
 
 
 def repeated_frames(state: State) -> State:
     """Find the readings whose marks can be told before the search (``Marks.early``), name the cause, and mask them.
 
-    Asked again after the search: structure may hide them at first.
+    Asked again after the search: structure may hide them at first; and a cause may do by itself what had passed for
+    them, such as a clipped angle that stands still. The fit has not seen these readings: where it says what they read,
+    they are given back.
     """
     for effect in state.effects:
-        if effect.marks is not None and effect.marks.early and not state.has(effect):
-            after = claimed(state, effect)
-            if after is not state:
-                state = after.with_(without_rows(after.fit, after.touched))
+        if effect.marks is not None and effect.marks.early:
+            anew = given_back(state, effect)
+            after = claimed(anew, effect)
+            if not np.array_equal(after.touched, state.touched):
+                state = after.with_(without_rows(solve(anew.fit), after.touched))
     return state
+
+
+def given_back(state: State, effect: Effect) -> State:
+    """The state in which the effect has claimed no reading; the same where it had none."""
+    if not state.has(effect):
+        return state
+    own = np.zeros(state.touched.size, dtype=bool)
+    others = []
+    for finding in state.findings:
+        if base_name(finding.keys[0]) == effect.name:
+            own[list(finding.rows)] = True
+        else:
+            others.append(finding)
+    return state.with_(with_rows(state.fit, own), touched=state.touched & ~own, findings=tuple(others))
 
 
 def claimed(state: State, effect: Effect) -> State:

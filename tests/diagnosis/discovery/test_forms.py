@@ -80,6 +80,17 @@ def test_a_curve_that_runs_ahead_is_an_s_of_the_converter(raw: bool) -> None:
         assert cause["parameters"]["s_lsb"]["low"] < -95.5 < cause["parameters"]["s_lsb"]["high"]
 
 
+@pytest.mark.parametrize("level", [0.5, 0.67, 0.75, 0.8])
+def test_channels_that_are_cut_off_by_a_third_are_clipped(level: float) -> None:
+    """So deep that below the root of a half both are cut off at once between the axes, and the angle stands still."""
+    shaft = turns(100, 2)
+    signal = np.clip(channels(shaft), -level, level)
+    found = named(sweep(shaft, signal, 11))
+    assert list(found) == ["clipping"]
+    told = found["clipping"]["level_percent"]
+    assert told["low"] <= 100.0 * level <= told["high"]
+
+
 def follower(shaft_rad: Array, radius: float) -> Array:
     """A vector that is dragged by the unit vector at these angles on a leash of this length, as complex (n,)."""
     path = np.concatenate([np.linspace(a, b, 30) for a, b in itertools.pairwise(shaft_rad)])

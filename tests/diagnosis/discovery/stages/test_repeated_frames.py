@@ -114,6 +114,19 @@ def test_a_claim_is_believed_by_its_probability(case: Case) -> None:
     assert tuple(np.flatnonzero(after.touched)) == (case.rows if case.named else ())
 
 
+def test_readings_that_the_fit_has_come_to_tell_are_given_back() -> None:
+    """A claim that bears no marks any more against what was found since; its rows are in the fit again."""
+    claim = claiming(STALE, (40, 90), -50.0, early=True)
+    state = with_effects(before(repeated_frames, CLEAN), claim)
+    state = state.with_(touched=np.isin(np.arange(len(state.sweep)), (7,)))
+    after = repeated_frames(state)
+    assert tuple(np.flatnonzero(after.touched)) == (7, 40, 90)
+    back = repeated_frames(with_effects(after, claiming(STALE, (), 0.0, early=True)))
+    assert back.findings == ()
+    assert tuple(np.flatnonzero(back.touched)) == (7,)
+    assert back.fit.observations.usable[[40, 90]].all()
+
+
 def test_rows_of_an_earlier_claim_stay_touched() -> None:
     state: State = with_effects(before(repeated_frames, CLEAN), claiming(STALE, (40,), -50.0, early=True))
     state = state.with_(touched=np.isin(np.arange(len(state.sweep)), (7, 8)))

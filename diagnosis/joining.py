@@ -24,11 +24,15 @@ from twin.chain import Chain
 from twin.each_recording import MARK, over_recordings
 from twin.effect import BoolArray, Effect
 from twin.errors import SweepError
+from twin.hall.offset import OFFSET
 from twin.magnet.magnet import Magnet
 from twin.mechanics.zero import ZERO
 from twin.recordings import Recordings, Setup
 from twin.sweep import Sweep
 from twin.sweep_columns import OF_SETUP
+
+_BEYOND_NOISE = 4.0
+"""Standard errors: two numbers are that far apart by chance in exp(-8), one of three thousand."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +81,7 @@ def joined(
     gaps = list(stated) if stated is not None else _stated(sweeps, "air_gap_mm")
     turned = list(mounting.turned_deg) if mounting is not None and mounting.turned_deg else []
     stated_deg = turned or _stated(sweeps, "mounting_deg")
-    setups = with_references(_at_gaps(sweeps, gaps, magnet), stated_deg, fits, sweeps)
+    setups = with_references(_at_gaps(sweeps, fits, gaps, magnet), stated_deg, fits, sweeps)
     chain = fits[0].chain() if given is None else _in_first(given, setups[0])
     zeros_deg = _own_zeros(fits, setups)
     own = {f"{ZERO.name}{MARK}{k + 1}": {"zero_deg": float(zeros_deg[k])} for k in range(1, len(sweeps))}
@@ -130,10 +134,13 @@ def _stated(sweeps: Sequence[Sweep], column: str) -> list[float | None]:
     return found
 
 
-def _at_gaps(sweeps: Sequence[Sweep], gaps: Sequence[float | None], magnet: Magnet) -> list[Setup]:
+def _at_gaps(
+    sweeps: Sequence[Sweep], fits: Sequence[BaselineFit], gaps: Sequence[float | None], magnet: Magnet
+) -> list[Setup]:
     """How each recording was set up: its air gap, and the field there as the channels or the magnet tell it."""
     if any(gap is None for gap in gaps):
-        return [Setup(name=sweep.name) for sweep in sweeps]
+        ratios = [None, *(_offset_ratio(fits[0], fit) for fit in fits[1:])]
+        return [Setup(name=sweep.name, offset_ratio=ratio) for sweep, ratio in zip(sweeps, ratios, strict=True)]
     known = np.array(gaps, dtype=np.float64)
     field = Mounting(magnet=magnet, air_gap_mm=tuple(known)).field_mT(known)
     held = False
@@ -153,6 +160,22 @@ def _at_gaps(sweeps: Sequence[Sweep], gaps: Sequence[float | None], magnet: Magn
         )
         for sweep, gap, strength, far in zip(sweeps, known, field, distance, strict=True)
     ]
+
+
+def _offset_ratio(first: BaselineFit, here: BaselineFit) -> float | None:
+    """The offset over the first recording's, where they point the same way and differ beyond the noise; else None."""
+    old, new = (_offset(fit) for fit in (first, here))
+    # In amplitudes, each known by the noise of the angle over the root of half the readings.
+    old_sd, new_sd = (fit.rms_rad * np.sqrt(2.0 / np.count_nonzero(~fit.outliers)) for fit in (first, here))
+    ratio = float((old.conjugate() * new).real / max(abs(old) ** 2, 1e-300))
+    apart, aside = abs(new - old) / np.hypot(old_sd, new_sd), abs(new - ratio * old) / np.hypot(ratio * old_sd, new_sd)
+    return ratio if ratio > 0.0 and apart > _BEYOND_NOISE > aside else None
+
+
+def _offset(fit: BaselineFit) -> complex:
+    """The offset of the channels as a number of the plane, in amplitudes."""
+    values = {**OFFSET.null(), **fit.chain().values.get(OFFSET.name, {})}
+    return 0.01 * complex(values["x_percent"], values["y_percent"])
 
 
 def _own_zeros(fits: Sequence[BaselineFit], setups: Sequence[Setup]) -> Array:

@@ -35,6 +35,9 @@ class Setup:
         The magnet's field at the sensor, and the distance from its centre, against those of the first recording.
     amplitude_held : bool
         Whether vx and vy are of one size at all gaps, so that the magnet alone tells the field.
+    offset_ratio : float or None
+        Where no gap is stated: the offset over that of the first recording, if it points the same way and is larger or
+        smaller beyond the noise, as in another field; else None.
     """
 
     name: str = ""
@@ -46,6 +49,7 @@ class Setup:
     field: float = 1.0
     distance: float = 1.0
     amplitude_held: bool = False
+    offset_ratio: float | None = None
 
     @property
     def turn_contradicted(self) -> bool:

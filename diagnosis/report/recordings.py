@@ -62,6 +62,7 @@ def _recording(found: Discovery, number: int) -> dict[str, Any]:
         "air_gap_mm": setup.air_gap_mm,
         "field_ratio": setup.field,
         "amplitude_held": setup.amplitude_held,
+        "offset_ratio": setup.offset_ratio,
         "turned_deg": setup.turned_deg,
         "turn_stated_deg": setup.turn_stated_deg,
         "turn_told": setup.turn_told,
@@ -111,8 +112,18 @@ def recordings_notes(answer: Mapping[str, Any]) -> list[str]:
         said.append(f"not used, as only some of the recordings have it: {', '.join(answer['columns_left_out'])}")
     if any(one["amplitude_held"] for one in several):
         said.append(f"{HELD_WORDS}: the fields at the stated gaps are the magnet's")
+    said += [_gap_words(one, several[0]["name"]) for one in several if one["offset_ratio"] is not None]
     said += [words for one in several[1:] if (words := turn_words(one, several[0]["name"]))]
     return said + [_not_shared(one) for one in several if one.get("differ")]
+
+
+def _gap_words(one: Mapping[str, Any], first: str) -> str:
+    """That its offset has changed as another air gap changes it, which nobody has stated."""
+    return (
+        f"the offset of {one['name']} is {plain(one['offset_ratio'])} times that of {first}, as in another field: if "
+        "its air gap was another one, state the gaps (--air-gap), or what follows the field may pass for causes in one "
+        "of them"
+    )
 
 
 def turn_words(one: Mapping[str, Any], first: str) -> str:

@@ -151,6 +151,24 @@ def test_what_a_contradicted_turn_has_parted_is_partly_explained() -> None:
     assert found.verdict == "partly explained"
 
 
+@pytest.mark.parametrize("gap_mm", [3.0, 1.5])
+def test_another_gap_that_nobody_has_stated_is_asked_for(gap_mm: float) -> None:
+    """An offset in volts is the larger a share of the weaker field; beside it nothing has changed."""
+    near = DEVICE.with_magnet(Assembly(placement=Placement(air_gap_mm=1.5)))
+    sweeps = [recorded(near, "near.csv", zero_deg=20.0), recorded(at_air_gap(near, gap_mm), "far.csv", zero_deg=20.0)]
+    start = joined(sweeps, CATALOGUE, mounting=None, given=None, rng=np.random.default_rng(1))
+    assert start.sweep.recordings is not None
+    ratio = start.sweep.recordings.setups[1].offset_ratio
+    if gap_mm == 1.5:
+        assert ratio is None
+        return
+    far = at_air_gap(near, gap_mm)
+    # An offset of 0.94 % is known to 0.0026 %: 0.02 deg over the root of 180.
+    sd = 3.0 * np.radians(0.02) * np.sqrt(2.0 / 360.0) / 0.0094
+    expected = far.values["offset"]["x_percent"] / near.values["offset"]["x_percent"]
+    assert ratio == pytest.approx(expected, rel=3.0 * sd)
+
+
 @pytest.mark.parametrize(
     ("temperature_c", "alike"), [((25.0, 60.0), False), ((25.0, 27.0), True), ((25.0, None), True)]
 )

@@ -125,6 +125,20 @@ FORMS: tuple[Mutation, ...] = tuple(
             "tests/twin/test_lag_of_axes.py::test_is_what_plays_of_all_radii_up_to_one_do",
         ),
         (
+            "forms.a_shape_before_a_cause_in_detail",
+            "diagnosis/discovery/search/forward_step.py",
+            "    trials += _in_the_place_of_a_shape(fit, ranked, near, threshold)\n",
+            "",
+            f"{_FORMS}::test_an_offset_that_bends_with_temperature_is_one_drift",
+        ),
+        (
+            "forms.the_sensor_is_as_warm_as_the_oven",
+            "twin/hall/body_temperature.py",
+            "motion.temperature_c - NOMINAL_C + _behind(motion, np.asarray(lag_s, dtype=np.float64))",
+            "motion.temperature_c - NOMINAL_C",
+            f"{_FORMS}::test_an_offset_behind_the_oven_is_one_drift",
+        ),
+        (
             "forms.no_detail_is_freed",
             "diagnosis/discovery/search/exchange.py",
             "detailed(retuned(fit, held), held, plan.threshold, plan.effects)",

@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.noise.plausible import either
+from diagnosis.discovery.search.freed import in_detail
 from diagnosis.discovery.search.likelihood_ratio import (
     Trial,
     degrees,
@@ -20,7 +21,7 @@ from diagnosis.discovery.search.likelihood_ratio import (
     take_out,
 )
 from diagnosis.discovery.search.screening import Base, Candidate, screen, screen_one
-from twin.catalogue import base_name, find, of_one_source
+from twin.catalogue import base_name, find, of_one_source, unnamed
 from twin.effect import Effect
 
 _HIGHEST_SHARE = 0.9
@@ -103,6 +104,7 @@ def best_addition(
     reach = max(settings.contender_nats, -settings.contender_share * top)
     near = [c for c in ranked if c.log_p + handicap(c.effect, base.fit) < top + reach][: settings.most_contenders]
     trials = [Trial.of(fit, c) for c in near]
+    trials += _in_the_place_of_a_shape(fit, ranked, near, threshold)
     # All are judged by the same noises: those that any of them leaves.
     members = either(*(t.members for t in trials))
     judged = [(t.log_p(fit, members, base.dof) + handicap(t.candidate.effect, fit), k) for k, t in enumerate(trials)]
@@ -120,6 +122,21 @@ def best_addition(
         degrees(chosen.effect, chosen.terms),
         float(np.log(chosen.looks)) + handicap(chosen.effect, fit),
     )
+
+
+def _in_the_place_of_a_shape(
+    fit: Fit, ranked: Sequence[Candidate], near: Sequence[Candidate], threshold: float
+) -> list[Trial]:
+    """Where a shape without a name is among the nearest: the named candidates with those of their details that pay.
+
+    A cause whose details are at their nulls may leave so much that a shape, which has none, comes first.
+    """
+    gains = [one.gain for one in near if unnamed(one.effect.name)]
+    if not gains:
+        return []
+    least = fit.settings.rival_share * max(gains)
+    named = (one for one in ranked if one.effect.details and not unnamed(one.effect.name) and one.gain > least)
+    return [one for candidate in named if (one := in_detail(Trial.of(fit, candidate), threshold)) is not None]
 
 
 def best_together(

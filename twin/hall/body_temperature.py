@@ -1,0 +1,35 @@
+"""The temperature of the sensor's own body, by which its plates and amplifiers go."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from twin.angles import Array
+from twin.motion import NOMINAL_C, Motion
+
+
+def warmth(motion: Motion, lag_s: Array, bend_per_K: Array) -> Array:
+    """By how much a quantity has moved that moves by 1 with the first kelvin above 25 C, (..., n).
+
+    The body follows the recorded temperature by a first-order lag, and the quantity bends with the body's temperature:
+    ``w (1 + bend w)``, w [K] above 25 C. Both broadcast against (..., n); without time the body is never behind.
+    """
+    warm = motion.temperature_c - NOMINAL_C + _behind(motion, np.asarray(lag_s, dtype=np.float64))
+    return np.asarray(warm * (1.0 + np.asarray(bend_per_K) * warm))
+
+
+def _behind(motion: Motion, lag_s: Array) -> Array:
+    """Temperature of the body less the recorded one (..., n) [K]: it has settled at the first reading.
+
+    What is recorded at a reading is taken to hold since the one before.
+    """
+    out = np.zeros((*lag_s.shape[:-1], len(motion)))
+    changes = np.flatnonzero(np.diff(motion.temperature_c)) + 1
+    if not np.any(lag_s) or "time_s" not in motion.provides:
+        return out
+    rate = 1.0 / np.maximum(lag_s, 1e-9)
+    for first, end in zip(changes, [*changes[1:], len(motion)], strict=True):
+        step = motion.temperature_c[first] - motion.temperature_c[first - 1]
+        passed = np.maximum(motion.time_s[first:end] - motion.time_s[first - 1], 0.0)
+        out[..., first:end] = (out[..., first - 1 : first] - step) * np.exp(-passed * rate)
+    return out

@@ -30,7 +30,7 @@ def with_detail(fit: Fit, detail: Free, level: float) -> Fit | None:
 
 
 def in_detail(trial: Trial, level: float) -> Trial | None:
-    """A trial with the details of its cause free that pay, as :func:`with_detail` says; None where none of them does."""
+    """A trial with those details of its cause free that pay, see :func:`with_detail`; None where none does."""
     fit, count = trial.fit, 0
     for name in trial.candidate.effect.details:
         wide = with_detail(fit, Free(trial.key, name), level)

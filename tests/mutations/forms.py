@@ -129,7 +129,7 @@ FORMS: tuple[Mutation, ...] = tuple(
             "diagnosis/discovery/search/forward_step.py",
             "    trials += _in_the_place_of_a_shape(fit, ranked, near, threshold)\n",
             "",
-            f"{_FORMS}::test_an_offset_that_bends_with_temperature_is_one_drift",
+            f"{_FORMS}::test_an_offset_behind_the_oven_is_one_drift",
         ),
         (
             "forms.the_sensor_is_as_warm_as_the_oven",

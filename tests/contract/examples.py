@@ -355,6 +355,11 @@ EXAMPLES: dict[str, Example] = {
         shapes={**_PHASE, "order": 2.0, "power": 1.0, "at_rpm": 600.0},
         signature=lambda m, p: line(m, p, p["order"], weight=m.speed_rad_s / (20.0 * np.pi)),
     ),
+    "unnamed_speed_zero": Example(
+        strengths={"amplitude_deg": 0.1},
+        shapes={"power": 2.0, "at_rpm": 600.0},
+        signature=lambda m, p: _rad(p["amplitude_deg"]) * m.speed_rad_s * np.abs(m.speed_rad_s) / (20.0 * np.pi) ** 2,
+    ),
     "unnamed_tone": Example(strengths=_LINE, shapes={**_PHASE, "frequency_Hz": 3.0}, signature=_tone),
     "unnamed_drift": Example(
         strengths={"mode1_deg": 0.2, "mode2_deg": -0.1, "mode3_deg": 0.05, "mode4_deg": 0.05},

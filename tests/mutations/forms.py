@@ -118,6 +118,13 @@ FORMS: tuple[Mutation, ...] = tuple(
             f"{_FORMS}::test_an_offset_that_creeps_after_switching_on_is_seen",
         ),
         (
+            "forms.a_twist_leaves_the_errors_where_they_are",
+            "twin/empirical/orders.py",
+            'acts_on="shaft"',
+            'acts_on="angle"',
+            f"{_FORMS}::test_a_shaft_that_drag_twists_is_one_thing",
+        ),
+        (
             "forms.an_axis_returns_like_an_exponential",
             "twin/concentrator/hysteresis.py",
             "np.maximum(1.0 - path / (REACH * memory), 0.0) ** 2",
@@ -137,6 +144,13 @@ FORMS: tuple[Mutation, ...] = tuple(
             "motion.temperature_c - NOMINAL_C + _behind(motion, np.asarray(lag_s, dtype=np.float64))",
             "motion.temperature_c - NOMINAL_C",
             f"{_FORMS}::test_an_offset_behind_the_oven_is_one_drift",
+        ),
+        (
+            "forms.a_detail_alone_is_nothing",
+            "diagnosis/discovery/fitting/intervals.py",
+            ', *effect.roles("level"), *effect.details)',
+            ', *effect.roles("level"))',
+            "tests/diagnosis/discovery/stages/test_listed.py::test_a_detail_may_be_all_that_there_is_of_a_cause",
         ),
         (
             "forms.no_detail_is_freed",

@@ -1,6 +1,6 @@
 """Structure without a name: shapes that the extended twin carries where no cause of the catalogue explains it.
 
-They act on the computed angle and are declared like any other effect, so they are simulated, fitted and searched for
+They act on the computed angle, where nothing says otherwise, and are declared like any other effect, so they are simulated, fitted and searched for
 by the same code. Their names begin with ``unnamed``.
 """
 
@@ -10,6 +10,7 @@ from twin.empirical.orders import (
     UNNAMED_DIRECTION_ORDER,
     UNNAMED_ORDER,
     UNNAMED_SPEED,
+    UNNAMED_SPEED_ZERO,
     UNNAMED_TEMPERATURE,
     UNNAMED_TEMPERATURE_ORDER,
 )
@@ -23,6 +24,7 @@ EFFECTS = (
     UNNAMED_TEMPERATURE,
     UNNAMED_TEMPERATURE_ORDER,
     UNNAMED_SPEED,
+    UNNAMED_SPEED_ZERO,
     UNNAMED_TONE,
     UNNAMED_DRIFT,
     UNNAMED_CREEP,

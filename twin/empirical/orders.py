@@ -98,7 +98,7 @@ def _speed_shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     # Orders 0 and 2 times the signed speed are latency and xy_skew.
     fast = {"at_rpm": _fastest(motion)}
     plain = _low_orders((1, 3, 4), [{"power": 1.0, **fast}])(motion)
-    bent = _low_orders((0, 1, 2, 3, 4), [{"power": power, **fast} for power in (-1.0, 2.0, -2.0)])(motion)
+    bent = _low_orders((1, 2, 3, 4), [{"power": power, **fast} for power in (-1.0, 2.0, -2.0)])(motion)
     return [*plain, *bent]
 
 
@@ -245,4 +245,35 @@ UNNAMED_SPEED = Effect(
     words=_SPEED_WORDS,
     source="Fourier component times a power of the speed",
     signature="a low order that scales with speed; its amplitude is the one at the highest speed",
+)
+
+
+def _moved_by_speed(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    return signal + radians(values["amplitude_deg"]) * _speed(motion, values)
+
+
+def _powers(motion: Motion) -> Sequence[Mapping[str, float]]:
+    # As the signed speed goes a latency.
+    return [{"power": power, "at_rpm": _fastest(motion)} for power in (-1.0, 2.0, -2.0)]
+
+
+UNNAMED_SPEED_ZERO = Effect(
+    name="unnamed_speed_zero",
+    stage="empirical",
+    # Where the zero moves with the speed it is the shaft that twists: the other errors move along.
+    acts_on="shaft",
+    params={
+        "amplitude_deg": Param(
+            unit="deg", null=0.0, lower=-90.0, upper=90.0, doc="turn of the zero at the stated speed", owner="bench"
+        ),
+        **{name: UNNAMED_SPEED.params[name] for name in ("at_rpm", "power")},
+    },
+    forward=_moved_by_speed,
+    shapes=_powers,
+    needs=frozenset({"moving shaft", "two speeds"}),
+    repeatable=True,
+    kind="speed",
+    words="the zero moves with the speed, {amplitude_deg} deg at the highest one",
+    source="power of the speed",
+    signature="order 0 that scales with speed; its size is the one at the highest speed",
 )

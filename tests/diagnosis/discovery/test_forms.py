@@ -141,6 +141,22 @@ def test_plays_on_each_axis_are_one_hysteresis() -> None:
     assert found["hysteresis"]["on_axes"]["value"] == pytest.approx(1.0, abs=0.15)
 
 
+def test_a_shaft_that_drag_twists_is_one_thing() -> None:
+    """It stays behind with the square of the speed, and all errors of the sensor with it."""
+    turn, columns = turns(120, 1), []
+    for rpm, way in itertools.product((100.0, 600.0, 1800.0), (1.0, -1.0)):
+        twist = np.radians(0.3) * way * (rpm / 1800.0) ** 2
+        x, y = channels(turn[:: int(way)] - twist) + np.array([[0.02], [0.01]])
+        columns.append(np.stack([turn[:: int(way)], x, y, np.full(turn.size, way * rpm)]))
+    shaft, x, y, rpm = np.concatenate(columns, axis=1)
+    answer = explain(sweep(shaft, np.stack([x, y]), 3, speed_rpm=rpm, direction=np.sign(rpm))).to_dict()
+    assert [cause["name"] for cause in answer["causes"]] == ["unnamed"]
+    (structure,) = answer["unexplained"]["structure"]
+    assert (structure["kind"], structure["power"]) == ("speed", 2.0)
+    # 240 readings of 0.02 deg tell it to 0.0013 deg
+    assert structure["amplitude_deg"] == pytest.approx(-0.3, abs=0.005)
+
+
 def test_a_tracking_loop_is_one_latency() -> None:
     """A loop of type 2 adds no delay, but raises each order with the speed; behind it the word is 20 us old."""
     natural_rad_s, damping, delay_s = 2000.0, 0.8, 20e-6

@@ -59,6 +59,17 @@ def test_a_phase_that_says_the_same_leaves_no_doubt_of_an_amplitude() -> None:
     assert not may_be_null(fit, key)
 
 
+def test_a_detail_may_be_all_that_there_is_of_a_cause() -> None:
+    """A pipeline's first stage is off, and no bit of the converter's: bow and bits may be nothing, the cause not."""
+    fit, key = before(answer, MADE).fit, "adc_inl"
+    chain = fit.chain.with_effect(key, bow_lsb=1e-6, first_stage_lsb=40.0)
+    strengths = tuple(Free(key, name) for name in ("bow_lsb", "bit1_lsb", "bit2_lsb"))
+    held = evaluate(chain, (*fit.free, *strengths), fit.observations, fit.weighting)
+    assert may_be_null(held, key)
+    freed = evaluate(chain, (*held.free, Free(key, "first_stage_lsb")), fit.observations, fit.weighting)
+    assert not may_be_null(freed, key)
+
+
 def test_a_cause_without_held_out_gain_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     state = before(listed, MADE)
     monkeypatch.setattr("diagnosis.discovery.stages.listed.may_be_null", lambda fit, key: False)

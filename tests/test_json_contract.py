@@ -41,6 +41,7 @@ KINDS = {
     "direction",
     "speed",
     "local",
+    "flanks",
     "code",
     "noise",
 }

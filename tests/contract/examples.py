@@ -177,6 +177,11 @@ def _modes(motion: Motion, p: Params) -> Array:
     return np.asarray(sum(_rad(p[f"mode{k}_deg"]) * np.cos(np.pi * k * share) for k in range(1, 5)))
 
 
+def _over_flanks(motion: Motion, p: Params) -> Array:
+    lever = np.sin(motion.shaft_rad - _rad(p["centre_deg"])) / np.sin(_rad(p["width_deg"]))
+    return _rad(p["height_deg"]) * (1.0 - 2.0 / (np.exp(2.0 * lever) + 1.0))
+
+
 def _bump(motion: Motion, p: Params) -> Array:
     away = (np.degrees(motion.shaft_rad) - p["centre_deg"] + 180.0) % 360.0 - 180.0
     return np.asarray(_rad(p["height_deg"]) * np.exp(-0.5 * (away / p["width_deg"]) ** 2))
@@ -373,6 +378,9 @@ EXAMPLES: dict[str, Example] = {
     ),
     "unnamed_bump": Example(
         strengths={"height_deg": 0.3}, shapes={"centre_deg": 77.0, "width_deg": 12.0}, signature=_bump
+    ),
+    "unnamed_flanks": Example(
+        strengths={"height_deg": 0.1}, shapes={"centre_deg": 77.0, "width_deg": 12.0}, signature=_over_flanks
     ),
     "unnamed_burst": Example(
         strengths={"rms_deg": 0.3}, shapes={"first_row": 40.0, "last_row": 90.0}, signature=None, memory=True

@@ -125,6 +125,13 @@ FORMS: tuple[Mutation, ...] = tuple(
             f"{_FORMS}::test_a_shaft_that_drag_twists_is_one_thing",
         ),
         (
+            "forms.no_flanks",
+            "twin/empirical/__init__.py",
+            "    UNNAMED_FLANKS,\n    UNNAMED_BURST",
+            "    UNNAMED_BURST",
+            f"{_FORMS}::test_a_play_under_weight_is_one_thing",
+        ),
+        (
             "forms.an_axis_returns_like_an_exponential",
             "twin/concentrator/hysteresis.py",
             "np.maximum(1.0 - path / (REACH * memory), 0.0) ** 2",

@@ -4,7 +4,7 @@ They act on the computed angle, where nothing says otherwise, and are declared l
 by the same code. Their names begin with ``unnamed``.
 """
 
-from twin.empirical.local import UNNAMED_BUMP
+from twin.empirical.local import UNNAMED_BUMP, UNNAMED_FLANKS
 from twin.empirical.orders import (
     UNNAMED_DIRECTION,
     UNNAMED_DIRECTION_ORDER,
@@ -29,5 +29,6 @@ EFFECTS = (
     UNNAMED_DRIFT,
     UNNAMED_CREEP,
     UNNAMED_BUMP,
+    UNNAMED_FLANKS,
     UNNAMED_BURST,
 )

@@ -1,4 +1,4 @@
-"""Unnamed structure at one place of the turn."""
+"""Unnamed structure at one place of the turn, or at two opposite ones."""
 
 from __future__ import annotations
 
@@ -46,4 +46,60 @@ UNNAMED_BUMP = Effect(
     words="a bump at {centre_deg:4} deg of the shaft, {height_deg} deg high, sigma {width_deg} deg",
     source="Gaussian bump",
     signature="an error at one place of the turn",
+)
+
+
+def _flanks(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    lever = np.sin(motion.shaft_rad - radians(values["centre_deg"]))
+    return signal + radians(values["height_deg"]) * np.tanh(lever / np.sin(radians(values["width_deg"])))
+
+
+def _flank_shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    finest = 360.0 / max(motion.points_per_turn, 8.0)
+    return [
+        {"width_deg": width, "centre_deg": float(centre)}
+        for width in (2.0, 5.0, 12.0)
+        if width >= finest
+        for centre in np.arange(0.0, 360.0, max(width, 4.0))
+    ]
+
+
+UNNAMED_FLANKS = Effect(
+    name="unnamed_flanks",
+    stage="empirical",
+    # What it turns is what the magnet sits on: the other errors move along.
+    acts_on="shaft",
+    params={
+        "height_deg": Param(unit="deg", null=0.0, lower=0.0, upper=90.0, doc="half of the way over", owner="bench"),
+        "centre_deg": Param(
+            unit="deg",
+            null=0.0,
+            lower=-360.0,
+            upper=720.0,
+            doc="place where it goes over to the higher flank",
+            role="shape",
+            typical=5.0,
+            owner="bench",
+        ),
+        "width_deg": Param(
+            unit="deg",
+            null=5.0,
+            lower=0.2,
+            upper=40.0,
+            doc="over which it goes",
+            role="shape",
+            typical=5.0,
+            owner="bench",
+        ),
+    },
+    forward=_flanks,
+    shapes=_flank_shapes,
+    zoomed=("centre_deg", "width_deg"),
+    fitted_shapes=("centre_deg", "width_deg"),
+    needs=frozenset({"one turn"}),
+    kind="flanks",
+    words="a shaft that lies on one flank of a play for half a turn, then on the other: {height_deg} deg to either "
+    "side, over at {centre_deg:4} deg",
+    source="play of a coupling under the weight of an unbalanced rotor: h tanh(sin(a - centre) / sin(width))",
+    signature="odd orders that fall as 1/n, up to the softness of the flanks",
 )

@@ -274,6 +274,7 @@ UNNAMED_SPEED_ZERO = Effect(
     repeatable=True,
     kind="speed",
     words="the zero moves with the speed, {amplitude_deg} deg at the highest one",
+    figures=lambda values: {"order": 0.0},
     source="power of the speed",
     signature="order 0 that scales with speed; its size is the one at the highest speed",
 )

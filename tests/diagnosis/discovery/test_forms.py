@@ -264,6 +264,21 @@ def test_an_offset_that_bends_with_temperature_is_one_drift() -> None:
     assert found["offset_drift"]["bend_per_K"]["value"] == pytest.approx(0.003, rel=0.3)
 
 
+def test_a_play_under_weight_is_one_thing() -> None:
+    """Seen in the radius too, it is no misplaced magnet with harmonics: an error of the shaft, of all odd orders."""
+    shaft = turns(180, 2)
+    signal = channels(shaft + np.radians(0.15) * np.tanh(np.sin(shaft - 1.0) / np.radians(4.0)))
+    noisy = signal + np.radians(NOISE_DEG) * np.random.default_rng(4).standard_normal(signal.shape)
+    columns = {"reference_deg": np.degrees(shaft), "measured_deg": np.degrees(np.arctan2(noisy[1], noisy[0]))}
+    answer = explain({**columns, "vx": noisy[0], "vy": noisy[1]}).to_dict()
+    assert [cause["name"] for cause in answer["causes"]] == ["unnamed"]
+    (structure,) = answer["unexplained"]["structure"]
+    assert structure["kind"] == "flanks"
+    # 360 readings tell the height to 0.001 deg, and 12 on the way over where it is, to 0.2 of the width
+    assert structure["height_deg"] == pytest.approx(0.15, abs=0.005)
+    assert structure["centre_deg"] == pytest.approx(np.degrees(1.0), abs=2.0)
+
+
 def test_a_field_that_bends_beside_the_shaft_is_no_bump() -> None:
     """Orders that fall in proportion bend the angle at one place, more broadly than what is local."""
     shaft = turns(120, 4)

@@ -1,7 +1,7 @@
 """Structure without a name: shapes that the extended twin carries where no cause of the catalogue explains it.
 
-They act on the computed angle, where nothing says otherwise, and are declared like any other effect, so they are simulated, fitted and searched for
-by the same code. Their names begin with ``unnamed``.
+Where nothing says otherwise they act on the computed angle. They are declared like any other effect, so they are
+simulated, fitted and searched for by the same code. Their names begin with ``unnamed``.
 """
 
 from twin.empirical.local import UNNAMED_BUMP, UNNAMED_FLANKS

@@ -17,7 +17,8 @@ def stale_bursts(rng: np.random.Generator, setting: Setting) -> Planned:
 
     def words(sent: Words, bits: int, motion: Motion, one: np.random.Generator) -> Words:
         out = sent.copy()
-        for first in one.choice(np.arange(2, len(sent) - longest), bursts, replace=False):
+        # one after the other: what is sent again is the frame that was sent last
+        for first in np.sort(one.choice(np.arange(2, len(sent) - longest), bursts, replace=False)):
             out[first : first + int(one.integers(2, longest))] = out[first - 1]
         return out
 

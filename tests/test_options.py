@@ -28,6 +28,7 @@ BASE: dict[str, tuple[str, ...]] = {
     "paper": ("-o", "out/paper"),
     "compensate": ("short.csv", "--header", "out/c.h"),
     "compensate --temperature": ("paper-encoder", "--header", "out/c.h"),
+    "import": ("short.csv", "-o", "out/sweep.csv"),
     "monitor": tuple(f"s{k}.csv" for k in range(8)),
     "bench": ("--points", "8", "-o", "out/bench.csv"),
     "generate": ("-o", "out/study"),
@@ -39,6 +40,7 @@ WORDS = frozenset(
     {
         *("--check", "--prefix", "--twin", "--hide", "--interface", "--channel", "--bus-option", "--fault", "--cause"),
         *("--shape", "--grade", "--sampling", "--scheduler", "--fail-on"),
+        "--columns",
     }
 )
 """Options that take no number."""

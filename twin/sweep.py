@@ -12,7 +12,9 @@ import numpy as np
 from twin.angles import Array, IntArray, radians, wrap_deg
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
+from twin.following import FOLLOWS_DEG, distance_deg, follows, spread_deg
 from twin.log import LOG
+from twin.logs.read import advice, read_log
 from twin.motion import RPM, Motion
 from twin.recordings import Recordings
 from twin.shown_name import shown_name
@@ -23,10 +25,6 @@ from twin.sweep_reader import read_columns
 FEWEST_ROWS = 8
 _ONE_ANGLE_DEG = 0.1
 """Angles closer than this count as one: a jig's stop, read again."""
-_FOLLOWS_DEG = 40.0
-_FOLLOWS_SHARE = 0.6
-"""A sensor follows the shaft if their median difference is below this angle, and below this share of the shaft's own
-movement."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,15 +187,26 @@ class Sweep:
         )
 
     @classmethod
-    def read(cls, path: str | Path, *, max_bytes: int = LARGEST_SWEEP_BYTES, name: str | None = None) -> Self:
+    def read(
+        cls,
+        path: str | Path,
+        *,
+        max_bytes: int = LARGEST_SWEEP_BYTES,
+        name: str | None = None,
+        columns: str | None = None,
+    ) -> Self:
         """Read a sweep file and check it.
 
         Parameters
         ----------
         path : str or Path
-            CSV, plain or gzip, or Parquet where pyarrow is installed; its content says which.
+            CSV, plain or gzip, or Parquet where pyarrow is installed; its content says which. With ``columns`` a log
+            of any dialect, XLSX, MAT, NPZ, HDF5 or Parquet.
         max_bytes, name : int and str, optional
             Most bytes of the file after decompression; what messages call it, if not by the file's name.
+        columns : str, optional
+            Which columns of a log are those of a sweep, in which unit, such as
+            ``"reference_deg=enc_counts*360/40000, measured_deg=angle:rad"``; None: it has those of a sweep.
 
         Returns
         -------
@@ -209,9 +218,16 @@ class Sweep:
         SweepError
             Where the file cannot be read or used: which line and column, what was found, expected, and to do.
         """
-        found = cls.from_columns(read_columns(Path(path), max_bytes=max_bytes), name=name or shown_name(path))
-        columns = ", ".join(found.columns)
-        LOG.info("read %s: %d rows, %d rejected; %s", found.name, found.rows, len(found.rejected), columns)
+        called = name or shown_name(path)
+        if columns is not None:
+            found = cls.from_columns(read_log(Path(path), columns=columns, max_bytes=max_bytes).columns, name=called)
+        else:
+            try:
+                found = cls.from_columns(read_columns(Path(path), max_bytes=max_bytes), name=called)
+            except SweepError as error:
+                raise SweepError(f"{error}{advice(Path(path))}") from None
+        used = ", ".join(found.columns)
+        LOG.info("read %s: %d rows, %d rejected; %s", found.name, found.rows, len(found.rejected), used)
         return found
 
     def write(self, path: str | Path) -> None:
@@ -302,7 +318,7 @@ def _check_usable(data: Mapping[str, Array], *, name: str, rejected: int) -> Non
 def _check_follows(measured: Array, reference: Array, *, name: str) -> None:
     """Refuse columns (n,) [deg] that do not go round together, with the reason where it can be seen."""
     to_deg = 180.0 / np.pi
-    if _follows(measured, reference):
+    if follows(measured, reference):
         if _repeats_every_radian_turn(measured, reference):
             raise SweepError(
                 f"{name}: columns reference_deg and measured_deg: the error repeats every 6.283 over a span of "
@@ -314,20 +330,20 @@ def _check_follows(measured: Array, reference: Array, *, name: str) -> None:
         "column measured_deg": (to_deg, 1.0),
         "columns reference_deg and measured_deg": (to_deg, to_deg),
     }.items():
-        if _follows(scale_measured * measured, scale_reference * reference):
+        if follows(scale_measured * measured, scale_reference * reference):
             raise SweepError(
                 f"{name}: {wrong}: the two columns agree only if this is in radians (they span "
                 f"{np.ptp(reference):.4g} and {np.ptp(measured):.4g}); expected degrees: convert it"
             )
     for pole_pairs in range(2, 13):
-        if _follows(measured, pole_pairs * reference):
+        if follows(measured, pole_pairs * reference):
             raise SweepError(
                 f"{name}: measured_deg turns {pole_pairs} times as fast as reference_deg; expected both in degrees of "
                 "the same shaft: unwrap and divide the faster one"
             )
     raise SweepError(
-        f"{name}: measured_deg does not follow reference_deg (typically {_distance(measured, reference):.0f} deg off, "
-        f"in the better counting sense; expected below {_FOLLOWS_DEG:g}); "
+        f"{name}: measured_deg does not follow reference_deg (typically {distance_deg(measured, reference):.0f} deg "
+        f"off, in the better counting sense; expected below {FOLLOWS_DEG:g}); "
         "check that both columns belong to one sweep and are in degrees"
     )
 
@@ -345,32 +361,16 @@ def _check_channels(vx: Array, vy: Array, measured: Array, *, name: str) -> None
                 f"{name}: column {key}: every row is {values[0]:g} while the reference moves; "
                 "expected the channel's signal: mend it, or leave vx and vy out"
             )
-    if _follows(np.degrees(np.arctan2(vy, vx)), measured):
+    if follows(np.degrees(np.arctan2(vy, vx)), measured):
         return
     middle = [float(np.min(values) + np.max(values)) / 2.0 for values in (vx, vy)]
     hint = "check the columns, or leave vx and vy out"
-    if _follows(np.degrees(np.arctan2(vy - middle[1], vx - middle[0])), measured):
+    if follows(np.degrees(np.arctan2(vy - middle[1], vx - middle[0])), measured):
         hint = f"the channels stand at about {middle[0]:.4g} and {middle[1]:.4g} in mid-range: take that off both"
     raise SweepError(
         f"{name}: columns vx, vy: atan2(vy, vx) does not follow measured_deg; expected the two channels that the angle "
         f"is computed from, zero at zero field; {hint}"
     )
-
-
-def _distance(measured: Array, driver: Array) -> float:
-    """Typical (median) difference [deg] of two angles (n,) [deg] in the better counting sense, zeros taken off."""
-    return min(_spread(measured - sense * driver) for sense in (1.0, -1.0))
-
-
-def _spread(angle: Array) -> float:
-    """Median distance [deg] of angles (n,) [deg] from their mean direction."""
-    centre = np.degrees(np.angle(np.mean(np.exp(1j * radians(angle)))))
-    return float(np.median(np.abs(wrap_deg(angle - centre))))
-
-
-def _follows(measured: Array, driver: Array) -> bool:
-    """Whether one angle (n,) [deg] follows another. Over part of a turn a constant is near to any, hence the share."""
-    return _distance(measured, driver) <= min(_FOLLOWS_DEG, _FOLLOWS_SHARE * _spread(driver))
 
 
 def _repeats_every_radian_turn(measured: Array, reference: Array) -> bool:
@@ -380,7 +380,7 @@ def _repeats_every_radian_turn(measured: Array, reference: Array) -> bool:
     """
     if not 4.0 * np.pi <= np.ptp(reference) <= 340.0 or reference.size < 20:
         return False
-    sense = min((1.0, -1.0), key=lambda s: _spread(measured - s * reference))
+    sense = min((1.0, -1.0), key=lambda s: spread_deg(measured - s * reference))
     to_deg = 180.0 / np.pi
     in_radians = _left_by_two_orders(to_deg * (measured - sense * reference), to_deg * reference) / to_deg
     return 3.0 * in_radians < _left_by_two_orders(measured - sense * reference, reference)

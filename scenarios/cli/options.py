@@ -40,6 +40,16 @@ EffectFiles = Annotated[
     typer.Option("--effects", metavar="FILE.py", help="Python file with effects of your own; may be repeated."),
 ]
 
+Columns = Annotated[
+    str | None,
+    typer.Option(
+        "--columns",
+        metavar="TEXT",
+        help="Which columns of a log are those of a sweep, by name or place, factor and unit, as halltwin import "
+        "prints it: 'reference_deg=enc_counts*360/40000, measured_deg=angle:rad'.",
+    ),
+]
+
 # What is run: the motion of the shaft.
 Turns = Annotated[int, typer.Option(metavar="N", help="Turns in each direction.")]
 Points = Annotated[int, typer.Option(metavar="N", help="Readings a turn.")]

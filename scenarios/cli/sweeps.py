@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import EffectFiles, ErrorPlot, Force, Json, MaxSize, Seed, fail_on_option, written
+from scenarios.cli.options import Columns, EffectFiles, ErrorPlot, Force, Json, MaxSize, Seed, fail_on_option, written
 from scenarios.cli.reproduce import command_line
 
 MagnetText = Annotated[
@@ -57,6 +57,7 @@ def explain(
     plot: ErrorPlot = None,
     force: Force = False,
     effects: EffectFiles = None,
+    columns: Columns = None,
     max_size: MaxSize = "2GB",
     seed: Seed = 0,
     fail_on: Annotated[
@@ -71,7 +72,7 @@ def explain(
     from twin.bounded_input import bytes_of
 
     run(
-        SweepFiles(sweeps, bytes_of(max_size)),
+        SweepFiles(sweeps, bytes_of(max_size), columns),
         each=each,
         known=Known(twin=twin, magnet=magnet, air_gap=air_gap, turned=mounting),
         outputs=Outputs(json=json, report=report, extended=extended, plot=plot, force=force),
@@ -123,6 +124,7 @@ def diagnose(
         float | None, typer.Option(metavar="mm", help="Standard uncertainty of an air gap in mm. Without: 0.05.")
     ] = None,
     force: Force = False,
+    columns: Columns = None,
     max_size: MaxSize = "2GB",
     seed: Seed = 0,
     fail_on: Annotated[
@@ -136,7 +138,7 @@ def diagnose(
     from twin.bounded_input import bytes_of
 
     run(
-        SweepFiles(sweeps, bytes_of(max_size)),
+        SweepFiles(sweeps, bytes_of(max_size), columns),
         outputs=Outputs(json=json, plot=plot, convergence=convergence, force=force),
         seed=seed,
         band=band,
@@ -183,6 +185,7 @@ def compensate(
     prefix: Annotated[str, written("Prefix of the C names.", metavar="NAME")] = "halltwin",
     force: Force = False,
     effects: EffectFiles = None,
+    columns: Columns = None,
     max_size: MaxSize = "2GB",
     seed: Seed = 0,
     fail_on: Annotated[
@@ -201,7 +204,7 @@ def compensate(
     run(
         sources,
         outputs=outputs,
-        check=SweepFiles(check or (), bytes_of(max_size)),
+        check=SweepFiles(check or (), bytes_of(max_size), columns),
         temperature=temperature,
         tolerance_deg=tolerance,
         effect_files=effects or (),
@@ -228,6 +231,7 @@ def monitor(
         written("Draw the charts: .png, .svg or .pdf."),
     ] = None,
     force: Force = False,
+    columns: Columns = None,
     max_size: MaxSize = "2GB",
     seed: Seed = 0,
     fail_on: Annotated[list[str] | None, fail_on_option("drift, or the NAME of a factor that drifts")] = None,
@@ -238,7 +242,7 @@ def monitor(
     from twin.bounded_input import bytes_of
 
     run(
-        SweepFiles(sweeps, bytes_of(max_size)),
+        SweepFiles(sweeps, bytes_of(max_size), columns),
         run_length=run_length,
         json_path=json,
         plot=plot,

@@ -28,7 +28,6 @@ from twin.extensions import effects_with
 from twin.limits import require_within
 from twin.presets import is_twin, read_twin_or_preset
 from twin.shown_name import shown_name
-from twin.sweep import Sweep
 
 _FEWEST_POINTS = 4
 _MOST_POINTS = 65536
@@ -87,7 +86,7 @@ def run(
     checked_on, paths = check.paths(), [Path(sources[0])] if of_twin else _paths(sources)
     files = _files(outputs, inputs=[*paths, *checked_on, *effect_files])
     others = check.read(checked_on)
-    given = SweepsRead(()) if of_twin else _read(paths, check.max_bytes)
+    given = SweepsRead(()) if of_twin else _read(paths, check)
     check_panels(outputs.plot, len(others.sweeps) if checked_on or of_twin else 1)
     readings = None if of_twin else readings_of(given.sweeps, tolerance_deg=tolerance_deg, seed=seed)
     correction = _of_twin(twin, low_c, high_c, tolerance_deg) if readings is None else readings.correction
@@ -131,10 +130,9 @@ def _paths(sources: Sequence[str | Path]) -> list[Path]:
     return sweep_paths([str(source) for source in sources])
 
 
-def _read(paths: Sequence[Path], max_bytes: int) -> SweepsRead:
-    if len(paths) == 1:
-        return SweepsRead((Sweep.read(paths[0], max_bytes=max_bytes),))
-    return SweepFiles(max_bytes=max_bytes).read(paths)
+def _read(paths: Sequence[Path], how: SweepFiles) -> SweepsRead:
+    """The sweeps, read as those that the correction is checked on."""
+    return SweepsRead((how.read_one(paths[0]),)) if len(paths) == 1 else how.read(paths)
 
 
 def _rejected(others: SweepsRead) -> list[str]:

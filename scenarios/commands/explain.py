@@ -67,7 +67,7 @@ def run(
     held = None if known.twin is None else read_twin_or_preset(known.twin, effects=effects)
     given = {"twin": held, "mounting": known.mounting(), "effects": effect_files, "seed": seed}
     names = distinct_names(paths)
-    read = [Sweep.read(p, max_bytes=sweeps.max_bytes, name=name) for p, name in zip(paths, names, strict=True)]
+    read = [sweeps.read_one(p, name=name) for p, name in zip(paths, names, strict=True)]
     if one_by_one:
         _one_by_one(read, given, files=files, json=outputs.json, command=command, words=words)
         return

@@ -102,10 +102,14 @@ def the_same(sweeps: Sequence[Sweep]) -> list[list[str]]:
 
 @dataclass(frozen=True)
 class SweepFiles:
-    """Sweeps as they are named on the command line, and how many bytes each may hold after decompression."""
+    """Sweeps as they are named on the command line, and how each is read.
+
+    ``max_bytes``: how many bytes it may hold after decompression; ``columns``: what becomes of the columns of a log.
+    """
 
     names: Sequence[str] = ()
     max_bytes: int = LARGEST_SWEEP_BYTES
+    columns: str | None = None
 
     def paths(self) -> list[Path]:
         """See :func:`sweep_paths`."""
@@ -121,16 +125,22 @@ class SweepFiles:
 
     def read(self, paths: Sequence[Path]) -> SweepsRead:
         """See :func:`read_sweeps`."""
-        return read_sweeps(paths, max_bytes=self.max_bytes)
+        return read_sweeps(paths, max_bytes=self.max_bytes, columns=self.columns)
+
+    def read_one(self, path: Path, *, name: str | None = None) -> Sweep:
+        """One of the files, under the name that messages call it by. Raises SweepError."""
+        return Sweep.read(path, max_bytes=self.max_bytes, name=name, columns=self.columns)
 
 
-def read_sweeps(paths: Sequence[Path], *, max_bytes: int = LARGEST_SWEEP_BYTES) -> SweepsRead:
+def read_sweeps(
+    paths: Sequence[Path], *, max_bytes: int = LARGEST_SWEEP_BYTES, columns: str | None = None
+) -> SweepsRead:
     """Read these files; one that is no sweep is left out and listed. Raises SweepError where none can be used."""
     sweeps, unusable = [], []
     first: SweepError | None = None
     for path, name in zip(paths, distinct_names(paths), strict=True):
         try:
-            sweeps.append(Sweep.read(path, max_bytes=max_bytes, name=name))
+            sweeps.append(Sweep.read(path, max_bytes=max_bytes, name=name, columns=columns))
         except SweepError as error:
             first = first or error
             unusable.append(Unusable(name, str(error).removeprefix(f"{path}: ").removeprefix(f"{name}: ")))

@@ -1,0 +1,1 @@
+"""Logs as people have them, each of one known sweep."""

@@ -1,0 +1,200 @@
+"""Which columns of a log are those of a sweep, guessed from names, units and values, as the statement that says so."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NoReturn
+
+import numpy as np
+
+from twin.errors import SweepError
+from twin.logs.angles import AngleUnit, Pair, units_of_pair
+from twin.logs.channels import channels
+from twin.logs.names import Meaning, meaning_of
+from twin.logs.others import others
+from twin.logs.statement import Column, text_of
+from twin.logs.table import Table
+from twin.sweep_columns import COLUMNS
+
+_SHOWN = 2
+_MOST_ANGLES = 12
+"""Columns that are compared each with each other; of more a name must say that they are angles."""
+
+
+class OpenGuess(SweepError):
+    """No single guess is right as it stands; ``options`` are the statements of which one may be meant."""
+
+    def __init__(self, said: str, options: tuple[str, ...]) -> None:
+        super().__init__(said)
+        self.options = options
+
+
+@dataclass(frozen=True)
+class Guess:
+    """A statement for ``--columns``, what was taken for granted in it, and the columns that it leaves out, with why."""
+
+    columns: tuple[Column, ...]
+    notes: tuple[str, ...] = ()
+    unused: tuple[str, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """As ``--columns`` takes it."""
+        return text_of(self.columns)
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """Two columns as reference and sensor, the units that fit, and how much their names speak for it."""
+
+    reference: int
+    measured: int
+    units: Pair
+    weight: int
+
+    def columns(self, table: Table) -> tuple[Column, Column]:
+        sources = table.sources
+        return (
+            self.units[0].column("reference_deg", sources[self.reference]),
+            self.units[1].column("measured_deg", sources[self.measured]),
+        )
+
+
+def guessed(table: Table) -> Guess:
+    """The one statement that fits a table. Raises SweepError where none does, and where two do."""
+    said = tuple(meaning_of(name) for name in table.names)
+    usable = [k for k, values in enumerate(table.values) if k not in table.faults and np.isfinite(values).sum() >= 4]
+    angles = [k for k in usable if said[k].role in ("angle", "")]
+    if len(angles) > _MOST_ANGLES:
+        angles = [k for k in angles if said[k].role]
+    if len(angles) > _MOST_ANGLES:
+        raise SweepError(
+            f"{table.file}: {len(angles)} columns may be angles (found {table.listed()}); say which are meant: "
+            '--columns "reference_deg=NAME, measured_deg=NAME"'
+        )
+    pair = _pair(table, said, angles)
+    found = channels(table, said, usable, None if pair is None else pair[1].of(table))
+    if pair is None:
+        pair = _by_channels(table, said, angles, found.columns)
+    rest = others(table, said, usable, pair[0].of(table))
+    columns = sorted((*pair, *found.columns, *rest.columns), key=lambda one: COLUMNS.index(one.target))
+    used = {table.place(source) for one in columns for source in one.sources}
+    why = {**dict.fromkeys(range(len(said)), ""), **found.why, **rest.why}
+    unused = [_left(table, k, why[k]) for k in why if k not in used]
+    return Guess(tuple(columns), (*found.notes, *rest.notes), tuple(unused))
+
+
+def unused_by(columns: tuple[Column, ...], table: Table) -> tuple[str, ...]:
+    """The columns of a table that a statement leaves out."""
+    used = {table.place(source) for one in columns for source in one.sources}
+    return tuple(_left(table, k, "") for k in range(len(table.names)) if k not in used)
+
+
+def _left(table: Table, place: int, why: str) -> str:
+    fault = table.faults.get(place, "")
+    why = why or ("holds words" if " words " in fault else fault and "holds cells that are no numbers")
+    return f"{table.names[place] or f'#{place + 1}'}{f' ({why})' if why else ''}"
+
+
+def _pair(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[Column, Column] | None:
+    """The reference and the sensor; None where there are not two angles. Raises SweepError, see :func:`guessed`."""
+    fitting = list(_candidates(table, said, angles))
+    if not fitting:
+        _raise_contradiction(table, said, angles)
+        return _by_name_alone(table, said, angles)
+    if len(fitting) > 1:
+        _raise_open(table, "two guesses fit", [text_of(one.columns(table)) for one in fitting])
+    return fitting[0].columns(table)
+
+
+def _raise_open(table: Table, what: str, options: Sequence[str]) -> NoReturn:
+    more = f", and {len(options) - _SHOWN} more" if len(options) > _SHOWN else ""
+    which = "say which it is" if len(options) > 1 else "if so, say it"
+    raise OpenGuess(
+        f"{table.file}: {what} (found {table.listed()}); {which}: {in_words(options)}{more}", tuple(options[:_SHOWN])
+    )
+
+
+def in_words(options: Sequence[str]) -> str:
+    """The first two of some statements as options of a command."""
+    return " or ".join(f'--columns "{option}"' for option in options[:_SHOWN])
+
+
+def _candidates(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> Iterator[_Candidate]:
+    """Ordered pairs of columns that follow each other in some units: those for which the most speaks in the names."""
+    weighed = [(_weight(said[a], said[b]), a, b) for a, b in itertools.permutations(angles, 2)]
+    for weight in sorted({weight for weight, _, _ in weighed if weight >= 0}, reverse=True):
+        found = False
+        for _, reference, measured in (one for one in weighed if one[0] == weight):
+            a, b = table.values[reference], table.values[measured]
+            if np.array_equal(a, b, equal_nan=True):
+                continue
+            for units in units_of_pair(a, b, said=(said[reference], said[measured])):
+                found = True
+                yield _Candidate(reference, measured, units, weight)
+        if found:
+            return
+
+
+def _weight(reference: Meaning, measured: Meaning) -> int:
+    return reference.reference - reference.sensor + measured.sensor - measured.reference
+
+
+def _raise_contradiction(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> None:
+    """Raise SweepError where two columns follow each other in other units than their names say."""
+    free = tuple(Meaning(one.role, one.reference, one.sensor) for one in said)
+    fitting = list(_candidates(table, free, angles))
+    if not fitting:
+        return
+    named = (fitting[0].reference, fitting[0].measured)
+    stated = {k: one.name for k in named if (one := said[k].unit)} | {k: "counts" for k in named if said[k].counts}
+    wrong = [
+        f"{table.names[k]} is named in {stated[k]}, its values fit {unit}"
+        for k, unit in zip(named, fitting[0].units, strict=True)
+        if k in stated and stated[k] != (unit.name or "counts")
+    ]
+    what = "; ".join(wrong) or "no two columns follow each other in the units of their names"
+    _raise_open(table, what, [text_of(one.columns(table)) for one in fitting])
+
+
+def _by_name_alone(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[Column, Column] | None:
+    """The pair that names alone single out: what is wrong with its values is said where they are a sweep's."""
+    weighed = [(_weight(said[a], said[b]), a, b) for a, b in itertools.permutations(angles, 2)]
+    most = max((weight for weight, _, _ in weighed), default=0)
+    best = [(a, b) for weight, a, b in weighed if weight == most]
+    if most < 1 or len(best) > 1:
+        return None
+    units = [AngleUnit(one.name) if (one := said[k].unit) else AngleUnit("deg") for k in best[0]]
+    if any(said[k].counts for k in best[0]):
+        return None
+    return _Candidate(*best[0], (units[0], units[1]), most).columns(table)
+
+
+def _by_channels(
+    table: Table, said: tuple[Meaning, ...], angles: list[int], found: tuple[Column, ...]
+) -> tuple[Column, Column]:
+    """A reference, and the angle of the two channels as the sensor's. Raises SweepError."""
+    if len(found) == 2:
+        x, y = found[0].term, found[1].term
+        measured = Column("measured_deg", y, across=x)
+        values = measured.of(table)
+        own = Meaning("angle", unit=None, sensor=2)
+        fitting = [
+            (units[0].column("reference_deg", table.sources[k]), measured)
+            for k in angles
+            for units in units_of_pair(table.values[k], values, said=(said[k], own))
+            if units[1].name == "deg"
+        ]
+        if len(fitting) == 1:
+            return fitting[0]
+        if fitting:
+            _raise_open(table, "two guesses fit", [text_of(one) for one in fitting])
+    mistyped = [fault for fault in table.faults.values() if " words " not in fault]
+    if mistyped:
+        raise SweepError(f"{table.file}: {mistyped[0]}")
+    raise SweepError(
+        f"{table.file}: no two columns are angles that follow each other (found {table.listed()}); expected a "
+        'reference and a sensor: say which, e.g. --columns "reference_deg=NAME*360/4096, measured_deg=NAME:rad"'
+    )

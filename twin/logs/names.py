@@ -1,0 +1,138 @@
+"""What the name of a log's column says: which quantity it holds, in which unit, and on which side it may stand."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from twin.logs.units import COUNTS, UNITS, Unit, unit_of
+from twin.sweep_columns import COLUMNS
+
+_CHIP = re.compile(
+    r"as5\d{3}|tle5\d{3}|tli\d{4}|ma[3-7]\d\d|mt6\d{3}|mlx\d+|a133\d|aeat\d*|kmz\d*|tmag\d*|mag(?=_|\d|$)"
+)
+_WORDS = {
+    "reference": "ref reference true truth soll referenz nominal ideal expected heidenhain autocollimator",
+    "driven": "enc encoder stage stepper step steps motor cmd commanded command target setpoint mech mechanical shaft "
+    "actual table rotary position_ref dividing index_table",
+    "sensor": "meas measured measurement sensor dut hall magnetic magnet ist gemessen sensed tmr amr gmr",
+    "read": "angle output out position pos reading theta phi winkel value rotor",
+    "time": "t time timestamp ts zeit elapsed uptime millis micros clock",
+    "temperature": "temp temperature temperatur",
+    "speed": "rpm speed velocity vel omega drehzahl",
+    "turn": "turn turns rev revolution revolutions lap umdrehung sweep cycle",
+    "direction": "dir direction richtung sense",
+    "sin": "vy sin sine sinus",
+    "cos": "vx cos cosine cosinus",
+    "gap": "gap airgap",
+    "mounting": "mounting",
+    "other": "index idx sample samples n no nr row i id status flag flags error err diff deviation magnitude mag_field "
+    "agc current voltage torque crc frame counter load power valid ok note comment",
+}
+_MEANING = {word: role for role, words in _WORDS.items() for word in words.split()}
+_ROLE_QUANTITY = {"time": "time", "temperature": "temperature", "speed": "speed", "gap": "length"}
+_ANGLES = frozenset({"reference", "driven", "sensor", "read"})
+_PARTED = (
+    r"^(.*?)[\s_.]*[\[({<]\s*([^\])}>]+?)\s*[\])}>]\s*$",
+    r"^(.+?)\s*(?:\s/|/\s|,|\bin\b)\s*(\S+)$",
+    r"^(.+)/(\S+)$",
+)
+"""A unit in brackets, behind a slash, a comma or "in"."""
+_AXES = {"x": "cos", "y": "sin"}
+_SURE, _LIKELY = 2, 1
+_ORDER = ("other", "temperature", "speed", "gap", "time", "direction", "sin", "cos", "mounting")
+"""Roles that a name has before those of an angle: the speed of the encoder is a speed."""
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a name says. ``role``: a kind of column, "angle", or "" where it says nothing.
+
+    ``reference`` and ``sensor`` weigh how much speaks for either side of an angle. ``unit`` is the stated one,
+    ``counts`` whether it is a count of steps; ``own`` the column of a sweep whose name it is, large or small.
+    """
+
+    role: str
+    reference: int = 0
+    sensor: int = 0
+    unit: Unit | None = None
+    counts: bool = False
+    own: str | None = None
+
+
+def meaning_of(name: str) -> Meaning:
+    """What a column's name says."""
+    bare, unit, counts = _parted(name)
+    own = name.strip().lower()
+    if own in COLUMNS:
+        return _own(own)
+    words = _words(bare)
+    roles = {_MEANING[word] for word in words if word in _MEANING}
+    if words and words[-1] in _AXES and unit is None and "read" not in roles:
+        return Meaning(_AXES[words[-1]])
+    if _CHIP.search(bare.lower()):
+        roles.add("sensor")
+    quantity = unit.quantity if unit else None
+    for role in _ORDER:
+        wanted = _ROLE_QUANTITY.get(role)
+        if role in roles and (unit is None or wanted is None or wanted == quantity):
+            return Meaning(role, unit=unit)
+    if "turn" in roles and not roles & _ANGLES and unit is None:
+        return Meaning("turn")
+    if roles & _ANGLES or quantity == "angle" or counts:
+        reference = _SURE if "reference" in roles else _LIKELY if "driven" in roles else 0
+        sensor = _SURE if "sensor" in roles else _LIKELY if "read" in roles and not reference else 0
+        return Meaning("angle", reference, sensor, unit if quantity == "angle" else None, counts)
+    by_quantity = {"time": "time", "temperature": "temperature", "speed": "speed"}
+    return Meaning(by_quantity.get(quantity or "", ""), unit=unit)
+
+
+def _own(own: str) -> Meaning:
+    """The meaning of a name of the project's own, whose unit it ends in."""
+    roles = {
+        "time_s": ("time", "s"),
+        "temperature_c": ("temperature", "C"),
+        "speed_rpm": ("speed", "rpm"),
+        "air_gap_mm": ("gap", "mm"),
+        "mounting_deg": ("mounting", "deg"),
+        "vx": ("cos", ""),
+        "vy": ("sin", ""),
+    }
+    if own in ("reference_deg", "measured_deg"):
+        sides = (3, 0) if own == "reference_deg" else (0, 3)
+        return Meaning("angle", *sides, unit=UNITS["deg"], own=own)
+    role, unit = roles.get(own, (own, ""))
+    return Meaning(role, unit=UNITS.get(unit), own=own)
+
+
+def _parted(name: str) -> tuple[str, Unit | None, bool]:
+    """The name without its unit, the unit, and whether it is a count."""
+    text = name.strip()
+    for pattern in _PARTED:
+        found = re.match(pattern, text)
+        if found and (unit := unit_of(found[2])):
+            return found[1], unit, False
+        if found and found[2].lower() in COUNTS:
+            return found[1], None, True
+    rate = re.match(r"^(.*?)[\s_]*(rad|deg|rev)_(?:per_)?s(?:ec)?$", text, re.IGNORECASE)
+    if rate:
+        return rate[1], UNITS[f"{rate[2].lower()}/s"], False
+    head, last = _last_word(text)
+    if last in COUNTS:
+        return head, None, True
+    unit = unit_of(last)
+    if unit is None or (not head and last in _MEANING and unit.quantity == "angle"):
+        return text, None, False
+    alone = len(last) == 1 and not re.search(r"[\s_.\-]\S$", text)
+    return (text, None, False) if alone else (head or text, unit, False)
+
+
+def _last_word(text: str) -> tuple[str, str]:
+    """What stands before the last word of a name, and that word in small letters: ``encDeg``, ``enc_deg``, ``deg``."""
+    found = re.match(r"^(.*?)[\s_.\-]*([A-Z]?[^\W\d_A-Z]+|[A-Z]+|°C?)$", text)
+    return (found[1], found[2].lower()) if found else (text, "")
+
+
+def _words(bare: str) -> list[str]:
+    """The words of a name in small letters, also of ``encAngle`` and ``ENC_ANGLE``."""
+    return [word.lower() for word in re.findall(r"[A-ZÄÖÜ]+(?![a-zäöü])|[A-ZÄÖÜ]?[a-zäöüß]+", bare)]

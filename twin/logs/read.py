@@ -1,0 +1,74 @@
+"""Reading a log: its table, and the columns of a sweep by a given statement or by the one that is guessed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from twin.angles import Array
+from twin.bounded_input import LARGEST_SWEEP_BYTES, checked_bytes, whole
+from twin.errors import SweepError, UserError
+from twin.log import LOG
+from twin.logs.formats import read_format
+from twin.logs.guess import Guess, OpenGuess, guessed, in_words, unused_by
+from twin.logs.statement import Column, parsed, values_of
+from twin.logs.table import Table
+from twin.logs.text import read_text
+
+EXPECTED = "a log (CSV, XLSX, MAT, NPZ, HDF5 or Parquet)"
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """A log as columns (n,) of a sweep, the statement that makes them, and how the file was read."""
+
+    columns: Mapping[str, Array]
+    guess: Guess
+    table: Table
+
+
+def read_table(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> Table:
+    """The table in a log, whatever its format. Raises SweepError."""
+    try:
+        raw = whole(path, most=checked_bytes(max_bytes), expected=EXPECTED)
+    except UserError as error:
+        raise SweepError(str(error)) from None
+    found = read_format(raw, file=path.name)
+    return read_text(raw, file=path.name) if found is None else found
+
+
+def read_log(path: Path, *, columns: str | None = None, max_bytes: int = LARGEST_SWEEP_BYTES) -> Log:
+    """A log by the statement ``columns``, see :mod:`twin.logs.statement`; None: by the one that fits it.
+
+    Raises UserError where it cannot be read, where nothing fits, and where two statements do.
+    """
+    stated = None if columns is None else parsed(columns)
+    table = read_table(path, max_bytes=max_bytes)
+    guess = guessed(table) if stated is None else by_statement(stated, table)
+    if stated is not None:
+        LOG.info("read %s: %s; not used: %s", table.file, guess.text, ", ".join((*guess.unused, *table.left)) or "none")
+    return Log(values_of(guess.columns, table), guess, table)
+
+
+def by_statement(columns: tuple[Column, ...], table: Table) -> Guess:
+    """What is said, with the columns that it leaves out."""
+    return Guess(columns, unused=unused_by(columns, table))
+
+
+LARGEST_ADVISED_BYTES = 20_000_000
+"""Of a longer file that was refused nothing is guessed: reading it once took its time."""
+
+
+def advice(path: Path) -> str:
+    """What ``--columns`` would read a file that is refused, for the end of the message; empty where nothing would."""
+    try:
+        if not path.is_file() or path.stat().st_size > LARGEST_ADVISED_BYTES:
+            return ""
+        guess = read_log(path, max_bytes=LARGEST_ADVISED_BYTES).guess
+    except OpenGuess as two:
+        return f"; or say what is meant: {in_words(two.options)}"
+    except (SweepError, OSError):
+        return ""
+    as_it_is = all(str(column) == f"{column.target}={column.target}" for column in guess.columns)
+    return "" if as_it_is else f"; or say what is meant: {in_words([guess.text])}"

@@ -1,0 +1,60 @@
+"""A table of numbers as a log holds it, under its own names and in its own units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from twin.angles import Array
+from twin.errors import SweepError
+from twin.shown import shown
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Columns of a log, each (n,), NaN where a cell is missing.
+
+    ``names`` are those of the file, empty where it gives none. ``faults`` says for a column's place which cell is no
+    number, ``notes`` how the file was read, ``left`` what it holds beside columns of numbers.
+    """
+
+    file: str
+    names: tuple[str, ...]
+    values: tuple[Array, ...]
+    faults: Mapping[int, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    left: tuple[str, ...] = ()
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """What each column is called by: its name, or its place (``#3``) where the name is missing or not its own."""
+        return tuple(
+            name if name and self.names.count(name) == 1 and not re.fullmatch(r"#\d+", name) else f"#{k + 1}"
+            for k, name in enumerate(self.names)
+        )
+
+    def place(self, source: str) -> int:
+        """Place of a column by its name or ``#3``. Raises SweepError."""
+        by_place = re.fullmatch(r"#(\d{1,6})", source)
+        if by_place and 1 <= int(by_place[1]) <= len(self.names):
+            return int(by_place[1]) - 1
+        found = [k for k, name in enumerate(self.names) if name == source]
+        if len(found) > 1:
+            places = " or ".join(f"#{k + 1}" for k in found)
+            raise SweepError(f"{self.file}: column {shown(source)} stands {len(found)} times; say which: {places}")
+        if not found:
+            raise SweepError(f"{self.file}: no column {shown(source)}; found {self.listed()}")
+        return found[0]
+
+    def values_of(self, source: str) -> Array:
+        """The values (n,) of a column. Raises SweepError where it is not there, or a cell is no number."""
+        place = self.place(source)
+        if place in self.faults:
+            raise SweepError(f"{self.file}: {self.faults[place]}")
+        return self.values[place]
+
+    def listed(self, most: int = 300) -> str:
+        """The columns as a message names them."""
+        text = ", ".join(shown(name, 60) if name else f"#{k + 1}" for k, name in enumerate(self.names)) or "none"
+        return text if len(text) <= most else text[:most] + "..."

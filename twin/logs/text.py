@@ -1,0 +1,115 @@
+"""A log as text: any separator, decimal point or comma, encoding, and whatever stands above the numbers."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import re
+from collections import Counter
+from collections.abc import Sequence
+
+from twin.errors import SweepError
+from twin.logs.cells import Row, is_number, table_of
+from twin.logs.table import Table
+from twin.shown import shown
+
+_SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", "": "blanks"}
+"""What may part cells, with the word for it; an empty one stands for any run of blanks."""
+_COMMENTS = ("#", "%", "//")
+_JUDGED_LINES = 400
+"""Lines at the end of a file that its separator is told by: far from what may stand above the numbers."""
+_WIDE_SHARE = 0.4
+"""Share of zero bytes in every other place from which a text without a mark is UTF-16."""
+
+
+def read_text(raw: bytes, *, file: str) -> Table:
+    """The table in a text file. Raises SweepError where there is none."""
+    text, encoding = _decoded(raw, file)
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    numbered = [(k, line.strip("\ufeff\0 ").rstrip()) for k, line in enumerate(lines, start=1)]
+    told = [(k, line) for k, line in numbered if line.strip()]
+    plain = [(k, line) for k, line in told if not line.lstrip().startswith(_COMMENTS)]
+    if not plain:
+        raise SweepError(f"{file}: the file is empty; expected a header line and one row per reading")
+    separator = _separator([line for _, line in plain[-_JUDGED_LINES:]])
+    if separator is None:
+        raise SweepError(
+            f"{file}: line {plain[-1][0]} holds {shown(plain[-1][1])}; expected two or more numbers in each line, "
+            "parted by commas, semicolons, tabs or blanks: export the log as CSV"
+        )
+    rows = [Row(k, tuple(_cells(line, separator))) for k, line in plain]
+    remarks = [
+        Row(k, tuple(_cells(line.lstrip("#%/ \t"), separator)))
+        for k, line in told
+        if line.lstrip().startswith(_COMMENTS)
+    ]
+    rows = _without_empty_ends(rows)
+    notes = (encoding, f"cells parted by {_SEPARATORS[separator]}")
+    return table_of(rows, remarks, file=file, comma_parts=separator == ",", notes=notes)
+
+
+def _decoded(raw: bytes, file: str) -> tuple[str, str]:
+    """The text and the name of its encoding. Raises SweepError for what is no text."""
+    encoding = "UTF-8"
+    wide = next((bom for bom in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) if raw.startswith(bom)), None)
+    head = raw[:2000]
+    if wide:
+        encoding = "UTF-16"
+    elif head[1::2].count(0) > _WIDE_SHARE * len(head[1::2]) and not head[::2].count(0):
+        encoding = "UTF-16-LE"
+    elif head[::2].count(0) > _WIDE_SHARE * len(head[::2]) and not head[1::2].count(0):
+        encoding = "UTF-16-BE"
+    try:
+        text = raw.decode("utf-8-sig" if encoding == "UTF-8" else encoding)
+    except UnicodeDecodeError:
+        text, encoding = raw.decode("latin-1"), "Latin-1"
+    binary = re.search("[\x00-\x08\x0e-\x1a]", text)
+    if binary:
+        line = text.count("\n", 0, binary.start()) + 1
+        raise SweepError(
+            f"{file}: line {line} holds the byte {ord(binary[0])}, so this is no text file; expected CSV, XLSX, MAT, "
+            "NPZ, HDF5 or Parquet: export the log as one of them"
+        )
+    return text, encoding
+
+
+def _separator(lines: Sequence[str]) -> str | None:
+    """What parts the most lines into equally many cells, two of them numbers or more; None where nothing does."""
+    best, most = None, 0
+    for separator in _SEPARATORS:
+        widths: Counter[int] = Counter()
+        for line in lines:
+            cells = _cells(line, separator)
+            if sum(is_number(cell, comma_parts=separator == ",") for cell in cells) >= 2:
+                widths[len(cells)] += 1
+        count = max(widths.values(), default=0)
+        if count > most:
+            best, most = separator, count
+    return best
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    """The cells of a line without blanks and quotes; the unit in brackets stays with its name."""
+    if not separator:
+        return _by_blanks(line) if "[" in line or "(" in line else line.split()
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(separator)]
+    try:
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True))]
+    except csv.Error:
+        return [cell.strip() for cell in line.split(separator)]
+
+
+def _by_blanks(line: str) -> list[str]:
+    """Cells parted by blanks, a unit in brackets taken as part of the name before it."""
+    joined = re.sub(r"\s+([\[(][^\])]*[\])])", lambda found: "\0" + found[1].replace(" ", "\0"), line.strip())
+    return [cell.replace("\0", " ") for cell in joined.split()]
+
+
+def _without_empty_ends(rows: list[Row]) -> list[Row]:
+    """The rows without their last cell where it is empty in all that have as many: lines that end with a separator."""
+    width = Counter(len(row.cells) for row in rows).most_common(1)[0][0]
+    full = [row for row in rows if len(row.cells) == width]
+    if width < 3 or any(row.cells[-1] for row in full if is_number(row.cells[0], comma_parts=False)):
+        return rows
+    return [Row(row.number, row.cells[:-1]) if len(row.cells) == width and not row.cells[-1] else row for row in rows]

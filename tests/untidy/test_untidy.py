@@ -112,7 +112,7 @@ def test_a_missing_library_is_named_with_its_extra(
     monkeypatch.setattr(builtins, "__import__", lacking)
     ended = halltwin("import", path)
     assert ended.code == 2
-    assert f"needs {module}; pip install 'halltwin[formats]'" in ended.err
+    assert f"needs {module}; pip install '.[formats]' in the checkout" in ended.err
     assert ended.err.count("\n") == 1
 
 

@@ -13,7 +13,7 @@ from twin.logs.cells import Row, table_of
 from twin.logs.table import Table
 
 _ZIP, _HDF5, _PARQUET, _MATLAB = b"PK\x03\x04", b"\x89HDF\r\n\x1a\n", b"PAR1", b"MATLAB 5.0"
-_EXTRA = "pip install 'halltwin[formats]'"
+_EXTRA = "pip install '.[formats]' in the checkout"
 
 
 def read_format(raw: bytes, *, file: str) -> Table | None:

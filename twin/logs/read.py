@@ -56,7 +56,7 @@ def by_statement(columns: tuple[Column, ...], table: Table) -> Guess:
     return Guess(columns, unused=unused_by(columns, table))
 
 
-LARGEST_ADVISED_BYTES = 20_000_000
+LARGEST_ADVISED_BYTES = 5_000_000
 """Of a longer file that was refused nothing is guessed: reading it once took its time."""
 
 

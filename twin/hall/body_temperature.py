@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from twin.angles import Array
@@ -9,7 +11,7 @@ from twin.motion import NOMINAL_C, Motion
 
 
 def warmth(motion: Motion, lag_s: Array, bend_per_K: Array) -> Array:
-    """By how much a quantity has moved that moves by 1 with the first kelvin above 25 C, (..., n).
+    """By how much a quantity has moved since 25 C whose slope there is 1 per kelvin, (..., n).
 
     The body follows the recorded temperature by a first-order lag, and the quantity bends with the body's temperature:
     ``w (1 + bend w)``, w [K] above 25 C. Both broadcast against (..., n); without time the body is never behind.
@@ -28,7 +30,7 @@ def _behind(motion: Motion, lag_s: Array) -> Array:
     if not np.any(lag_s) or "time_s" not in motion.provides:
         return out
     rate = 1.0 / np.maximum(lag_s, 1e-9)
-    for first, end in zip(changes, [*changes[1:], len(motion)], strict=True):
+    for first, end in itertools.pairwise([*changes, len(motion)]):
         step = motion.temperature_c[first] - motion.temperature_c[first - 1]
         passed = np.maximum(motion.time_s[first:end] - motion.time_s[first - 1], 0.0)
         out[..., first:end] = (out[..., first - 1 : first] - step) * np.exp(-passed * rate)

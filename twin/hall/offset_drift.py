@@ -34,6 +34,7 @@ OFFSET_DRIFT = Effect(
             field_power=-1.0,
             mirror=-1,
         ),
+        # Packages follow in seconds, sockets and boards in minutes: an hour is more than a record waits for.
         "lag_s": Param(
             unit="s",
             null=0.0,
@@ -45,6 +46,7 @@ OFFSET_DRIFT = Effect(
             aside=True,
             detail=True,
         ),
+        # At the bounds what is 50 K warmer has drifted by twice as much, or by nothing: what bends more is another law.
         "bend_per_K": Param(
             unit="1/K",
             null=0.0,

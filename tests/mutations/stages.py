@@ -151,6 +151,12 @@ STAGES: tuple[Mutation, ...] = (
             "stages/test_repeated_frames.py::test_readings_that_the_fit_has_come_to_tell_are_given_back",
         ),
         (
+            "repeated_frames.anothers_readings_given_back",
+            " & ~_rows(others, state.touched.size)",
+            "",
+            "stages/test_repeated_frames.py::test_a_reading_that_another_finding_claims_too_stays_with_that",
+        ),
+        (
             "repeated_frames.earlier_claims_forgotten",
             "touched=state.touched | mask",
             "touched=mask",

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
+from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import solve
 from diagnosis.discovery.marks.row_masks import with_rows, without_rows
 from diagnosis.discovery.marks.sequence import touched_rows
 from diagnosis.discovery.state import State
 from twin.catalogue import base_name
-from twin.effect import Effect
+from twin.effect import BoolArray, Effect
 
 
 def repeated_frames(state: State) -> State:
@@ -29,17 +32,24 @@ def repeated_frames(state: State) -> State:
 
 
 def given_back(state: State, effect: Effect) -> State:
-    """The state in which the effect has claimed no reading; the same where it had none."""
+    """The state in which the effect has claimed no reading; the same where it had none.
+
+    A reading that another finding claims too stays with that.
+    """
     if not state.has(effect):
         return state
-    own = np.zeros(state.touched.size, dtype=bool)
-    others = []
-    for finding in state.findings:
-        if base_name(finding.keys[0]) == effect.name:
-            own[list(finding.rows)] = True
-        else:
-            others.append(finding)
-    return state.with_(with_rows(state.fit, own), touched=state.touched & ~own, findings=tuple(others))
+    own = [finding for finding in state.findings if base_name(finding.keys[0]) == effect.name]
+    others = tuple(finding for finding in state.findings if finding not in own)
+    back = _rows(own, state.touched.size) & ~_rows(others, state.touched.size)
+    return state.with_(with_rows(state.fit, back), touched=state.touched & ~back, findings=others)
+
+
+def _rows(findings: Iterable[Finding], size: int) -> BoolArray:
+    """The readings (size,) that any of the findings claims."""
+    claimed = np.zeros(size, dtype=bool)
+    for finding in findings:
+        claimed[list(finding.rows)] = True
+    return claimed
 
 
 def claimed(state: State, effect: Effect) -> State:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from diagnosis.discovery.finding import Finding
+from diagnosis.discovery.marks.row_masks import without_rows
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.repeated_frames import repeated_frames
 from diagnosis.discovery.state import State
@@ -125,6 +127,17 @@ def test_readings_that_the_fit_has_come_to_tell_are_given_back() -> None:
     assert back.findings == ()
     assert tuple(np.flatnonzero(back.touched)) == (7,)
     assert back.fit.observations.usable[[40, 90]].all()
+
+
+def test_a_reading_that_another_finding_claims_too_stays_with_that() -> None:
+    state = repeated_frames(with_effects(before(repeated_frames, CLEAN), claiming(STALE, (40, 90), -50.0, early=True)))
+    other = Finding((GLITCH,), -50.0, 100.0, -50.0, rows=(90, 120))
+    touched = np.isin(np.arange(len(state.sweep)), (40, 90, 120))
+    state = state.with_(without_rows(state.fit, touched), touched=touched, findings=(*state.findings, other))
+    back = repeated_frames(with_effects(state, claiming(STALE, (), 0.0, early=True)))
+    assert back.findings == (other,)
+    assert tuple(np.flatnonzero(back.touched)) == (90, 120)
+    assert tuple(np.flatnonzero(~back.fit.observations.usable)) == (90, 120)
 
 
 def test_rows_of_an_earlier_claim_stay_touched() -> None:

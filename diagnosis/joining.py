@@ -32,7 +32,10 @@ from twin.sweep import Sweep
 from twin.sweep_columns import OF_SETUP
 
 _BEYOND_NOISE = 4.0
-"""Standard errors: two numbers are that far apart by chance in exp(-8), one of three thousand."""
+"""Standard errors. Two components together are as far from where they should be by chance in exp(-8), one of three
+thousand; one component alone in one of sixteen thousand."""
+_LARGEST_RATIO = 10.0
+"""The field of the assumed magnet at 0.5 mm is ten times that between 5 and 6 mm: hardly a sensor works at both."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,13 +166,19 @@ def _at_gaps(
 
 
 def _offset_ratio(first: BaselineFit, here: BaselineFit) -> float | None:
-    """The offset over the first recording's, where they point the same way and differ beyond the noise; else None."""
+    """The offset over the first recording's, where that is what another air gap may make; else None.
+
+    Both are more than noise, point the same way, and differ beyond the noise by a ratio that gaps can make.
+    """
     old, new = (_offset(fit) for fit in (first, here))
     # In amplitudes, each known by the noise of the angle over the root of half the readings.
     old_sd, new_sd = (fit.rms_rad * np.sqrt(2.0 / np.count_nonzero(~fit.outliers)) for fit in (first, here))
-    ratio = float((old.conjugate() * new).real / max(abs(old) ** 2, 1e-300))
+    if abs(old) <= _BEYOND_NOISE * old_sd or abs(new) <= _BEYOND_NOISE * new_sd:
+        return None
+    ratio = float((old.conjugate() * new).real / abs(old) ** 2)
     apart, aside = abs(new - old) / np.hypot(old_sd, new_sd), abs(new - ratio * old) / np.hypot(ratio * old_sd, new_sd)
-    return ratio if ratio > 0.0 and apart > _BEYOND_NOISE > aside else None
+    made = 1.0 / _LARGEST_RATIO < ratio < _LARGEST_RATIO
+    return ratio if made and apart > _BEYOND_NOISE > aside else None
 
 
 def _offset(fit: BaselineFit) -> complex:

@@ -36,8 +36,8 @@ class Setup:
     amplitude_held : bool
         Whether vx and vy are of one size at all gaps, so that the magnet alone tells the field.
     offset_ratio : float or None
-        Where no gap is stated: the offset over that of the first recording, if it points the same way and is larger or
-        smaller beyond the noise, as in another field; else None.
+        Where no gap is stated: the offset over that of the first recording, if either is more than noise, both point
+        the same way, and one is the larger beyond the noise, by a factor of 10 at most, as in another field; else None.
     """
 
     name: str = ""

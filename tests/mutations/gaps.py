@@ -6,8 +6,23 @@ from tests.mutations.mutation import Mutation
 
 _GAPS = "diagnosis/factors/air_gaps.py"
 _GAP_TESTS = "tests/diagnosis/factors/test_air_gaps.py"
+_JOINED = "tests/diagnosis/test_several_recordings.py"
 
 GAPS: tuple[Mutation, ...] = (
+    Mutation(
+        "joining.noise_is_an_offset",
+        "diagnosis/joining.py",
+        "if abs(old) <= _BEYOND_NOISE * old_sd or abs(new) <= _BEYOND_NOISE * new_sd:",
+        "if old == 0.0:",
+        (f"{_JOINED}::test_an_offset_that_is_not_there_has_no_ratio",),
+    ),
+    Mutation(
+        "joining.any_ratio_is_a_gaps",
+        "diagnosis/joining.py",
+        "made = 1.0 / _LARGEST_RATIO < ratio < _LARGEST_RATIO",
+        "made = ratio > 0.0",
+        (f"{_JOINED}::test_an_offset_that_is_not_there_has_no_ratio",),
+    ),
     Mutation(
         "air_gaps.misfit_passes",
         _GAPS,

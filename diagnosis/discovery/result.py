@@ -129,8 +129,8 @@ class Discovery:
     def verdict(self) -> str:
         """adequate, explained, partly explained or unnamed; stopped where the search was before it found anything.
 
-        Explained is only what leaves no structure, is no misfit, was searched to the end, and is parted by no turn of
-        the sensor that the readings contradict.
+        Explained is only what leaves no structure, is no misfit, was searched to the end, and comes of recordings none
+        of whose stated turns of the sensor the zero contradicts: whether a cause rests on that turn is not asked.
         """
         named = bool(self.changed) or self.fitted_anew or any(cause.name != "unnamed" for cause in self.causes)
         without_name = any(cause.name == "unnamed" for cause in self.causes)

@@ -16,6 +16,7 @@ from diagnosis.factors.mounting import Mounting
 from diagnosis.joining import joined
 from diagnosis.report.explain_plot import residual_figure
 from diagnosis.report.plotting import drawing
+from scenarios.commands.protocol import Protocol
 from tests.command_line import halltwin
 from twin.air_gap import at_air_gap
 from twin.angles import Array
@@ -167,6 +168,31 @@ def test_another_gap_that_nobody_has_stated_is_asked_for(gap_mm: float) -> None:
     sd = 3.0 * np.radians(0.02) * np.sqrt(2.0 / 360.0) / 0.0094
     expected = far.values["offset"]["x_percent"] / near.values["offset"]["x_percent"]
     assert ratio == pytest.approx(expected, rel=3.0 * sd)
+
+
+def test_recordings_at_one_temperature_each_are_one_drift() -> None:
+    """Neither has been on its way to another temperature, so that a lag behind it does nothing."""
+    device = DEVICE.with_effect("offset_drift", x_percent_per_K=0.01, y_percent_per_K=0.006)
+    device = device.with_effect("zero", zero_deg=20.0).with_effect("noise", rms_deg=0.02)
+    turn = Protocol(turns=1, points=180, speeds_rpm=(60.0,))
+    motions = [replace(turn, temperatures_c=(warm_c,)).motion() for warm_c in (25.0, 85.0)]
+    sweeps = [device.simulate(motion, seed=seed) for seed, motion in enumerate(motions)]
+    (cause,) = explain(sweeps).causes
+    assert cause.name == "offset_drift"
+    assert "lag_s" not in cause.parameters
+    # 180 readings of 0.02 deg tell an offset to 0.0037 %, and two of them the drift over 60 K to 8.7e-5 %/K.
+    assert cause.parameters["x_percent_per_K"].value == pytest.approx(0.01, abs=3.0 * 8.7e-5)
+
+
+@pytest.mark.parametrize("percents", [(0.0, 1.0), (1.0, 0.0), (0.0, 0.02), (0.05, 0.8), (0.8, 0.05)])
+@pytest.mark.parametrize("seed", range(4))
+def test_an_offset_that_is_not_there_has_no_ratio(percents: tuple[float, float], seed: int) -> None:
+    """Noise points any way, so also that of the other offset; one of 0.05 % is there, but no gap makes it 0.8 %."""
+    devices = (DEVICE.with_effect("offset", x_percent=one, y_percent=0.6 * one) for one in percents)
+    sweeps = [recorded(device, f"{seed}{k}.csv", zero_deg=20.0) for k, device in enumerate(devices)]
+    start = joined(sweeps, CATALOGUE, mounting=None, given=None, rng=np.random.default_rng(1))
+    assert start.sweep.recordings is not None
+    assert start.sweep.recordings.setups[1].offset_ratio is None
 
 
 @pytest.mark.parametrize(

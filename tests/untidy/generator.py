@@ -166,6 +166,11 @@ def _asked() -> dict[str, Way]:
     return {
         "no header": Way(table(ANGLES, header=False).encode(), FINE, ("two guesses fit", "#2")),
         "names that tell nothing": Way(table({"ch1": R, "ch2": M}).encode(), FINE, ("two guesses fit", "ch2")),
+        "whole numbers on less than a turn": Way(
+            table({"ref": counts(0.3 * R, 4096, wrapped=False), "sensor": counts(0.3 * R + 5.0, 4096)}).encode(),
+            {},
+            ("two guesses fit", "ref*360/4096"),
+        ),
         "two sensors": Way(
             table({"ref": R, "sensor_a": M, "sensor_b": M + 3.0}).encode(),
             FINE,
@@ -192,7 +197,9 @@ def _asked() -> dict[str, Way]:
         "a row too short": Way(PLAIN.replace("\n12.250000,", "\n").encode(), {}, ("line 4 has 1 cells", "expected 2")),
         "one column": Way(table({"angle": M}).encode(), {}, ("two or more numbers",)),
         "unrelated": Way(
-            table({"ref": R, "sensor": M[::-1] * np.arange(ROWS) % 360.0}).encode(), {}, ("does not follow",)
+            table({"ref": R, "sensor": M[::-1] * np.arange(ROWS) % 360.0}).encode(),
+            {},
+            ("no two columns are angles that follow each other",),
         ),
     }
 

@@ -12,6 +12,7 @@ import pytest
 
 from tests.command_line import halltwin
 from tests.pages import GUIDE, block, lines
+from tests.untidy.__main__ import outcome
 from tests.untidy.generator import COS, MEASURED_DEG, REFERENCE_DEG, ROWS, SIN, Way, counts, files, table, ways
 from twin.errors import SweepError, UserError
 from twin.logs.read import Log, read_log
@@ -292,3 +293,10 @@ def test_a_direction_of_0_and_1_is_told_by_the_reference(sense: float, tmp_path:
 def test_every_column_of_a_sweep_can_be_said() -> None:
     text = ", ".join(f"{name}={name}" for name in COLUMNS)
     assert [column.target for column in parsed(text)] == list(COLUMNS)
+
+
+def test_of_logs_drawn_at_random_none_is_misread(tmp_path: Path) -> None:
+    """Of 60; one in ten may be asked back, as on a single turn 4000 and 4096 counts are hardly told apart."""
+    found = [outcome(seed, tmp_path) for seed in range(60)]
+    assert found.count("wrong") == 0
+    assert found.count("right") >= 54

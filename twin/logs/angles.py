@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, wrap_deg
 from twin.following import distance_deg, follows, spread_deg
 from twin.logs.names import Meaning
 from twin.logs.statement import Column, Term
@@ -23,17 +23,27 @@ COUNTS_PER_TURN = tuple(
 )
 """Counts of a turn that encoders, converters and steppers have: powers of two, whole steps, and round numbers."""
 _JUDGED_ROWS = 2000
-_CLEARLY = 2.0
-_ALIKE_DEG = 0.02
+_CLEARLY, _CLEARLY_ON_A_PART, _ALIKE_DEG = 2.0, 5.0, 0.02
+"""One unit is clearly meant where another's error, of a span of 360, is so many times as large and this much more; on a
+part of a turn an error of order 1 makes up for a wrong number of counts, or for most of it."""
 _FEW = 4
-_PARTED_TURNS = 1.1
-_DRIFT = 6.0
-_LEAST_DRIFT_DEG = 0.1
-"""A wrong number of counts drifts, in a turn by more than this many times what scatters about it; on a single turn an
-error of first order seems to drift by 4.3 times."""
+"""Numbers of counts a turn up to which a column is taken to show its own."""
+_MOST_GUESSED_DEG = 15.0
+"""A sensor may be farther off than this, but no unit is guessed by it."""
+_PARTED_TURNS = 0.9
+"""Turns from which what repeats with them is told from what grows."""
+_DRIFT, _LEAST_DRIFT_DEG = 6.0, 0.1
+"""A wrong number of counts drifts, in a turn by more than so many times what scatters about it, and this much more."""
+_DRIFT_ON_A_PART, _LEAST_ON_A_PART_DEG = 10.0, 4.0
+"""The same on a part of a turn, where errors of orders 1 and 2 seem to drift, too."""
+_SMALL_STEP_DEG = 90.0
+"""Rows that are typically closer than this follow one another round the turn."""
 _WRAP_SHARE = 0.5
-_LEAST_DEG = 6.4
-"""A span up to this looks like one turn of radians, or less."""
+"""A step of more than this share of the span is where an angle begins anew."""
+_FULL_SHARE = 0.9
+"""Share of a turn that wrapped counts fill at least."""
+_LEAST_DEG, _SHORT_DEG = 6.4, 100.0
+"""A span up to the first looks like one turn of radians, or less; one up to the second may be several."""
 
 
 @dataclass(frozen=True)
@@ -60,53 +70,89 @@ class AngleUnit:
 _FACTOR = {"deg": 1.0, "rad": 180.0 / np.pi, "rev": 360.0, "mrad": 0.18 / np.pi, "gon": 0.9}
 _TURN = {"deg": 360.0, "rad": 2.0 * np.pi, "rev": 1.0, "gon": 400.0}
 Pair = tuple[AngleUnit, AngleUnit]
+_BOTH_DEG, _BOTH_RAD = (AngleUnit("deg"), AngleUnit("deg")), (AngleUnit("rad"), AngleUnit("rad"))
 
 
 def units_of_pair(reference: Array, measured: Array, *, said: tuple[Meaning, Meaning]) -> list[Pair]:
     """The units in which two angles (n,) follow each other, those that fit equally well; none where they do not."""
     both = np.isfinite(reference) & np.isfinite(measured)
-    rows = np.flatnonzero(both)
-    if rows.size < 4:
+    if both.sum() < 4:
         return []
-    rows = rows[:: -(-rows.size // _JUDGED_ROWS)]
-    options = [_options(values[both], one) for values, one in zip((reference, measured), said, strict=True)]
+    reference, measured = reference[both], measured[both]
+    options = [_options(values, one) for values, one in zip((reference, measured), said, strict=True)]
     many = min(sum(bool(one.counts) for one in each) for each in options) > _FEW
+    untold = any(one.unit is None for one in said)
+    step = -(-reference.size // _JUDGED_ROWS)
     fitting: list[tuple[float, Pair]] = []
+    whole = False
     for pair in itertools.product(options[0], options[1]):
-        counted = [bool(one.counts) for one in pair]
-        if many and all(counted):
+        if many and pair[0].counts and pair[1].counts:
             continue
-        a, b = pair[0].degrees(reference[rows]), pair[1].degrees(measured[rows])
-        if min(np.ptp(a), np.ptp(b)) == 0.0 or not follows(b, a) or _small(pair, reference[rows], measured[rows]):
+        a, b = pair[0].degrees(reference[::step]), pair[1].degrees(measured[::step])
+        if not _fit(a, b, pair) or (untold and distance_deg(b, a) > _MOST_GUESSED_DEG):
             continue
-        if not (any(counted) and _drifts(a, b)):
-            fitting.append((distance_deg(b, a), pair))
+        # By the span, so that no unit wins by making all angles small.
+        fitting.append((360.0 * distance_deg(b, a) / float(np.ptp(a)), pair))
+        whole = whole or bool(np.ptp(_unwrapped(a)) >= 360.0 * _PARTED_TURNS)
     least = min((distance for distance, _ in fitting), default=0.0)
-    kept = [pair for distance, pair in fitting if distance <= _CLEARLY * least + _ALIKE_DEG]
-    return _preferred(kept)
+    times = _CLEARLY if whole else _CLEARLY_ON_A_PART
+    kept = [pair for distance, pair in fitting if distance <= times * least + _ALIKE_DEG]
+    return _with_rivals(_preferred(kept), kept, reference, measured, said=said)
 
 
-def _small(pair: Pair, reference: Array, measured: Array) -> bool:
-    """Whether both are called degrees and span no more than a turn of radians does."""
-    spans = float(np.ptp(reference)), float(np.ptp(measured))
-    return {one.name for one in pair} == {"deg"} and max(spans) <= _LEAST_DEG
+def _fit(reference: Array, measured: Array, pair: Pair) -> bool:
+    """Whether angles (n,), in degrees by the units of a pair, go round together."""
+    if min(np.ptp(reference), np.ptp(measured)) == 0.0 or not follows(measured, reference):
+        return False
+    if {one.name for one in pair} == {"deg"} and max(np.ptp(reference), np.ptp(measured)) <= _LEAST_DEG:
+        return False
+    return not (any(one.counts for one in pair) and _drifts(reference, measured))
+
+
+def _with_rivals(
+    kept: list[Pair], fitting: list[Pair], reference: Array, measured: Array, *, said: tuple[Meaning, Meaning]
+) -> list[Pair]:
+    """Where both columns (n,) are degrees for want of a better word, also what else they may be."""
+    if kept != [_BOTH_DEG]:
+        return kept
+    span = max(float(np.ptp(reference)), float(np.ptp(measured)))
+    if _BOTH_RAD in fitting and span < _SHORT_DEG:
+        return [_BOTH_DEG, _BOTH_RAD]
+    if all(_may_be_counts(values, one) for values, one in zip((reference, measured), said, strict=True)):
+        counts = AngleUnit(counts=2 ** int(np.ceil(np.log2(span + 1.0))))
+        return [_BOTH_DEG, (counts, counts)]
+    return kept
+
+
+def _may_be_counts(values: Array, said: Meaning) -> bool:
+    """Whether values (n,) without a unit are whole numbers that show no turn of 360: counts or degrees."""
+    if said.unit is not None or np.any(values % 1.0 != 0.0):
+        return False
+    return not bool(np.any(np.abs(np.diff(values)) > _WRAP_SHARE * np.ptp(values)))
 
 
 def _drifts(reference: Array, measured: Array) -> bool:
     """Whether one angle (n,) [deg] runs away from the other, as with a wrong number of counts a turn."""
+    reference = _unwrapped(reference)
     order = np.argsort(reference)
     sense = min((1.0, -1.0), key=lambda one: spread_deg(measured - one * reference))
     error = np.unwrap((measured - sense * reference)[order], period=360.0)
     at = np.radians(reference[order])
     shapes = [np.ones_like(at), at / (2.0 * np.pi)]
     whole = bool(np.ptp(at) >= _PARTED_TURNS * 2.0 * np.pi)
-    # On more than a turn what repeats with it is told from what grows; on less an error of first order grows, too.
     shapes += [wave(order * at) for order in (1.0, 2.0) for wave in (np.cos, np.sin)] if whole else []
     design = np.stack(shapes, axis=1)
     fitted = np.linalg.lstsq(design, error, rcond=None)[0]
     scatter = float(np.std(error - design @ fitted))
     drift = abs(float(fitted[1])) * (1.0 if whole else float(np.ptp(at)) / (2.0 * np.pi))
-    return drift > _DRIFT * scatter + _LEAST_DRIFT_DEG
+    times, least_deg = (_DRIFT, _LEAST_DRIFT_DEG) if whole else (_DRIFT_ON_A_PART, _LEAST_ON_A_PART_DEG)
+    return drift > times * scatter + least_deg
+
+
+def _unwrapped(angle_deg: Array) -> Array:
+    """An angle (n,) [deg] over its turns, where its rows follow one another."""
+    follow = np.median(np.abs(wrap_deg(np.diff(angle_deg)))) < _SMALL_STEP_DEG
+    return np.unwrap(angle_deg, period=360.0) if follow else angle_deg
 
 
 def _options(values: Array, said: Meaning) -> list[AngleUnit]:
@@ -120,7 +166,8 @@ def _options(values: Array, said: Meaning) -> list[AngleUnit]:
     if bool(np.any(np.abs(np.diff(values)) > _WRAP_SHARE * span)):
         named = [AngleUnit(name) for name, turn in _TURN.items() if 0.9 * turn <= span <= 1.001 * turn]
         return named or counts
-    named = [AngleUnit(name) for name, most in (("deg", 0.0), ("rad", 0.0), ("rev", 0.0)) if span > most]
+    named = [AngleUnit("deg")] if span > _LEAST_DEG else []
+    named += [AngleUnit("rad"), AngleUnit("rev")] if np.any(values % 1.0 != 0.0) else []
     return named + counts
 
 
@@ -133,7 +180,7 @@ def _counts(values: Array, *, stated: bool) -> list[AngleUnit]:
     wraps = bool(np.any(np.abs(np.diff(values)) > _WRAP_SHARE * span))
     # Of what is not called counts, 360 a turn are degrees.
     known = [n for n in COUNTS_PER_TURN if (stated or n != 360) and not _leaps(values, n)]
-    full = [n for n in known if 0.95 * n <= span <= n]
+    full = [n for n in known if _FULL_SHARE * n <= span <= n]
     return [AngleUnit(counts=n) for n in (full if wraps and full else known)]
 
 
@@ -144,9 +191,7 @@ def _leaps(values: Array, a_turn: int) -> bool:
 
 def _preferred(pairs: list[Pair]) -> list[Pair]:
     """Without those that no values could tell from a plainer one: both in the same unit, or both in equal counts."""
-    same = [pair for pair in pairs if pair[0] == pair[1]]
-    for name in ("deg", "rad"):
-        plain = (AngleUnit(name), AngleUnit(name))
-        if plain in same:
+    for plain in (_BOTH_DEG, _BOTH_RAD):
+        if plain in pairs:
             return [plain, *(pair for pair in pairs if pair[0] != pair[1])]
     return pairs

@@ -9,6 +9,7 @@ from typing import NoReturn
 
 import numpy as np
 
+from twin.angles import Array
 from twin.errors import SweepError
 from twin.logs.angles import AngleUnit, Pair, units_of_pair
 from twin.logs.channels import channels
@@ -18,7 +19,9 @@ from twin.logs.statement import Column, text_of
 from twin.logs.table import Table
 from twin.sweep_columns import COLUMNS
 
-_SHOWN = 2
+_SHOWN, _SIDES = 2, 2
+_FEWEST, _LARGEST = 4, 1e20
+"""Numbers that a column must hold to be judged, and the largest; nanoseconds since 1970 are 2e18."""
 _MOST_ANGLES = 12
 """Columns that are compared each with each other; of more a name must say that they are angles."""
 
@@ -65,7 +68,7 @@ class _Candidate:
 def guessed(table: Table) -> Guess:
     """The one statement that fits a table. Raises SweepError where none does, and where two do."""
     said = tuple(meaning_of(name) for name in table.names)
-    usable = [k for k, values in enumerate(table.values) if k not in table.faults and np.isfinite(values).sum() >= 4]
+    usable = [k for k, values in enumerate(table.values) if k not in table.faults and _told(values)]
     angles = [k for k in usable if said[k].role in ("angle", "")]
     if len(angles) > _MOST_ANGLES:
         angles = [k for k in angles if said[k].role]
@@ -84,6 +87,12 @@ def guessed(table: Table) -> Guess:
     why = {**dict.fromkeys(range(len(said)), ""), **found.why, **rest.why}
     unused = [_left(table, k, why[k]) for k in why if k not in used]
     return Guess(tuple(columns), (*found.notes, *rest.notes), tuple(unused))
+
+
+def _told(values: Array) -> bool:
+    """Whether a column (n,) holds enough numbers, and none that no bench can have meant."""
+    known = values[np.isfinite(values)]
+    return bool(known.size >= _FEWEST and np.max(np.abs(known)) <= _LARGEST)
 
 
 def unused_by(columns: tuple[Column, ...], table: Table) -> tuple[str, ...]:
@@ -166,10 +175,9 @@ def _by_name_alone(table: Table, said: tuple[Meaning, ...], angles: list[int]) -
     best = [(a, b) for weight, a, b in weighed if weight == most]
     if most < 1 or len(best) > 1:
         return None
-    units = [AngleUnit(one.name) if (one := said[k].unit) else AngleUnit("deg") for k in best[0]]
-    if any(said[k].counts for k in best[0]):
-        return None
-    return _Candidate(*best[0], (units[0], units[1]), most).columns(table)
+    units = [AngleUnit(one.name) for k in best[0] if (one := said[k].unit)]
+    # Units that nothing tells are no guess to go by.
+    return _Candidate(*best[0], (units[0], units[1]), most).columns(table) if len(units) == _SIDES else None
 
 
 def _by_channels(

@@ -1,0 +1,43 @@
+"""How many random logs are read rightly, asked back, refused or misread: ``python -m tests.untidy --draws 400``."""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+from tests.untidy.mixed import drawn
+from twin.errors import UserError
+from twin.logs.guess import OpenGuess
+from twin.logs.read import read_log
+
+
+def outcome(seed: int, folder: Path) -> str:
+    """What becomes of the log of a seed."""
+    log = drawn(seed)
+    path = folder / "log.csv"
+    path.write_text(log.text, encoding="utf-8")
+    try:
+        found = read_log(path).columns
+    except OpenGuess:
+        return "asked back"
+    except UserError:
+        return "refused"
+    return "right" if log.held(found["reference_deg"], found["measured_deg"]) else "wrong"
+
+
+def main() -> None:
+    """Count and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--draws", type=int, default=400)
+    parser.add_argument("--seed", type=int, default=7)
+    asked = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        seeds = range(1000 * asked.seed, 1000 * asked.seed + asked.draws)
+        counted = Counter(outcome(seed, Path(folder)) for seed in seeds)
+    print(", ".join(f"{counted[word]} {word}" for word in ("right", "asked back", "refused", "wrong")))
+
+
+if __name__ == "__main__":
+    main()

@@ -24,6 +24,16 @@ PARTS: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
+        f"{_D}/fitting/observations.py",
+        _T,
+        (
+            "observations.short_steps_that_lead_onward_are_no_repeats",
+            "short & ~(together & onward[run])",
+            "short",
+            "fitting/test_observations.py::test_short_steps_that_lead_onward_are_no_repeats",
+        ),
+    ),
+    *of_one_file(
         f"{_D}/marks/row_masks.py",
         _T,
         (

@@ -17,6 +17,7 @@ from twin.sweep import Sweep
 MOST_ROWS = 12_000
 """Longer records are averaged over blocks of readings, as long as a turn keeps the points that follow."""
 DENSE_POINTS = 360
+_BEYOND_CHANCE = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,9 +134,25 @@ def _in_place(motion: Motion) -> bool:
 
 
 def _stands_still(motion: Motion) -> BoolArray:
-    """Which steps (n-1,) from reading to reading are none."""
-    step = np.abs(np.diff(motion.shaft_rad))
-    return np.asarray(step < 0.2 * np.quantile(step, 0.95))
+    """Which steps (n-1,) from reading to reading are none: short ones, unless one after another they lead onward.
+
+    A bench that samples more finely for a while, as after a reversal, takes short steps that add up: to the length of
+    one that is not short, or to more than twice what steps to and fro of their size would.
+    """
+    step = np.diff(motion.shaft_rad)
+    longest = 0.2 * np.quantile(np.abs(step), 0.95)
+    short = np.abs(step) < longest
+    together = short & _same_way(motion)
+    run = np.cumsum(~together)
+    travel = np.abs(np.bincount(run, np.where(together, step, 0.0)))
+    by_chance = np.sqrt(np.bincount(run, np.where(together, step**2, 0.0)))
+    onward = travel > np.minimum(longest, _BEYOND_CHANCE * by_chance)
+    return np.asarray(short & ~(together & onward[run]))
+
+
+def _same_way(motion: Motion) -> BoolArray:
+    """Which steps (n-1,) neither turn round nor begin another turn."""
+    return np.asarray((np.diff(motion.turn) == 0) & (np.diff(motion.direction) == 0))
 
 
 def _repeats(motion: Motion) -> IntArray:
@@ -155,8 +172,7 @@ def _repeats(motion: Motion) -> IntArray:
         start = np.concatenate([[0], np.flatnonzero(ends) + 1])
         inside = (np.arange(n) - start[part]) // block
         return np.concatenate([[0], np.cumsum((np.diff(part) != 0) | (np.diff(inside) != 0))])
-    same = _stands_still(motion) & (np.diff(motion.turn) == 0) & (np.diff(motion.direction) == 0)
-    return np.concatenate([[0], np.cumsum(~same)])
+    return np.concatenate([[0], np.cumsum(~(_stands_still(motion) & _same_way(motion)))])
 
 
 def _sure_of_direction(motion: Motion, sweep: Sweep) -> BoolArray:

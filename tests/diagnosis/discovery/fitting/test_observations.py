@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from diagnosis import explain
 from diagnosis.discovery.fitting.observations import MOST_ROWS, collect
 from diagnosis.discovery.fitting.subsample import LONGEST, STRETCHES, searched_part
+from diagnosis.discovery.further.measurements import MENU
+from tests.several_recordings import played
 from twin.angles import Array
 from twin.sweep import Sweep
 
@@ -79,3 +82,51 @@ def test_rows_keep_their_numbers_where_others_were_rejected() -> None:
     answer = explain(read).to_dict()
     glitches = [row for cause in answer["causes"] for row in cause.get("rows", [])]
     assert [*glitches, *answer["sweep"]["wild_rows"]] == [1001]
+
+
+def _stopping(step_deg: float, *, repeats: int, jitter_deg: float, seed: int = 3) -> Array:
+    """Angles at which the shaft stops in a turn forward and back, each read several times off a jittering reference."""
+    stops = np.arange(0.0, 361.0, step_deg)
+    angles = np.repeat(np.concatenate([stops, stops[-2::-1]]), repeats)
+    return np.asarray(angles + jitter_deg * np.random.default_rng(seed).standard_normal(angles.size))
+
+
+@pytest.mark.parametrize("jitter_deg", [0.0, 0.03])
+@pytest.mark.parametrize("repeats", [2, 10])
+def test_readings_at_a_stop_are_one_row(repeats: int, jitter_deg: float) -> None:
+    angles = _stopping(5.0, repeats=repeats, jitter_deg=jitter_deg)
+    way = np.repeat([1.0, -1.0], [73 * repeats, 72 * repeats])
+    observations = collect(_read({"reference_deg": angles, "measured_deg": angles, "direction": way}))
+    assert np.array_equal(observations.group, np.arange(angles.size) // repeats)
+    assert observations.repeats is not None
+
+
+@pytest.mark.parametrize(("fine_deg", "reach_deg"), [(0.05, 1.0), (0.1, 1.0), (0.5, 20.0)])
+def test_short_steps_that_lead_onward_are_no_repeats(fine_deg: float, reach_deg: float) -> None:
+    """After each of 24 reversals in fine steps, though most steps are shorter than a fifth of the coarse ones."""
+    leg = np.arange(fine_deg, reach_deg + 0.5 * fine_deg, fine_deg)
+    way = np.concatenate([np.repeat([1.0, -1.0], [73, 72]), np.repeat(np.resize([1.0, -1.0], 24), leg.size)])
+    angles = np.concatenate([_stopping(5.0, repeats=1, jitter_deg=0.0), *([leg, reach_deg - leg] * 12)])
+    observations = collect(_read({"reference_deg": angles, "measured_deg": angles, "direction": way}))
+    assert len(observations) == angles.size
+    assert observations.repeats is None
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_play_sampled_finely_after_reversals_is_told_from_a_hysteresis(seed: int) -> None:
+    """As the menu of further measurements advises: a play of 0.2 deg is taken up on the way, a hysteresis decays."""
+    angles = _stopping(5.0, repeats=1, jitter_deg=0.0)
+    way = np.repeat([1.0, -1.0], [73, 72])
+    first = _read({"reference_deg": angles, "measured_deg": angles, "direction": way})
+    (advised,) = (entry for entry in MENU if entry.name == "denser points after a reversal")
+    motion = advised.plan(first.motion())
+    assert motion is not None
+    shaft = np.degrees(motion.shaft_rad)
+    turned = shaft + played(shaft, 0.1)
+    measured = turned + 0.4 * np.sin(np.radians(turned) + 1.0)
+    measured += NOISE_DEG * np.random.default_rng(seed).standard_normal(shaft.size)
+    answer = explain(_read({"reference_deg": shaft, "measured_deg": measured, "direction": motion.direction})).to_dict()
+    (cause,) = answer["causes"]
+    assert "backlash" in {cause["name"], *cause["indistinguishable_from"]}
+    # A standard deviation of n readings is known to 1 / sqrt(2 n); five times that, and what few causes take up.
+    assert abs(answer["extended"]["heldout_rms_deg"] / NOISE_DEG - 1.0) < 5.0 / np.sqrt(2.0 * shaft.size)

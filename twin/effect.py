@@ -290,8 +290,12 @@ class Effect:
 
     @property
     def sought_alone(self) -> tuple[Effect, ...]:
-        """The effect with one strength alone, for each that a search sets by itself, within the bounds of that."""
-        return tuple(self.alone(name, within=param.sought) for name, param in self.params.items() if param.sought)
+        """The effect with one strength alone, for each that a search sets by itself, within the bounds of that.
+
+        What it is counted in, such as a range that the sweep does not show, is as uncertain as it was before.
+        """
+        forms = (self.alone(name, within=param.sought) for name, param in self.params.items() if param.sought)
+        return tuple(replace(form, fitted_shapes=self.fitted_shapes) for form in forms)
 
     def alone(self, name: str, *, within: tuple[float, float] | None = None) -> Effect:
         """The same effect where one of its parameters is its only strength, and all others stay at their null.

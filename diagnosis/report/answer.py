@@ -316,10 +316,10 @@ def _derived(fit: Fit, key: str, name: str, figure: tuple[float, float, float, s
 def _marks(param: Param, value: float, deviation: float) -> dict[str, Any]:
     """Marks of a fitted parameter.
 
-    It keeps more than half of the variance that was known before the sweep; it is a shape at the limit of the model.
+    It keeps more than half of the variance that was known before the sweep; it is at the limit of the model.
     """
     marks = {"hardly_told": True} if 0.0 < param.prior_sd < np.sqrt(2.0) * deviation else {}
-    at_bound = param.role == "shape" and deviation > 0.0 and value in (param.lower, param.upper)
+    at_bound = deviation > 0.0 and value != param.null and value in (param.lower, param.upper)
     return {**marks, "at_bound": True} if at_bound else marks
 
 

@@ -87,13 +87,20 @@ FORMS: tuple[Mutation, ...] = tuple(
             "diagnosis/discovery/search/forward_step.py",
             "for form in (effect, *effect.sought_alone)",
             "for form in (effect,)",
-            f"{_FORMS}::test_a_curve_that_runs_ahead_is_an_s_of_the_converter[True]",
+            f"{_FORMS}::test_a_curve_that_runs_ahead_is_an_s_of_the_converter[0.02-True]",
+        ),
+        (
+            "forms.the_range_of_an_s_is_known",
+            "twin/effect.py",
+            "replace(form, fitted_shapes=self.fitted_shapes) for form in forms",
+            "form for form in forms",
+            f"{_FORMS}::test_a_curve_that_runs_ahead_is_an_s_of_the_converter[0.02-True]",
         ),
         (
             "forms.an_s_bends_either_way",
             "twin/adc/adc_inl.py",
-            "sought=(-200.0, 0.0)",
-            "sought=(-200.0, 200.0)",
+            "sought=(-LARGEST_S_LSB, 0.0)",
+            "sought=(-LARGEST_S_LSB, LARGEST_S_LSB)",
             "tests/twin/test_adc_inl.py::test_an_s_that_a_saturation_may_be_is_not_sought",
         ),
         (

@@ -20,6 +20,8 @@ LARGEST_SD_LSB = 15.0
 converter, a typical assumption."""
 HEAD_ROOM_PERCENT = 30.0
 """Standard deviation of the range before anything is known of it: from hardly more than an amplitude to twice one."""
+LARGEST_S_LSB = 1500.0
+"""An S of a range of 1.25 amplitudes that bends a channel as the strongest saturation does, by 30 %."""
 BLUR = 3e-4
 """Width over which noise rounds an edge off in expectation, in full scales: 0.02 deg of noise."""
 
@@ -67,12 +69,26 @@ def _first_digit(u: Array, *, blurred: bool) -> Array:
     return np.asarray(0.5 * (np.sign(u - 0.25) + np.sign(u + 0.25)))
 
 
+def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
+    """The share of c^3 in a channel of amplitude 1 that an S makes; of a channel that bends down it is below 0.
+
+    It is what a sweep tells: the same share is a larger S of a wider range.
+    """
+    s_lsb, range_of = float(values.get("s_lsb", 0.0)), 0.01 * float(values["full_scale_percent"])
+    if s_lsb == 0.0:
+        return {}
+    of_linear = 0.5 * np.sqrt(27.0) * 0.01 * STEP_PERCENT * s_lsb
+    percent = float(-100.0 * of_linear / range_of**2 / (1.0 + of_linear))
+    return {"cubic_percent": (percent, percent, percent, "%")}
+
+
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     return [{"full_scale_percent": float(level)} for level in np.arange(102.0, 200.0, 4.0)]
 
 
 def _lsb(doc: str, **about: Any) -> Param:
-    return Param(unit="LSB", null=0.0, lower=-200.0, upper=200.0, doc=doc, typical=15.0, aside=True, **about)
+    about = {"lower": -200.0, "upper": 200.0, **about}
+    return Param(unit="LSB", null=0.0, doc=doc, typical=15.0, aside=True, **about)
 
 
 def _weight(bit: int) -> Param:
@@ -90,7 +106,13 @@ ADC_INL = Effect(
         # With y turned over a bow is one of the other sign in y alone: no value does that.
         "bow_lsb": _lsb("largest deviation of a bow, in steps of 14 bit", mirror=0),
         # One that bends down is what a saturation is, which says it more plainly; nothing else bends up.
-        "s_lsb": _lsb("largest deviation of an S", role="level", sought=(-200.0, 0.0)),
+        "s_lsb": _lsb(
+            "largest deviation of an S",
+            role="level",
+            lower=-LARGEST_S_LSB,
+            upper=LARGEST_S_LSB,
+            sought=(-LARGEST_S_LSB, 0.0),
+        ),
         **{f"bit{bit}_lsb": _weight(bit) for bit in range(1, BITS + 1)},
         "first_stage_lsb": _lsb(
             "step where the first stage of a pipeline changes its digit, as its gain is off",
@@ -114,6 +136,7 @@ ADC_INL = Effect(
     shapes=shapes,
     zoomed=("full_scale_percent",),
     fitted_shapes=("full_scale_percent",),
+    derived=derived,
     source="integral non-linearity, IEEE Std 1241; binary-weighted capacitors: J. L. McCreary and P. R. Gray, IEEE J. "
     "Solid-State Circuits 10 (1975) 371",
     signature="bow: order 3, the same as quadratic_nonlinearity; S: order 4 in angle and radius, the same as "

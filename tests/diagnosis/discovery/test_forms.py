@@ -63,21 +63,29 @@ def test_any_curve_that_falls_behind_is_one_saturation(curve: Callable[[Array], 
     assert found["saturation"]["k_percent"]["value"] == pytest.approx(k_percent, abs=0.06)
 
 
-@pytest.mark.parametrize("raw", [True, False])
-def test_a_curve_that_runs_ahead_is_an_s_of_the_converter(raw: bool) -> None:
+@pytest.mark.parametrize(("k", "raw"), [(0.02, True), (0.05, True), (0.02, False)])
+def test_a_curve_that_runs_ahead_is_an_s_of_the_converter(k: float, raw: bool) -> None:
     """No saturation does that; in angles alone a magnet's harmonic does the same.
 
-    A channel c + k c^3 with k = 0.02 has, straight through both ends of a range R of 1.25 amplitudes, an S of
-    2 k R^2 / sqrt(27) / (1 + k R^2) of its amplitude: 95.5 steps of 14 bit over that range.
+    A channel c + k c^3 has, straight through both ends of a range of R amplitudes, an S of 2 k R^2 / sqrt(27) /
+    (1 + k R^2) of its amplitude. The sweep tells k; R is known to be about 1.25 +- 0.3, and so is the S.
     """
     shaft = turns(90, 4)
-    signal = channels(shaft, lambda field: field + 0.02 * field**3)
+    straight = channels(shaft)
+    signal = straight + k * straight**3
     answer = explain(sweep(shaft, signal, 7, **({"vx": signal[0], "vy": signal[1]} if raw else {}))).to_dict()
     (cause,) = answer["causes"]
     assert {cause["name"], *cause["indistinguishable_from"]} == {"adc_inl"} | (set() if raw else {"magnet_harmonic"})
     if cause["name"] == "adc_inl":
-        assert set(cause["parameters"]) == {"s_lsb", "full_scale_percent"}
-        assert cause["parameters"]["s_lsb"]["low"] < -95.5 < cause["parameters"]["s_lsb"]["high"]
+        assert set(cause["parameters"]) == {"s_lsb", "full_scale_percent", "cubic_percent"}
+        told = cause["parameters"]["cubic_percent"]
+        assert told["low"] < 100.0 * k < told["high"]
+        # Its order 4 is k / 4 of a turn's radian in angle and radius, each with 0.02 deg in 360 readings: a standard
+        # deviation of 0.01 % of k, of the angle alone 0.015 %.
+        assert told["high"] - told["low"] < 4.0 * 1.3 * (0.01 if raw else 0.015)
+        for assumed in (1.1, 1.55):
+            steps = 2.0 * k * assumed**2 / np.sqrt(27.0) / (1.0 + k * assumed**2) * 2.0**13
+            assert cause["parameters"]["s_lsb"]["low"] < -steps < cause["parameters"]["s_lsb"]["high"]
 
 
 @pytest.mark.parametrize("level", [0.5, 0.67, 0.75, 0.8])

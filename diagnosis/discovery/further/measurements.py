@@ -236,7 +236,8 @@ MENU = (
     ),
     Measurement(
         name="second mounting",
-        words=f"turn the sensor by {TURNED_DEG:g} deg on the shaft, record the sweep again and explain both together",
+        words=f"turn the sensor by {TURNED_DEG:g} deg on the shaft, with nothing else moved, record the sweep again and "
+        f"explain both together (--mounting 0,{TURNED_DEG:g})",
         cost=8,
         brings="two mountings",
         elsewhere=_turned,
@@ -244,7 +245,8 @@ MENU = (
     ),
     Measurement(
         name="second air gap",
-        words="record the sweep again at twice the air gap ({far:g} mm for {near:g} mm) and explain both together",
+        words="record the sweep again at twice the air gap ({far:g} mm for {near:g} mm) and explain both together "
+        "(--air-gap {near:g},{far:g})",
         cost=9,
         brings="two air gaps",
         elsewhere=_farther,

@@ -124,7 +124,7 @@ class Effect:
     behind : Behind, optional
         What it also does to a signal behind that one.
     acting : tuple of str
-        Of an operation of :attr:`operations`: the parameters at whose nulls it does nothing; none: the strengths.
+        Of an operation of :attr:`operations`: the parameters at whose nulls it does nothing; none: :attr:`acts_by`.
     source, signature : str
         Where its definition can be looked up; what it does to the error, to leading order.
     needs : frozenset of str
@@ -246,13 +246,16 @@ class Effect:
         """The parameters at which the effect vanishes exactly."""
         return {name: param.null for name, param in self.params.items()}
 
+    @cached_property
+    def acts_by(self) -> tuple[str, ...]:
+        """Names of the parameters that make it act: strengths of every kind, and shapes that act by themselves."""
+        acting = ("strength", "level", "per turn", "random")
+        return tuple(name for name, param in self.params.items() if param.role in acting or param.by_itself)
+
     def is_null(self, values: Parameters) -> bool:
-        """Whether every strength is at its null, so that the effect does nothing."""
-        return all(
-            np.all(np.asarray(values.get(name, param.null)) == param.null)
-            for name, param in self.params.items()
-            if param.role in ("strength", "level", "per turn", "random")
-        )
+        """Whether every parameter that makes it act is at its null, so that the effect does nothing."""
+        nulls = ((name, self.params[name].null) for name in self.acts_by)
+        return all(np.all(np.asarray(values.get(name, null)) == null) for name, null in nulls)
 
     def visible_in(self, provides: frozenset[str]) -> bool:
         """Whether a sweep that provides this can show the effect at all."""

@@ -12,7 +12,8 @@ Role = Literal["strength", "level", "phase", "shape", "per turn", "random"]
 ``strength``  null where the effect vanishes, and the change of the signal is nearly proportional to it
 ``level``     null where the effect vanishes, but its change is not proportional: searched on the grid ``shapes``
 ``phase``     turns a strength's shape by quadrature
-``shape``     order, memory, frequency: means nothing at zero strength, searched on the grid ``shapes``
+``shape``     order, memory, frequency: means nothing at zero strength unless it acts ``by_itself``, searched on the
+              grid ``shapes``
 ``per turn``  a strength of its own for each turn of the sweep
 ``random``    acts only where a generator is given: the size of a spread, the number of rare events
 """
@@ -85,6 +86,9 @@ class Param:
         as another effect says the same more plainly.
     detail : bool
         Whether a fit moves it from its null only where the readings call for it, as they must for a cause.
+    by_itself : bool
+        Whether a shape acts with every strength at its null, so that it counts as one where the question is whether the
+        effect does anything. Others mean nothing without a strength.
     scatter : float
         Half width of the range over which devices of one kind differ in it.
     owner : str, optional
@@ -108,6 +112,7 @@ class Param:
     aside: bool = False
     sought: tuple[float, float] | None = None
     detail: bool = False
+    by_itself: bool = False
     scatter: float = 0.0
     owner: Owner | None = None
 

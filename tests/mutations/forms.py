@@ -6,6 +6,7 @@ from tests.mutations.mutation import Mutation
 
 _PROFILE = "tests/diagnosis/discovery/fitting/test_profile.py"
 _FORMS = "tests/diagnosis/discovery/test_forms.py"
+_LISTED = "tests/diagnosis/discovery/stages/test_listed.py"
 _DETAILS = "tests/diagnosis/discovery/search/test_details.py"
 
 FORMS: tuple[Mutation, ...] = tuple(
@@ -162,9 +163,23 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "forms.a_detail_alone_is_nothing",
             "diagnosis/discovery/fitting/intervals.py",
-            ', *effect.roles("level"), *effect.details)',
-            ', *effect.roles("level"))',
-            "tests/diagnosis/discovery/stages/test_listed.py::test_a_detail_may_be_all_that_there_is_of_a_cause",
+            "for name in effect.acts_by if name in free",
+            "for name in effect.acts_by if name in free and name not in effect.details",
+            f"{_LISTED}::test_a_detail_may_be_all_that_there_is_of_a_cause",
+        ),
+        (
+            "forms.a_detail_counts_twice",
+            "diagnosis/discovery/fitting/intervals.py",
+            "for name in effect.acts_by if name in free",
+            "for name in (*effect.acts_by, *effect.details) if name in free",
+            f"{_LISTED}::test_a_detail_that_acts_through_a_strength_does_not_count_beside_it",
+        ),
+        (
+            "forms.a_shape_acts_only_through_a_strength",
+            "twin/effect.py",
+            "if param.role in acting or param.by_itself",
+            "if param.role in acting",
+            "tests/twin/test_by_itself.py::test_a_stage_that_is_off_acts_alone",
         ),
         (
             "forms.no_detail_is_freed",

@@ -118,6 +118,7 @@ ADC_INL = Effect(
             "step where the first stage of a pipeline changes its digit, as its gain is off",
             role="shape",
             detail=True,
+            by_itself=True,
         ),
         "full_scale_percent": Param(
             unit="%",

@@ -59,7 +59,7 @@ def _series(motion: Motion) -> tuple[Array, Array]:
 
 
 def _cumulant(unit: str, bound: float, doc: str) -> Param:
-    about: dict[str, Any] = {"role": "shape", "typical": 0.1, "aside": True, "detail": True}
+    about: dict[str, Any] = {"role": "shape", "typical": 0.1, "aside": True, "detail": True, "by_itself": True}
     return Param(unit=unit, null=0.0, lower=-bound, upper=bound, doc=doc, **about)
 
 

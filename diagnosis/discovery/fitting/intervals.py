@@ -104,8 +104,8 @@ def may_be_null(fit: Fit, key: str) -> bool:
     """
     effect, values = find(key, fit.chain.effects), fit.chain.values.get(key, {})
     free = {one.name for one in fit.free if one.key == key and one.turn is None}
-    # A detail may be all that there is of it.
-    strengths = [name for name in (*effect.roles("strength"), *effect.roles("level"), *effect.details) if name in free]
+    # A detail that acts by itself may be all that there is of it; any other is in what the strengths do.
+    strengths = [name for name in effect.acts_by if name in free]
     if strengths:
         away = {name: float(values[name]) - effect.params[name].null for name in strengths}
         phases = [name for name in effect.roles("phase") if name in free]

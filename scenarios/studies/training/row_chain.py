@@ -76,7 +76,7 @@ def _forward_by_row(effect: Effect, streams: Sequence[np.random.Generator]) -> F
 def _acting(effect: Effect, values: Parameters, batch: int) -> BoolArray:
     """The sweeps (batch,) in which the effect is not at null; a described part, without parameters, acts in all."""
     acting = np.full(batch, not effect.params)
-    for name in (*effect.roles("strength"), *effect.roles("level"), *effect.roles("random"), *effect.roles("per turn")):
+    for name in effect.acts_by:
         value = np.asarray(values[name])
         differs = value != effect.params[name].null
         acting |= differs.reshape(batch, -1).any(axis=1) if value.ndim == 3 else bool(np.any(differs))

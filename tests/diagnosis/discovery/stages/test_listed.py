@@ -60,14 +60,29 @@ def test_a_phase_that_says_the_same_leaves_no_doubt_of_an_amplitude() -> None:
 
 
 def test_a_detail_may_be_all_that_there_is_of_a_cause() -> None:
-    """A pipeline's first stage is off, and no bit of the converter's: bow and bits may be nothing, the cause not."""
+    """A pipeline's first stage is off, and no bit of the converter's: bow and bits are nothing, the cause is not."""
     fit, key = before(answer, MADE).fit, "adc_inl"
-    chain = fit.chain.with_effect(key, bow_lsb=1e-6, first_stage_lsb=40.0)
+    chain = fit.chain.with_effect(key, first_stage_lsb=40.0)
     strengths = tuple(Free(key, name) for name in ("bow_lsb", "bit1_lsb", "bit2_lsb"))
     held = evaluate(chain, (*fit.free, *strengths), fit.observations, fit.weighting)
     assert may_be_null(held, key)
     freed = evaluate(chain, (*held.free, Free(key, "first_stage_lsb")), fit.observations, fit.weighting)
     assert not may_be_null(freed, key)
+
+
+def test_a_detail_that_acts_through_a_strength_does_not_count_beside_it() -> None:
+    """What a drift w (1 + b w) does at 100 K and b = -0.005 / K is half of 100 K, though b by itself takes as much."""
+    fit, key = before(answer, MADE).fit, "offset_drift"
+    readings = len(fit.observations)
+    motion = replace(
+        fit.observations.motion,
+        temperature_c=np.repeat([25.0, 125.0], [readings // 2, readings - readings // 2]),
+        columns=fit.observations.motion.columns | {"temperature_c"},
+    )
+    chain = fit.chain.with_effect(key, x_percent_per_K=0.02, bend_per_K=-0.005)
+    free = (*fit.free, *(Free(key, name) for name in ("x_percent_per_K", "y_percent_per_K", "bend_per_K")))
+    fit = evaluate(chain, free, replace(fit.observations, motion=motion), fit.weighting)
+    assert not may_be_null(replace(fit, cosine_residual=before(answer, MADE).fit.cosine_residual), key)
 
 
 def test_a_cause_without_held_out_gain_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:

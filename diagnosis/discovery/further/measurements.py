@@ -236,8 +236,8 @@ MENU = (
     ),
     Measurement(
         name="second mounting",
-        words=f"turn the sensor by {TURNED_DEG:g} deg on the shaft, with nothing else moved, record the sweep again and "
-        f"explain both together (--mounting 0,{TURNED_DEG:g})",
+        words=f"turn the sensor by {TURNED_DEG:g} deg on the shaft, nothing else, record the sweep again and explain "
+        f"both together (--mounting 0,{TURNED_DEG:g})",
         cost=8,
         brings="two mountings",
         elsewhere=_turned,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -266,7 +267,7 @@ UNNAMED_SPEED_ZERO = Effect(
         "amplitude_deg": Param(
             unit="deg", null=0.0, lower=-90.0, upper=90.0, doc="turn of the zero at the stated speed", owner="bench"
         ),
-        **{name: UNNAMED_SPEED.params[name] for name in ("at_rpm", "power")},
+        **{name: replace(UNNAMED_SPEED.params[name], owner="bench") for name in ("at_rpm", "power")},
     },
     forward=_moved_by_speed,
     shapes=_powers,

@@ -19,7 +19,7 @@ WHOLE = {
     "mounting": {"zero", "magnet_harmonic", "magnet_misalignment"},
     "bench": {
         *("backlash", "cardan_coupling", "bearing_wobble", "load_torsion", "drive_ripple", "reference_eccentricity"),
-        *("stray_field", "mains_pickup", "thermal_zero_shift", "unnamed_speed_zero"),
+        *("stray_field", "mains_pickup", "thermal_zero_shift", "unnamed_speed_zero", "unnamed_flanks"),
     },
     "recording": {
         *("noise", "zero_drift", "index_slip", "reference_rezero", "stale_frames", "bus_glitch"),

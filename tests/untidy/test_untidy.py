@@ -17,6 +17,7 @@ from tests.untidy.generator import COS, MEASURED_DEG, REFERENCE_DEG, ROWS, SIN, 
 from twin.errors import SweepError, UserError
 from twin.logs.read import Log, read_log
 from twin.logs.statement import parsed, text_of
+from twin.logs.units import UNITS
 from twin.sweep import Sweep
 from twin.sweep_columns import COLUMNS
 
@@ -293,6 +294,16 @@ def test_a_direction_of_0_and_1_is_told_by_the_reference(sense: float, tmp_path:
 def test_every_column_of_a_sweep_can_be_said() -> None:
     text = ", ".join(f"{name}={name}" for name in COLUMNS)
     assert [column.target for column in parsed(text)] == list(COLUMNS)
+
+
+@pytest.mark.parametrize("name", [name for name, unit in UNITS.items() if unit.quantity == "angle"])
+def test_every_unit_of_an_angle_that_a_header_names_is_read(name: str, tmp_path: Path) -> None:
+    rows = zip(REFERENCE_DEG / UNITS[name].factor, MEASURED_DEG, strict=True)
+    path = tmp_path / "log.csv"
+    path.write_text(f"ref [{name}];sensor [deg]\n" + "\n".join(f"{a:.9g};{b:.6f}" for a, b in rows))
+    columns = read_log(path).columns
+    np.testing.assert_allclose(columns["reference_deg"], REFERENCE_DEG, atol=1e-5)
+    np.testing.assert_allclose(columns["measured_deg"], MEASURED_DEG, atol=1e-5)
 
 
 def test_of_logs_drawn_at_random_none_is_misread(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from twin.angles import Array, wrap_deg
 from twin.following import distance_deg, follows, spread_deg
 from twin.logs.names import Meaning
 from twin.logs.statement import Column, Term
+from twin.logs.units import UNITS
 
 _ROUND = (100, 120, 125, 144, 150, 160, 180, 200, 240, 250, 300, 360, 400, 500, 600, 720, 800, 900)
 COUNTS_PER_TURN = tuple(
@@ -55,7 +56,7 @@ class AngleUnit:
 
     def degrees(self, values: Array) -> Array:
         """Values (n,) in degrees."""
-        return values * _FACTOR[self.name] if self.name else values * 360.0 / self.counts
+        return UNITS[self.name].converted(values) if self.name else values * 360.0 / self.counts
 
     def column(self, target: str, source: str) -> Column:
         """The statement of a column in this unit."""
@@ -67,8 +68,8 @@ class AngleUnit:
         return f"{self.counts} counts a turn" if self.counts else self.name
 
 
-_FACTOR = {"deg": 1.0, "rad": 180.0 / np.pi, "rev": 360.0, "mrad": 0.18 / np.pi, "gon": 0.9}
-_TURN = {"deg": 360.0, "rad": 2.0 * np.pi, "rev": 1.0, "gon": 400.0}
+_TURN = {name: 360.0 / UNITS[name].factor for name in ("deg", "rad", "rev", "gon")}
+"""By unit what a turn is, of those in which an angle begins anew after one."""
 Pair = tuple[AngleUnit, AngleUnit]
 _BOTH_DEG, _BOTH_RAD = (AngleUnit("deg"), AngleUnit("deg")), (AngleUnit("rad"), AngleUnit("rad"))
 

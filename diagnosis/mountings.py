@@ -90,19 +90,22 @@ def _temperature_c(sweep: Sweep) -> float | None:
 
 def _away(fit: BaselineFit, sweep: Sweep) -> Array:
     """Errors [rad] of the readings in use, about their mean."""
-    shaft = np.radians(sweep.reference_deg)[~fit.outliers]
-    read = np.radians(sweep.measured_deg)[~fit.outliers] * fit.senses.output
+    shaft, read = _in_use(fit, sweep)
     away = wrap(read - fit.senses.sensor * shaft)
     return np.asarray(wrap(away - np.angle(np.mean(np.exp(1j * away)))))
+
+
+def _in_use(fit: BaselineFit, sweep: Sweep) -> tuple[Array, Array]:
+    """Angles [rad] of the shaft and of the sensor, as it counts, at the readings in use."""
+    kept = ~fit.outliers
+    return np.radians(sweep.reference_deg)[kept], np.radians(sweep.measured_deg)[kept] * fit.senses.output
 
 
 def _turned(fits: Sequence[BaselineFit], sweeps: Sequence[Sweep], place: int) -> bool:
     """Whether the errors of the first recording and of this one are one device's only if the sensor was turned."""
     error, with_field, with_shaft, number = [], [], [], []
     for index, k in enumerate((0, place)):
-        kept = ~fits[k].outliers
-        shaft = np.radians(sweeps[k].reference_deg)[kept]
-        read = np.radians(sweeps[k].measured_deg)[kept] * fits[k].senses.output
+        shaft, read = _in_use(fits[k], sweeps[k])
         error.append(_away(fits[k], sweeps[k]))
         with_field.append(read)
         with_shaft.append(shaft)

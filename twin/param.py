@@ -80,7 +80,8 @@ class Param:
     prior_mean : float, optional
         What is most likely before any sweep: it pulls the fit, as one more reading would. Not given: nothing is.
     aside : bool
-        Whether an answer gives it only where it is not at null: a detail that no search sets, or only by itself.
+        Whether an answer gives it only where it is not at null. A level that stands aside no search sets, unless it is
+        ``sought``.
     sought : tuple of float, optional
         Of a level that stands aside: the lowest and highest value at which a search sets it by itself. Not given: none,
         as another effect says the same more plainly.

@@ -86,9 +86,8 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     return [{"full_scale_percent": float(level)} for level in np.arange(102.0, 200.0, 4.0)]
 
 
-def _lsb(doc: str, **about: Any) -> Param:
-    about = {"lower": -200.0, "upper": 200.0, **about}
-    return Param(unit="LSB", null=0.0, doc=doc, typical=15.0, aside=True, **about)
+def _lsb(doc: str, *, largest: float = 200.0, **about: Any) -> Param:
+    return Param(unit="LSB", null=0.0, lower=-largest, upper=largest, doc=doc, typical=15.0, aside=True, **about)
 
 
 def _weight(bit: int) -> Param:
@@ -106,13 +105,7 @@ ADC_INL = Effect(
         # With y turned over a bow is one of the other sign in y alone: no value does that.
         "bow_lsb": _lsb("largest deviation of a bow, in steps of 14 bit", mirror=0),
         # One that bends down is what a saturation is, which says it more plainly; nothing else bends up.
-        "s_lsb": _lsb(
-            "largest deviation of an S",
-            role="level",
-            lower=-LARGEST_S_LSB,
-            upper=LARGEST_S_LSB,
-            sought=(-LARGEST_S_LSB, 0.0),
-        ),
+        "s_lsb": _lsb("largest deviation of an S", largest=LARGEST_S_LSB, role="level", sought=(-LARGEST_S_LSB, 0.0)),
         **{f"bit{bit}_lsb": _weight(bit) for bit in range(1, BITS + 1)},
         "first_stage_lsb": _lsb(
             "step where the first stage of a pipeline changes its digit, as its gain is off",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -83,10 +83,8 @@ def guessed(table: Table) -> Guess:
         pair = _by_channels(table, said, angles, found.columns)
     rest = others(table, said, usable, pair[0].of(table))
     columns = sorted((*pair, *found.columns, *rest.columns), key=lambda one: COLUMNS.index(one.target))
-    used = {table.place(source) for one in columns for source in one.sources}
-    why = {**dict.fromkeys(range(len(said)), ""), **found.why, **rest.why}
-    unused = [_left(table, k, why[k]) for k in why if k not in used]
-    return Guess(tuple(columns), (*found.notes, *rest.notes), tuple(unused))
+    unused = unused_by(tuple(columns), table, {**found.why, **rest.why})
+    return Guess(tuple(columns), (*found.notes, *rest.notes), unused)
 
 
 def _told(values: Array) -> bool:
@@ -95,10 +93,11 @@ def _told(values: Array) -> bool:
     return bool(known.size >= _FEWEST and np.max(np.abs(known)) <= _LARGEST)
 
 
-def unused_by(columns: tuple[Column, ...], table: Table) -> tuple[str, ...]:
-    """The columns of a table that a statement leaves out."""
+def unused_by(columns: tuple[Column, ...], table: Table, why: Mapping[int, str] | None = None) -> tuple[str, ...]:
+    """The columns of a table that a statement leaves out, with why by their places, where that is known."""
     used = {table.place(source) for one in columns for source in one.sources}
-    return tuple(_left(table, k, "") for k in range(len(table.names)) if k not in used)
+    why = why or {}
+    return tuple(_left(table, k, why.get(k, "")) for k in range(len(table.names)) if k not in used)
 
 
 def _left(table: Table, place: int, why: str) -> str:

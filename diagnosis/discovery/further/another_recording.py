@@ -13,6 +13,7 @@ from twin.angles import Array
 from twin.catalogue import base_name, find
 from twin.chain import Chain
 from twin.each_recording import MARK, acts_in, belongs_to_recording, of_device, over_recordings
+from twin.effect import Effect
 from twin.hall.noise import NOISE
 from twin.magnet.assembly import Assembly
 from twin.mechanics.zero import ZERO
@@ -63,7 +64,7 @@ def _device_name(key: str) -> str:
 
 
 def _in_recordings(
-    key: str, params: Mapping[str, Any], effect: Any, setups: tuple[Setup, ...], known: int
+    key: str, params: Mapping[str, Any], effect: Effect, setups: tuple[Setup, ...], known: int
 ) -> list[tuple[str, Mapping[str, Any]]]:
     """An instance of an effect by its keys over all recordings, of which so many are known already."""
     place, (name, mark, number) = acts_in(key), key.partition("#")

@@ -4,27 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 
-from twin.angles import Array, IntArray, radians, wrap_deg
+from twin.angles import Array, IntArray, radians
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
-from twin.following import FOLLOWS_DEG, distance_deg, follows, spread_deg
 from twin.log import LOG
-from twin.logs.read import advice, read_log
 from twin.motion import RPM, Motion
+from twin.reading_grid import step_of_grid_deg
 from twin.recordings import Recordings
 from twin.shown_name import shown_name
-from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, OF_SETUP, PLAUSIBLE, REQUIRED, SMALLEST_AMPLITUDE
+from twin.sweep_checks import check_channels, check_follows, check_plausible, check_usable
+from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, REQUIRED
 from twin.sweep_file import write_columns
-from twin.sweep_reader import read_columns
-
-FEWEST_ROWS = 8
-_ONE_ANGLE_DEG = 0.1
-"""Angles closer than this count as one: a jig's stop, read again."""
+from twin.sweep_reader import read_sweep
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +109,16 @@ class Sweep:
         found = {name: getattr(self, name) for name in COLUMNS}
         return {name: values for name, values in found.items() if values is not None}
 
+    @property
+    def reading_grid_deg(self) -> float | None:
+        """Step [deg] of the readings where they were chosen, as the index of a table is, and not what came out.
+
+        A firmware's table has an entry for each of 64 even readings; they lie on a grid because the table does, and say
+        nothing of how finely the sensor resolves. None: the readings are those that came out.
+        See :func:`twin.reading_grid.step_of_grid_deg`.
+        """
+        return step_of_grid_deg(self.measured_deg, self.reference_deg)
+
     @classmethod
     def from_columns(cls, columns: Mapping[str, Array], *, name: str = "sweep") -> Self:
         """Check the columns and leave out rows with missing cells.
@@ -148,7 +155,7 @@ class Sweep:
                 raise SweepError(f"{name}: column {needed} is missing; found {found}; rename the column or add it")
         data = {key: np.asarray(columns[key], dtype=np.float64) for key in COLUMNS if key in columns}
         for key, values in data.items():
-            _check_plausible(key, values, name=name)
+            check_plausible(key, values, name=name)
         # A column without a single reading was not recorded.
         data = {key: v for key, v in data.items() if key in REQUIRED or np.isfinite(v).any()}
         if ("vx" in data) != ("vy" in data):
@@ -163,10 +170,10 @@ class Sweep:
             keep[bad] = False
             rejected.update({int(row) + 1: f"{key} missing or not finite" for row in bad})
         used: dict[str, Any] = {key: np.ascontiguousarray(values[keep]) for key, values in data.items()}
-        _check_usable(used, name=name, rejected=len(rejected))
-        _check_follows(used["measured_deg"], used["reference_deg"], name=name)
+        check_usable(used, name=name, rejected=len(rejected))
+        check_follows(used["measured_deg"], used["reference_deg"], name=name)
         if "vx" in used:
-            _check_channels(used["vx"], used["vy"], used["measured_deg"], name=name)
+            check_channels(used["vx"], used["vy"], used["measured_deg"], name=name)
         return cls(**used, rejected=dict(sorted(rejected.items())), name=name, row_numbers=np.flatnonzero(keep) + 1)
 
     @classmethod
@@ -219,13 +226,7 @@ class Sweep:
             Where the file cannot be read or used: which line and column, what was found, expected, and to do.
         """
         called = name or shown_name(path)
-        if columns is not None:
-            found = cls.from_columns(read_log(Path(path), columns=columns, max_bytes=max_bytes).columns, name=called)
-        else:
-            try:
-                found = cls.from_columns(read_columns(Path(path), max_bytes=max_bytes), name=called)
-            except SweepError as error:
-                raise SweepError(f"{error}{advice(Path(path))}") from None
+        found = read_sweep(Path(path), partial(cls.from_columns, name=called), columns=columns, max_bytes=max_bytes)
         used = ", ".join(found.columns)
         LOG.info("read %s: %d rows, %d rejected; %s", found.name, found.rows, len(found.rejected), used)
         return found
@@ -266,134 +267,3 @@ class Sweep:
             temperature_c=self.temperature_c,
             has_channels=self.vx is not None,
         )
-
-
-def _check_plausible(key: str, values: Array, *, name: str) -> None:
-    """Refuse the first cell (n,) that no bench can have meant; what is missing or infinite is not judged here."""
-    known = np.isfinite(values)
-    if key == "direction":
-        wrong = known & (np.abs(values) != 1.0)
-        expected = "+1 or -1; leave the column out where the direction was not recorded"
-    else:
-        low, high = PLAUSIBLE[key]
-        wrong = known & ((values < low) | (values > high))
-        expected = f"{low:g} to {high:g}; leave the cell empty where there is no reading"
-        if key in OF_SETUP and not wrong.any():
-            first = values[np.argmax(known)]
-            wrong, expected = known & (values != first), f"{first:g} as before: one number for the whole recording"
-        if key == "turn" and not wrong.any():
-            wrong = known & (values != np.round(values))
-            expected = "a whole number: which sweep or revolution the reading belongs to"
-    if wrong.any():
-        row = int(np.argmax(wrong))
-        raise SweepError(f"{name}: row {row + 1}, column {key}: found {values[row]:g}; expected {expected}")
-
-
-def _check_usable(data: Mapping[str, Array], *, name: str, rejected: int) -> None:
-    """Enough rows at enough angles, in degrees, and a sensor that moves."""
-    reference, measured = data["reference_deg"], data["measured_deg"]
-    n = reference.size
-    if n < FEWEST_ROWS:
-        lost = f" ({rejected} rejected for missing or infinite cells)" if rejected else ""
-        raise SweepError(f"{name}: {n} usable rows{lost}; expected at least {FEWEST_ROWS} readings over the circle")
-    if np.max(np.abs(wrap_deg(reference - reference[0]))) < _ONE_ANGLE_DEG:
-        raise SweepError(
-            f"{name}: column reference_deg: every row is {reference[0]:g} deg; expected readings at different angles"
-        )
-    if np.max(np.abs(wrap_deg(measured - measured[0]))) == 0.0:
-        raise SweepError(
-            f"{name}: column measured_deg: every row is {measured[0]:g} deg while the reference moves; "
-            "expected a sensor that follows; check the sensor's link"
-        )
-    if np.ptp(reference) <= 6.4 and np.ptp(measured) <= 6.4:
-        raise SweepError(
-            f"{name}: columns reference_deg and measured_deg span {np.ptp(reference):.3g} and {np.ptp(measured):.3g}: "
-            "that looks like radians or turns; expected degrees: convert both columns"
-        )
-    count = np.unique(np.round(wrap_deg(reference) / _ONE_ANGLE_DEG)).size
-    if count < FEWEST_ROWS:
-        raise SweepError(f"{name}: column reference_deg: {count} different angles; expected at least {FEWEST_ROWS}")
-
-
-def _check_follows(measured: Array, reference: Array, *, name: str) -> None:
-    """Refuse columns (n,) [deg] that do not go round together, with the reason where it can be seen."""
-    to_deg = 180.0 / np.pi
-    if follows(measured, reference):
-        if _repeats_every_radian_turn(measured, reference):
-            raise SweepError(
-                f"{name}: columns reference_deg and measured_deg: the error repeats every 6.283 over a span of "
-                f"{np.ptp(reference):.4g}: that looks like radians; expected degrees: convert both columns"
-            )
-        return
-    for wrong, (scale_measured, scale_reference) in {
-        "column reference_deg": (1.0, to_deg),
-        "column measured_deg": (to_deg, 1.0),
-        "columns reference_deg and measured_deg": (to_deg, to_deg),
-    }.items():
-        if follows(scale_measured * measured, scale_reference * reference):
-            raise SweepError(
-                f"{name}: {wrong}: the two columns agree only if this is in radians (they span "
-                f"{np.ptp(reference):.4g} and {np.ptp(measured):.4g}); expected degrees: convert it"
-            )
-    for pole_pairs in range(2, 13):
-        if follows(measured, pole_pairs * reference):
-            raise SweepError(
-                f"{name}: measured_deg turns {pole_pairs} times as fast as reference_deg; expected both in degrees of "
-                "the same shaft: unwrap and divide the faster one"
-            )
-    raise SweepError(
-        f"{name}: measured_deg does not follow reference_deg (typically {distance_deg(measured, reference):.0f} deg "
-        f"off, in the better counting sense; expected below {FOLLOWS_DEG:g}); "
-        "check that both columns belong to one sweep and are in degrees"
-    )
-
-
-def _check_channels(vx: Array, vy: Array, measured: Array, *, name: str) -> None:
-    """Refuse channels (n,) whose angle is not what the sensor reports: a radius taken from them would say nothing."""
-    for key, values in (("vx", vx), ("vy", vy)):
-        if np.max(np.abs(values)) < SMALLEST_AMPLITUDE:
-            raise SweepError(
-                f"{name}: column {key}: no reading is larger than {np.max(np.abs(values)):.3g}; expected a signal of "
-                f"at least {SMALLEST_AMPLITUDE:g} in its unit: scale both channels, or leave them out"
-            )
-        if np.ptp(values) == 0.0:
-            raise SweepError(
-                f"{name}: column {key}: every row is {values[0]:g} while the reference moves; "
-                "expected the channel's signal: mend it, or leave vx and vy out"
-            )
-    if follows(np.degrees(np.arctan2(vy, vx)), measured):
-        return
-    middle = [float(np.min(values) + np.max(values)) / 2.0 for values in (vx, vy)]
-    hint = "check the columns, or leave vx and vy out"
-    if follows(np.degrees(np.arctan2(vy - middle[1], vx - middle[0])), measured):
-        hint = f"the channels stand at about {middle[0]:.4g} and {middle[1]:.4g} in mid-range: take that off both"
-    raise SweepError(
-        f"{name}: columns vx, vy: atan2(vy, vx) does not follow measured_deg; expected the two channels that the angle "
-        f"is computed from, zero at zero field; {hint}"
-    )
-
-
-def _repeats_every_radian_turn(measured: Array, reference: Array) -> bool:
-    """Whether the error (n,) repeats every 2 pi rather than every 360: several turns in radians also follow.
-
-    Asked only of sweeps that hold two turns if they are in radians, and less than one in degrees.
-    """
-    if not 4.0 * np.pi <= np.ptp(reference) <= 340.0 or reference.size < 20:
-        return False
-    sense = min((1.0, -1.0), key=lambda s: spread_deg(measured - s * reference))
-    to_deg = 180.0 / np.pi
-    in_radians = _left_by_two_orders(to_deg * (measured - sense * reference), to_deg * reference) / to_deg
-    return 3.0 * in_radians < _left_by_two_orders(measured - sense * reference, reference)
-
-
-def _left_by_two_orders(error: Array, reference: Array) -> float:
-    """Typical (median) error [deg] that orders 0 to 2 leave of errors (n,) [deg]; single wild readings do not count."""
-    turn = radians(reference)
-    orders = np.stack([np.ones_like(turn), np.cos(turn), np.sin(turn), np.cos(2 * turn), np.sin(2 * turn)], axis=1)
-    error = wrap_deg(error - np.degrees(np.angle(np.mean(np.exp(1j * radians(error))))))
-    kept = np.ones(error.size, dtype=bool)
-    left = np.abs(error)
-    for _ in range(3):
-        left = np.abs(error - orders @ np.linalg.lstsq(orders[kept], error[kept], rcond=None)[0])
-        kept = left <= 5.0 * np.median(left)
-    return float(np.median(left))

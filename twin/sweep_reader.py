@@ -1,9 +1,11 @@
-"""Reading a sweep file: what its first bytes say it is, CSV as text or Parquet, whatever its name ends in."""
+"""Reading a sweep: a file of its own columns as CSV or Parquet, told by its first bytes, or a log by a statement."""
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -16,6 +18,30 @@ from twin.sweep_text import parse_csv
 RAISED_BY = "--max-size (max_bytes of Sweep.read)"
 _EXPECTED = "a sweep (CSV)"
 _PARQUET = b"PAR1"
+_Checked = TypeVar("_Checked")
+
+
+def read_sweep(
+    path: Path,
+    checked: Callable[[Mapping[str, Array]], _Checked],
+    *,
+    columns: str | None = None,
+    max_bytes: int = LARGEST_SWEEP_BYTES,
+) -> _Checked:
+    """The columns of a file, checked: those of a sweep as they are, or a log's by the statement ``columns``.
+
+    The message for a file that is refused ends with the statement that would read it, if any. Raises SweepError.
+    """
+    if columns is not None:
+        from twin.logs.read import read_log
+
+        return checked(read_log(path, columns=columns, max_bytes=max_bytes).columns)
+    try:
+        return checked(read_columns(path, max_bytes=max_bytes))
+    except SweepError as error:
+        from twin.logs.read import advice
+
+        raise SweepError(f"{error}{advice(path)}") from None
 
 
 def read_columns(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> dict[str, Array]:

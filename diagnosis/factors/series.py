@@ -13,7 +13,8 @@ from diagnosis.factors.control_chart import BACKWARD, BOTH, FORWARD, Chart, aver
 from diagnosis.factors.senses import known_senses
 from twin.angles import Array, radians, wrap_deg
 from twin.baseline import FACTORS, Factor
-from twin.sweep import FEWEST_ROWS, Sweep
+from twin.sweep import Sweep
+from twin.sweep_checks import FEWEST_ROWS
 
 FEWEST_SWEEPS = 5
 """Fewer values than this do not make a chart: the first two have nothing to be held against."""

@@ -15,7 +15,7 @@ from twin.errors import UserError
 from twin.shown import shown
 
 LARGEST_SWEEP_BYTES = 2_000_000_000
-"""Most bytes of a sweep, decompressed: ten million readings in all nine columns take 1.1 GB as text."""
+"""Most bytes of a sweep, decompressed: ten million readings in nine columns take 1.1 GB as text."""
 LARGEST_TEXT_BYTES = 20_000_000
 """Most bytes of a twin file or an answer: a twin of a thousand turns takes 0.1 MB, the longest answer seen 0.5 MB."""
 BLOCK_BYTES = 1 << 20

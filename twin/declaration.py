@@ -15,7 +15,7 @@ from twin.shown import shown
 
 NEEDS = frozenset(
     {
-        *("time_s", "direction", "speed_rpm", "turn", "temperature_c", "vx"),
+        *("time_s", "direction", "speed_rpm", "turn", "temperature_c", "vx", "current_a"),
         *("both directions", "two speeds", "moving shaft", "one turn", "several turns", "two temperatures"),
         *("two turns", "two air gaps", "two mountings", "varying speed"),
     }

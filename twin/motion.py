@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -42,11 +42,13 @@ class Motion:
     time_s, direction, speed_rad_s, turn, temperature_c : ndarray
         Time [s], +1 or -1, signed speed [rad/s], number of the turn or sweep from 0, temperature [C]; (n,) each.
     columns : frozenset of str
-        What the bench recorded itself: ``time_s``, ``direction``, ``speed_rpm``, ``turn``, ``temperature_c``, ``vx``.
-        What was not recorded is inferred where the rows allow it (direction from their order, speed from dense time
-        stamps), else zero, and 25 C.
+        What the bench recorded itself: ``time_s``, ``direction``, ``speed_rpm``, ``turn``, ``temperature_c``, ``vx``,
+        ``current_a``. What was not recorded is inferred where the rows allow it (direction from their order, speed from
+        dense time stamps), else zero, and 25 C.
     recordings : Recordings or None
         Of several recordings one behind the other: which one each reading belongs to. None: all are of one.
+    current_a : ndarray
+        Current of the motor that turns the shaft [A], (n,); without one given, zero.
     """
 
     shaft_rad: Array
@@ -57,10 +59,13 @@ class Motion:
     temperature_c: Array
     columns: frozenset[str] = frozenset()
     recordings: Recordings | None = None
+    current_a: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
+        if not self.current_a.size:
+            object.__setattr__(self, "current_a", np.zeros(np.shape(self.shaft_rad)))
         # Views that cannot be written to: an effect that changed its motion would change it for all that come after.
-        for name in ("shaft_rad", "time_s", "direction", "speed_rad_s", "turn", "temperature_c"):
+        for name in ("shaft_rad", "time_s", "direction", "speed_rad_s", "turn", "temperature_c", "current_a"):
             view = getattr(self, name).view()
             view.flags.writeable = False
             object.__setattr__(self, name, view)
@@ -82,6 +87,7 @@ class Motion:
         speed_rad_s: Array | None = None,
         turn: Array | None = None,
         temperature_c: Array | None = None,
+        current_a: Array | None = None,
         has_channels: bool = False,
     ) -> Motion:
         """Complete a motion from what is known of it.
@@ -90,9 +96,9 @@ class Motion:
         ----------
         shaft_rad : ndarray
             Shaft angle [rad], (n,), wrapped or not.
-        time_s, direction, speed_rad_s, turn, temperature_c : ndarray, optional
-            What was recorded beside it, (n,) each; a speed may be unsigned. A missing temperature (NaN) is taken from
-            its neighbours in row order.
+        time_s, direction, speed_rad_s, turn, temperature_c, current_a : ndarray, optional
+            What was recorded beside it, (n,) each; a speed may be unsigned. A missing temperature or current (NaN) is
+            taken from its neighbours in row order.
         has_channels : bool, optional
             Whether the two channels are recorded too.
 
@@ -113,7 +119,7 @@ class Motion:
         shaft = wrapped if n == 0 else np.concatenate([wrapped[:1], wrapped[0] + np.cumsum(wrap(np.diff(wrapped)))])
         way = _as_reached(shaft, _way(shaft, direction, speed_rad_s))
         speed = _speed(shaft, way, time_s, speed_rad_s)
-        temperature = _without_gaps(temperature_c)
+        temperature, current = _without_gaps(temperature_c), _without_gaps(current_a)
         recorded = {
             "time_s": time_s is not None,
             "direction": direction is not None,
@@ -121,6 +127,7 @@ class Motion:
             "turn": turn is not None,
             "temperature_c": temperature is not None,
             "vx": has_channels,
+            "current_a": current is not None,
         }
         return cls(
             shaft_rad=shaft,
@@ -132,6 +139,7 @@ class Motion:
             else np.unique(turn, return_inverse=True)[1].astype(np.int64),
             temperature_c=np.full(n, NOMINAL_C) if temperature is None else temperature,
             columns=frozenset(name for name, given in recorded.items() if given),
+            current_a=np.zeros(n) if current is None else current,
         )
 
     def part(self, rows: IntArray) -> Motion:
@@ -144,6 +152,7 @@ class Motion:
             speed_rad_s=self.speed_rad_s[rows],
             turn=np.unique(self.turn[rows], return_inverse=True)[1].astype(np.int64),
             temperature_c=self.temperature_c[rows],
+            current_a=self.current_a[rows],
             recordings=None if self.recordings is None else self.recordings.part(rows),
         )
 
@@ -179,6 +188,7 @@ class Motion:
             turn=np.concatenate(turn),
             temperature_c=np.concatenate([part.temperature_c for part in parts]),
             columns=frozenset.intersection(*(part.columns for part in parts)),
+            current_a=np.concatenate([part.current_a for part in parts]),
             recordings=Recordings(number, tuple(setups)),
         )
 
@@ -322,12 +332,12 @@ def _speed(shaft_rad: Array, way: Array, time_s: Array | None, speed_rad_s: Arra
     return np.zeros(n)
 
 
-def _without_gaps(temperature_c: Array | None) -> Array | None:
-    """Temperatures (n,) [C], missing ones taken from their neighbours in row order; None where there is none at all."""
-    if temperature_c is None or not np.isfinite(temperature_c).any():
+def _without_gaps(column: Array | None) -> Array | None:
+    """A column (n,), missing cells taken from their neighbours in row order; None where there is no cell at all."""
+    if column is None or not np.isfinite(column).any():
         return None
-    known = np.flatnonzero(np.isfinite(temperature_c))
-    return np.asarray(np.interp(np.arange(np.size(temperature_c)), known, np.asarray(temperature_c)[known]))
+    known = np.flatnonzero(np.isfinite(column))
+    return np.asarray(np.interp(np.arange(np.size(column)), known, np.asarray(column)[known]))
 
 
 def infer_direction(shaft_rad: Array) -> Array:

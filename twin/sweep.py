@@ -35,10 +35,13 @@ class Sweep:
     ----------
     reference_deg, measured_deg : ndarray
         What the reference and the sensor read [deg], (n,); any range, wrapped or not.
-    time_s, direction, speed_rpm, turn, temperature_c, air_gap_mm, mounting_deg, vx, vy : ndarray or None
+    time_s, direction, speed_rpm, turn, temperature_c, air_gap_mm, mounting_deg, vx, vy, current_a : ndarray or None
         Further columns (n,), None where not recorded: time [s], +1 or -1, speed, number of the turn or sweep,
-        temperature [C] (NaN where missing), air gap [mm], by how much the sensor is turned about the shaft [deg], and
-        the two channels in any unit.
+        temperature [C] (NaN where missing), air gap [mm], by how much the sensor is turned about the shaft [deg], the
+        two channels in any unit, and the motor's current [A] (NaN where missing).
+    magnitude, agc, status, frame : ndarray or None
+        What the sensor says of itself (n,), NaN where missing: the field's magnitude and the gain that makes up for
+        it, in any unit, a status word, and a counter of frames.
     rejected : mapping of int to str
         Numbers of the rows that cannot be used (first reading = 1), and why.
     name : str
@@ -62,6 +65,11 @@ class Sweep:
     mounting_deg: Array | None = None
     vx: Array | None = None
     vy: Array | None = None
+    current_a: Array | None = None
+    magnitude: Array | None = None
+    agc: Array | None = None
+    status: Array | None = None
+    frame: Array | None = None
     rejected: Mapping[int, str] = field(default_factory=dict)
     name: str = "sweep"
     row_numbers: IntArray | None = None
@@ -188,6 +196,7 @@ class Sweep:
             speed_rpm=np.degrees(motion.speed_rad_s) / 6.0 if "speed_rpm" in has else None,
             turn=motion.turn.astype(np.float64) if "turn" in has else None,
             temperature_c=motion.temperature_c if "temperature_c" in has else None,
+            current_a=motion.current_a if "current_a" in has else None,
             vx=None if channels is None else channels[0],
             vy=None if channels is None else channels[1],
             name="simulated",
@@ -265,5 +274,6 @@ class Sweep:
             speed_rad_s=None if self.speed_rpm is None else self.speed_rpm * RPM,
             turn=self.turn,
             temperature_c=self.temperature_c,
+            current_a=self.current_a,
             has_channels=self.vx is not None,
         )

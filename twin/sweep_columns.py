@@ -14,12 +14,19 @@ COLUMNS = (
     "mounting_deg",
     "vx",
     "vy",
+    "current_a",
+    "magnitude",
+    "agc",
+    "status",
+    "frame",
 )
 """Every column that the project knows, in the order of the file format."""
 REQUIRED = ("reference_deg", "measured_deg")
 OF_SETUP = ("air_gap_mm", "mounting_deg")
 """Columns that hold one number for a whole recording: how the bench was set up for it."""
-MAY_BE_MISSING = frozenset({"temperature_c", *OF_SETUP})
+TOLD_BY_SENSOR = ("magnitude", "agc", "status", "frame")
+"""What a sensor or its link says of itself: no cause follows them, the check of the set-up reads them."""
+MAY_BE_MISSING = frozenset({"temperature_c", "current_a", *OF_SETUP, *TOLD_BY_SENSOR})
 """Columns whose single cells may be empty: the row is used all the same."""
 PLAUSIBLE = {
     "time_s": (-1e12, 1e12),
@@ -32,6 +39,11 @@ PLAUSIBLE = {
     "mounting_deg": (-1e9, 1e9),
     "vx": (-1e12, 1e12),
     "vy": (-1e12, 1e12),
+    "current_a": (-1e5, 1e5),
+    "magnitude": (-1e18, 1e18),
+    "agc": (-1e18, 1e18),
+    "status": (-1e18, 1e18),
+    "frame": (-1e18, 1e18),
 }
 """Lowest and highest value of a column, in its unit; beyond them a cell is a mistake."""
 SMALLEST_AMPLITUDE = 1e-12

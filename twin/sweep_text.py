@@ -16,10 +16,10 @@ import numpy as np
 
 from twin.angles import Array
 from twin.errors import SweepError
-from twin.sweep_columns import COLUMNS, REQUIRED
+from twin.sweep_columns import COLUMNS, REQUIRED, TOLD_BY_SENSOR
 
 LONGEST_LINE_BYTES = 1_000_000
-"""A line that is longer belongs to no sweep: a row of all nine columns takes some hundred bytes."""
+"""A line that is longer belongs to no sweep: a row of all columns takes some two hundred bytes."""
 _WIDE = (b"\xff\xfe", b"\xfe\xff")
 _MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "-", "inf", "+inf", "-inf", "infinity", "-infinity"})
 
@@ -192,6 +192,9 @@ def _careful_table(rows: list[tuple[int, str]], header: _Header, *, name: str) -
                 continue
             # Where cells are not parted by commas, a comma is a decimal point.
             value = _number(text if header.delimiter == "," else text.replace(",", "."))
+            if value is None and key in TOLD_BY_SENSOR:
+                # Status words may be words: they tell of a reading, and are none.
+                continue
             if value is None:
                 raise SweepError(
                     f"{name}: line {number}, column {key}: {_shown(text)} is not a number; "

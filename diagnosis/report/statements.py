@@ -32,6 +32,7 @@ _LACKS = {
     "one turn": ("less than a turn", "cover a whole turn"),
     "several turns": ("less than two turns one way", "record several turns one way"),
     "temperature_c": ("no temperature_c", "record temperature_c"),
+    "current_a": ("no current_a", "record current_a"),
     "time_s": ("no time_s", "record time_s"),
     "turn": ("no turn column", "number the sweeps in a turn column"),
     "two air gaps": ("one air gap", "measure at a second air gap"),

@@ -142,7 +142,27 @@ def _units() -> dict[str, Way]:
         "words, numbers of rows and a status": Way(
             table({"sample": np.arange(ROWS) + 1.0, "ref": R, "sensor": M, "status": 0.0 * R}).encode(),
             FINE,
-            unused=("sample", "status"),
+            others={"status": 0.0 * R},
+            unused=("sample",),
+        ),
+        "a current and what the sensor says of itself": Way(
+            table(
+                {
+                    "current_angle": M,
+                    "ref": R,
+                    "motor_current [mA]": 1000.0 * TEMPERATURE_C,
+                    "AGC": 0.0 * R + 128.0,
+                    "field magnitude": 0.0 * R + 1800.0,
+                    "frame counter": np.arange(ROWS) % 256.0,
+                }
+            ).encode(),
+            FINE,
+            others={
+                "current_a": TEMPERATURE_C,
+                "agc": 0.0 * R + 128.0,
+                "magnitude": 0.0 * R + 1800.0,
+                "frame": np.arange(ROWS) % 256.0,
+            },
         ),
         "kelvin": Way(
             table({"ref": R, "sensor": M, "temp_K": TEMPERATURE_C + 273.15}).encode(),

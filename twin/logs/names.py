@@ -26,11 +26,16 @@ _WORDS = {
     "cos": "vx cos cosine cosinus",
     "gap": "gap airgap",
     "mounting": "mounting",
-    "other": "index idx sample samples n no nr row i id status flag flags error err diff deviation magnitude mag_field "
-    "agc current voltage torque crc frame counter load power valid ok note comment",
+    "current": "current amps iq",
+    "magnitude": "magnitude",
+    "agc": "agc",
+    "status": "status",
+    "frame": "frame frames framecounter",
+    "other": "index idx sample samples n no nr row i id flag flags error err diff deviation mag_field "
+    "voltage torque crc counter load power valid ok note comment",
 }
 _MEANING = {word: role for role, words in _WORDS.items() for word in words.split()}
-_ROLE_QUANTITY = {"time": "time", "temperature": "temperature", "speed": "speed", "gap": "length"}
+_ROLE_QUANTITY = {"time": "time", "temperature": "temperature", "speed": "speed", "gap": "length", "current": "current"}
 _ANGLES = frozenset({"reference", "driven", "sensor", "read"})
 _PARTED = (
     r"^(.*?)[\s_.]*[\[({<]\s*([^\])}>]+?)\s*[\])}>]\s*$",
@@ -40,7 +45,8 @@ _PARTED = (
 """A unit in brackets, behind a slash, a comma or "in"."""
 _AXES = {"x": "cos", "y": "sin"}
 _SURE, _LIKELY = 2, 1
-_ORDER = ("other", "temperature", "speed", "gap", "time", "direction", "sin", "cos", "mounting")
+_OF_SENSOR = ("current", "magnitude", "agc", "status", "frame")
+_ORDER = (*_OF_SENSOR, "other", "temperature", "speed", "gap", "time", "direction", "sin", "cos", "mounting")
 """Roles that a name has before those of an angle: the speed of the encoder is a speed."""
 
 
@@ -73,6 +79,9 @@ def meaning_of(name: str) -> Meaning:
     if _CHIP.search(bare.lower()):
         roles.add("sensor")
     quantity = unit.quantity if unit else None
+    if "current" in roles and _MEANING.get(words[-1]) != "current" and quantity != "current":
+        # The current angle is the one at this moment.
+        roles.discard("current")
     for role in _ORDER:
         wanted = _ROLE_QUANTITY.get(role)
         if role in roles and (unit is None or wanted is None or wanted == quantity):
@@ -95,6 +104,7 @@ def _own(own: str) -> Meaning:
         "speed_rpm": ("speed", "rpm"),
         "air_gap_mm": ("gap", "mm"),
         "mounting_deg": ("mounting", "deg"),
+        "current_a": ("current", "A"),
         "vx": ("cos", ""),
         "vy": ("sin", ""),
     }

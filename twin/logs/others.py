@@ -12,7 +12,7 @@ from twin.logs.names import Meaning
 from twin.logs.statement import Column, Term
 from twin.logs.table import Table
 from twin.logs.units import UNITS
-from twin.sweep_columns import PLAUSIBLE
+from twin.sweep_columns import PLAUSIBLE, TOLD_BY_SENSOR
 
 _TARGETS = {
     "time": "time_s",
@@ -22,11 +22,18 @@ _TARGETS = {
     "mounting": "mounting_deg",
     "turn": "turn",
     "direction": "direction",
+    "current": "current_a",
+    "magnitude": "magnitude",
+    "agc": "agc",
+    "status": "status",
+    "frame": "frame",
 }
-_STANDARD = {"time": "s", "speed": "rpm", "temperature": "C", "gap": "mm", "mounting": "deg"}
+_STANDARD = {"time": "s", "speed": "rpm", "temperature": "C", "gap": "mm", "mounting": "deg", "current": "A"}
 _EPOCHS = (("s", 1e9, 1e10), ("ms", 1e12, 1e13), ("us", 1e15, 1e16), ("ns", 1e18, 1e19))
 """Seconds since 1970 lie between these from 2001 to 2286, in each unit."""
 _WARMEST_C = 200.0
+_MOST_WHOLE_A = 20.0
+"""Whole numbers above this may be milliamperes."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +57,11 @@ def others(table: Table, said: tuple[Meaning, ...], usable: list[int], reference
         if target in columns:
             why[k] = f"{target} is taken from {columns[target].term.source}"
             continue
-        column, note = _read(table.sources[k], target, said[k], table.values[k], reference_deg)
+        column: Column | None
+        if target in TOLD_BY_SENSOR:
+            column, note = Column(target, Term(table.sources[k])), ""
+        else:
+            column, note = _read(table.sources[k], target, said[k], table.values[k], reference_deg)
         if column is None:
             why[k] = note
         else:
@@ -98,15 +109,21 @@ def _unit(role: str, source: str, values: Array) -> tuple[str, str]:
     """The unit that values tell, and what is to be said of it; no unit where they do not."""
     known = values[np.isfinite(values)]
     if role == "time":
-        for unit, low, high in _EPOCHS:
-            if np.all((known >= low) & (known < high)):
-                return unit, f"{source} is taken as {unit} since 1970"
-        if np.any(known % 1.0 != 0.0):
-            return "s", f"{source} is taken in s: it holds fractions"
-        return "", "whole numbers without a unit: s, ms or us"
+        return _unit_of_time(source, known)
     if role == "temperature":
         unit = "C" if float(np.median(known)) <= _WARMEST_C else "K"
         return unit, f"{source} is taken in {unit}"
-    if role in ("gap", "mounting"):
-        return _STANDARD[role], f"{source} is taken in {_STANDARD[role]}"
-    return "", "without a unit: rpm, rad/s, deg/s or rev/s"
+    if role == "speed":
+        return "", "without a unit: rpm, rad/s, deg/s or rev/s"
+    if role == "current" and np.all(known % 1.0 == 0.0) and np.max(np.abs(known)) > _MOST_WHOLE_A:
+        return "", "whole numbers without a unit: A or mA"
+    return _STANDARD[role], f"{source} is taken in {_STANDARD[role]}"
+
+
+def _unit_of_time(source: str, known: Array) -> tuple[str, str]:
+    for unit, low, high in _EPOCHS:
+        if np.all((known >= low) & (known < high)):
+            return unit, f"{source} is taken as {unit} since 1970"
+    if np.any(known % 1.0 != 0.0):
+        return "s", f"{source} is taken in s: it holds fractions"
+    return "", "whole numbers without a unit: s, ms or us"

@@ -45,6 +45,8 @@ _LISTED: tuple[tuple[Unit, str], ...] = (
     (Unit("C", "temperature"), "°c ºc degc celsius"),
     (Unit("K", "temperature", 1.0, -273.15), "kelvin"),
     (Unit("F", "temperature", 5.0 / 9.0, -32.0 * 5.0 / 9.0), "°f ºf degf fahrenheit"),
+    (Unit("A", "current"), "amp amps ampere amperes"),
+    (Unit("mA", "current", 1e-3), "milliamp milliamps milliampere milliamperes"),
     (Unit("mm", "length"), "millimetre millimeter"),
     (Unit("um", "length", 1e-3), "µm μm micron microns"),
 )
@@ -61,6 +63,7 @@ QUANTITY = {
     "speed_rpm": "speed",
     "temperature_c": "temperature",
     "air_gap_mm": "length",
+    "current_a": "current",
 }
 """What a sweep's column measures; those that are missing here have no unit, or any."""
 

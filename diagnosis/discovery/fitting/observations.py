@@ -197,5 +197,6 @@ def _averaged(motion: Motion, group: IntArray, count: IntArray, first: IntArray)
         speed_rad_s=mean(motion.speed_rad_s),
         turn=motion.turn[first],
         temperature_c=mean(motion.temperature_c),
+        current_a=mean(motion.current_a),
         recordings=None if motion.recordings is None else motion.recordings.part(first),
     )

@@ -109,6 +109,7 @@ def _other_direction(motion: Motion) -> Motion:
         speed_rad_s=-motion.speed_rad_s[::-1],
         turn=_later(motion, motion.turn.max(initial=0) - motion.turn[::-1]),
         temperature_c=motion.temperature_c[::-1],
+        current_a=motion.current_a[::-1],
     )
     return _joined(motion, back, also="direction")
 
@@ -137,6 +138,7 @@ def _after_reversals(motion: Motion) -> Motion | None:
         speed_rad_s=np.zeros(path.size),
         turn=_later(motion, np.zeros(path.size, dtype=np.int64)),
         temperature_c=np.full(path.size, motion.temperature_c[-1]),
+        current_a=np.full(path.size, motion.current_a[-1]),
     )
     return _joined(motion, extra, also="direction")
 
@@ -283,6 +285,7 @@ def _again(motion: Motion, *, rows: int | None = None, pause_s: float = 0.0) -> 
         speed_rad_s=motion.speed_rad_s[part],
         turn=_later(motion, motion.turn[part] - motion.turn[part].min(initial=0)),
         temperature_c=motion.temperature_c[part],
+        current_a=motion.current_a[part],
     )
 
 
@@ -297,4 +300,5 @@ def _joined(first: Motion, then: Motion, *, also: str | None = None) -> Motion:
         turn=np.concatenate([first.turn, then.turn]),
         temperature_c=np.concatenate([first.temperature_c, then.temperature_c]),
         columns=columns,
+        current_a=np.concatenate([first.current_a, then.current_a]),
     )

@@ -75,7 +75,7 @@ def as_sweep(source: SweepLike) -> Sweep:
     """
     from twin.errors import SweepError
     from twin.sweep import Sweep
-    from twin.sweep_columns import COLUMNS, REQUIRED
+    from twin.sweep_columns import COLUMNS, REQUIRED, TOLD_BY_SENSOR
 
     if isinstance(source, Sweep):
         return source
@@ -93,7 +93,14 @@ def as_sweep(source: SweepLike) -> Sweep:
         if needed not in names:
             found = ", ".join(map(str, names)) or "no column"
             raise SweepError(f"{name}: column {needed} is missing; found {found}; rename the column or add it")
-    columns = {key: _values(table[key], f"{name}: column {key}") for key in COLUMNS if key in names}
+    columns: dict[str, Array] = {}
+    for key in (known for known in COLUMNS if known in names):
+        try:
+            columns[key] = _values(table[key], f"{name}: column {key}")
+        except SweepError:
+            # As in a file: a status in words tells of a reading, and is none.
+            if key not in TOLD_BY_SENSOR:
+                raise
     rows = columns[REQUIRED[0]].size
     for key, values in columns.items():
         if values.size != rows:

@@ -12,7 +12,7 @@ import numpy as np
 from twin.angles import Array
 from twin.bounded_input import LARGEST_SWEEP_BYTES, blocks, checked_bytes
 from twin.errors import SweepError, UserError
-from twin.sweep_columns import COLUMNS
+from twin.sweep_columns import COLUMNS, TOLD_BY_SENSOR
 from twin.sweep_text import parse_csv
 
 RAISED_BY = "--max-size (max_bytes of Sweep.read)"
@@ -88,5 +88,7 @@ def _read_parquet(path: Path, *, max_bytes: int) -> dict[str, Array]:
         try:
             columns[name] = np.asarray(table.column(name).to_numpy(), dtype=np.float64)
         except (TypeError, ValueError) as error:
+            if name in TOLD_BY_SENSOR:
+                continue
             raise SweepError(f"{path.name}: column {name}: {error}; expected numbers") from None
     return columns

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diagnosis.input_checks import as_sweep
 from twin import Motion, Sweep
 from twin.errors import SweepError
 
@@ -40,6 +41,11 @@ def test_missing_cells_and_words_of_a_status_cost_no_row(tmp_path: Path) -> None
     assert len(found) == ANGLE_DEG.size
     assert found.status is None
     assert found.motion().current_a[3] == 3.0
+
+
+def test_words_of_a_status_cost_nothing_in_a_table_either() -> None:
+    table = {"reference_deg": ANGLE_DEG, "measured_deg": ANGLE_DEG + 30.0, "status": ["ok"] * ANGLE_DEG.size}
+    assert as_sweep(table).status is None
 
 
 def test_a_current_in_words_is_a_mistake(tmp_path: Path) -> None:

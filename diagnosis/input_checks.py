@@ -75,7 +75,7 @@ def as_sweep(source: SweepLike) -> Sweep:
     """
     from twin.errors import SweepError
     from twin.sweep import Sweep
-    from twin.sweep_columns import COLUMNS, REQUIRED, TOLD_BY_SENSOR
+    from twin.sweep_columns import COLUMNS, REQUIRED
 
     if isinstance(source, Sweep):
         return source
@@ -93,14 +93,7 @@ def as_sweep(source: SweepLike) -> Sweep:
         if needed not in names:
             found = ", ".join(map(str, names)) or "no column"
             raise SweepError(f"{name}: column {needed} is missing; found {found}; rename the column or add it")
-    columns: dict[str, Array] = {}
-    for key in (known for known in COLUMNS if known in names):
-        try:
-            columns[key] = _values(table[key], f"{name}: column {key}")
-        except SweepError:
-            # As in a file: a status in words tells of a reading, and is none.
-            if key not in TOLD_BY_SENSOR:
-                raise
+    columns = _columns(table, [key for key in COLUMNS if key in names], name=name)
     rows = columns[REQUIRED[0]].size
     for key, values in columns.items():
         if values.size != rows:
@@ -109,6 +102,22 @@ def as_sweep(source: SweepLike) -> Sweep:
                 "expected one for each reading, NaN where there is none"
             )
     return Sweep.from_columns(columns, name=name)
+
+
+def _columns(table: Any, names: Sequence[str], *, name: str) -> dict[str, Array]:
+    """The columns of a sweep (n,) that a table holds. Raises SweepError where a cell is no number."""
+    from twin.errors import SweepError
+    from twin.sweep_columns import TOLD_BY_SENSOR
+
+    columns: dict[str, Array] = {}
+    for key in names:
+        try:
+            columns[key] = _values(table[key], f"{name}: column {key}")
+        except SweepError:
+            # As in a file: a status in words tells of a reading, and is none.
+            if key not in TOLD_BY_SENSOR:
+                raise
+    return columns
 
 
 def as_twin(twin: TwinLike | None, *, effects: tuple[Effect, ...] | None = None) -> Chain | None:

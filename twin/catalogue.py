@@ -50,9 +50,15 @@ def unnamed(key: str) -> bool:
     return base_name(key).startswith("unnamed")
 
 
+def found_together(effect: Effect) -> bool:
+    """Whether an effect is known only by several lines together, which are found one by one as those of others."""
+    return effect.comb is not None and effect.comb.unite is not None
+
+
 def of_one_source(effect: Effect) -> bool:
-    """Whether further lines of an effect are the multiples of its first one, or what that is a multiple of."""
-    return effect.line is not None and bool(effect.line.multiples)
+    """Whether further lines of an effect are the multiples of its first one or what that is a multiple of, or are known
+    for its own only together."""
+    return found_together(effect) or (effect.line is not None and bool(effect.line.multiples))
 
 
 def output_grid(effects: Iterable[Effect] = CATALOGUE) -> Effect | None:

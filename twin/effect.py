@@ -11,6 +11,7 @@ import numpy as np
 
 from twin.angles import TAU, Array
 from twin.found_by import BoolArray as BoolArray
+from twin.found_by import Comb as Comb
 from twin.found_by import FindMarks as FindMarks
 from twin.found_by import Line as Line
 from twin.found_by import Marks as Marks
@@ -144,6 +145,8 @@ class Effect:
         From the parameters of a first-order fit to those that an exact fit starts from.
     line : Line, optional
         For periodic shapes: the shape parameter is found by a periodogram.
+    comb : Comb, optional
+        For lines at whole orders: which they are, and how several are known for one cause.
     derived : callable
         From the parameters to further figures: value, low, high (both the value: as well known as they are), unit.
     angle_only : callable
@@ -200,6 +203,7 @@ class Effect:
     channel_shapes: tuple[str, ...] = ()
     begin: Callable[[Parameters], Parameters] = field(default=_as_they_are)
     line: Line | None = None
+    comb: Comb | None = None
     derived: Callable[[Parameters], Mapping[str, tuple[float, float, float, str]]] = field(default=_nothing_derived)
     angle_only: Callable[[Parameters], Mapping[str, tuple[float, float]]] = field(default=_all_told)
     spread: Callable[[Array, Parameters], Array] | None = None
@@ -310,6 +314,12 @@ class Effect:
         params[name] = replace(params[name], role="strength", lower=lower, upper=upper)
         return replace(
             self, params=params, shapes=_one_shape, zoomed=(), fitted_shapes=(), channel_shapes=(), line=None
+        )
+
+    def without_strengths(self, names: Iterable[str]) -> Effect:
+        """The effect where these of its strengths stay at their null."""
+        return replace(
+            self, params={**self.params, **{name: replace(self.params[name], role="shape") for name in names}}
         )
 
     @property

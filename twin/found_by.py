@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,30 @@ class Line:
         tried = np.linspace(low, high, 201)
         tried = np.concatenate([tried, np.unique(np.round(tried))])
         return np.sort(tried[self.within(tried) & (tried >= low) & (tried <= high)])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comb:
+    """Lines at whole orders over the turn that one cause makes.
+
+    ``orders`` maps the parameters to the orders of its lines. ``parts`` are groups of strengths of which each has to
+    show by itself for a search to take the cause: one of its lines alone is what makes a single line. ``unite`` maps
+    the orders of lines that have been found one by one to the shapes of the cause that may have made several of them,
+    most likely first, and ``united`` such a shape to all orders that it makes: of such a cause each line is an instance
+    of its own, with the order in ``order``. ``also``: the stage of which some part, that no effect stands for, makes
+    the same line where nothing but angles is recorded, and what would tell it apart.
+    """
+
+    orders: Callable[[Mapping[str, Any]], tuple[float, ...]]
+    parts: tuple[tuple[str, ...], ...] = ()
+    unite: Callable[[Sequence[int]], Sequence[Mapping[str, float]]] | None = None
+    united: Callable[[Mapping[str, Any]], tuple[int, ...]] | None = None
+    also: tuple[str, str] | None = None
+
+
+def order_of(values: Mapping[str, Any]) -> tuple[float, ...]:
+    """The one order of a cause that is a line: its parameter ``order``."""
+    return (float(values["order"]),)
 
 
 class FindMarks(Protocol):

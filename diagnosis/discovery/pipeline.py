@@ -20,6 +20,7 @@ from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit
 from diagnosis.discovery.stages.listed import listed
 from diagnosis.discovery.stages.observe import observe
+from diagnosis.discovery.stages.one_source import one_source
 from diagnosis.discovery.stages.own_parameters import own_parameters
 from diagnosis.discovery.stages.own_shapes import own_shapes
 from diagnosis.discovery.stages.predictive_check import predictive_check
@@ -48,6 +49,7 @@ PIPELINE: tuple[Stage, ...] = (
         repeated_frames,  # readings that repeat the one before
         variance,  # rows that are beyond doubt louder weigh less
         stepwise,  # causes in the mean: add, exchange, remove
+        one_source,  # lines that one cause makes together
         sense_check,  # who counts which way, now that the causes are known
         own_shapes,  # of a given twin's effects, which without the causes would go anywhere
         spread,  # causes in the scatter; the rows weigh by it

@@ -17,12 +17,12 @@ from diagnosis.discovery.fitting.intervals import (
     standard_deviations,
 )
 from diagnosis.discovery.fitting.joint_fit import Fit
-from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.marks.row_numbers import number_in_file
 from diagnosis.discovery.proof.changes import Change
 from diagnosis.discovery.proof.predictive_check import why_not_checked
 from diagnosis.discovery.result import Discovery
+from diagnosis.report.as_well import as_well
 from diagnosis.report.facts import facts
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
 from diagnosis.report.over_class import over_class
@@ -238,12 +238,7 @@ def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
         "false_alarm_probability": cause.false_alarm_probability,
         "heldout_rms_deg_before": cause.before_deg,
         "heldout_rms_deg_after": cause.after_deg,
-        "indistinguishable_from": list(dict.fromkeys(map(everywhere, cause.rivals))),
-        "rivals_sought": found.cut_short is None,
-        "to_tell_apart": advice(cause.options, found.fit.settings) if cause.rivals else "",
-        "to_tell_apart_options": [
-            {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options
-        ],
+        **as_well(found, cause),
     }
     if effect.marks is not None:
         touched = np.degrees(raw_residual(fit, found.sweep))[list(cause.rows)]

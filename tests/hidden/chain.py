@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from . import channel_causes as channel
+from . import period_causes as periods
 from . import shaft_causes as shaft
 from . import structures
 from . import word_causes as word
@@ -19,6 +20,7 @@ from .noise import Noise
 SHAFT: dict[str, Callable[[Array, Motion, Injected], Array]] = {
     "latency": shaft.latency,
     "drive_ripple": shaft.drive_ripple,
+    "motor_poles": periods.motor_poles,
     "cardan_coupling": shaft.cardan_coupling,
     "backlash": shaft.backlash,
     "bearing_wobble": shaft.bearing_wobble,
@@ -107,7 +109,7 @@ def field_channels(bench: Bench, causes: Sequence[Injected]) -> channel.Channels
     for name, ahead in PHASE.items():
         if name in by_name:
             extra_deg = extra_deg + ahead(motion, own, by_name[name])
-    angle = np.radians(own.sense * turned + own.zero_deg)
+    angle = _told(np.radians(own.sense * turned + own.zero_deg), by_name)
     cosine, sine = np.cos(angle), np.sin(angle + np.radians(extra_deg))
     if "saturation" in by_name:
         cosine = channel.saturation(cosine, by_name["saturation"])
@@ -118,6 +120,11 @@ def field_channels(bench: Bench, causes: Sequence[Injected]) -> channel.Channels
         if name in by_name:
             x, y = change((x, y), motion, by_name[name])
     return x, y
+
+
+def _told(angle: Array, by_name: Mapping[str, Injected]) -> Array:
+    """The field's angle as a sensor of one period would have it to read what one of several periods does."""
+    return periods.multipole(angle, by_name["multipole"]) if "multipole" in by_name else angle
 
 
 def reference(bench: Bench, causes: Sequence[Injected]) -> Array:

@@ -36,6 +36,9 @@ WHOLE = frozenset(
         "cordic_truncation.iterations",
         "drive_ripple.order",
         "magnet_harmonic.order",
+        "motor_poles.poles",
+        "motor_poles.slots",
+        "multipole.periods",
         "output_quantisation.bits",
         "output_quantisation.step_deg",
     }

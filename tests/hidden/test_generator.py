@@ -39,7 +39,7 @@ PEAK = {
     *STRUCTURES,
 } - {"noise_burst"}
 """Strength is the largest angle."""
-ROOT_MEAN_SQUARE = {"drive_ripple", "mains_pickup", "reference_ripple", "reference_jitter"}
+ROOT_MEAN_SQUARE = {"multipole", "motor_poles", "drive_ripple", "mains_pickup", "reference_ripple", "reference_jitter"}
 """Strength is sqrt(2) times the RMS."""
 
 

@@ -11,6 +11,7 @@ from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
 from tests.mutations.paper import PAPER
 from tests.mutations.parts import PARTS
+from tests.mutations.periods import PERIODS
 from tests.mutations.scripts import SCRIPTS
 from tests.mutations.settings import settings
 from tests.mutations.signs import signs
@@ -27,6 +28,7 @@ def mutations() -> tuple[Mutation, ...]:
         *NOISE,
         *DISCOVERY,
         *STAGES,
+        *PERIODS,
         *PAPER,
         *PARTS,
         *FORMS,

@@ -18,7 +18,15 @@ OTHERS = {
 WHOLE = {
     "mounting": {"zero", "magnet_harmonic", "magnet_misalignment"},
     "bench": {
-        *("backlash", "cardan_coupling", "bearing_wobble", "load_torsion", "drive_ripple", "reference_eccentricity"),
+        *(
+            "backlash",
+            "cardan_coupling",
+            "bearing_wobble",
+            "load_torsion",
+            "drive_ripple",
+            "motor_poles",
+            "reference_eccentricity",
+        ),
         *("stray_field", "mains_pickup", "thermal_zero_shift", "unnamed_speed_zero", "unnamed_flanks"),
     },
     "recording": {

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from twin.angles import Array, radians
-from twin.effect import BoolArray, Effect, Forward, Line, Param, Parameters
+from twin.effect import BoolArray, Comb, Effect, Forward, Line, Param, Parameters
+from twin.found_by import order_of
 from twin.motion import NOMINAL_C, RPM, Motion
 
 Weight = Callable[[Motion, Parameters], Array]
@@ -118,6 +119,7 @@ UNNAMED_ORDER = Effect(
     params=_order_params(1e5),
     forward=_weighted(_always),
     line=Line(param="order", clock="shaft", limits=_free_limits, within=unnamed_order),
+    comb=Comb(orders=order_of),
     needs=frozenset({"one turn"}),
     repeatable=True,
     kind="order",

@@ -2,6 +2,7 @@
 
 from twin.magnet.magnet_harmonic import MAGNET_HARMONIC
 from twin.magnet.magnet_misalignment import MAGNET_MISALIGNMENT
+from twin.magnet.motor_poles import MOTOR_POLES
 from twin.magnet.stray_field import STRAY_FIELD
 
-EFFECTS = (MAGNET_HARMONIC, MAGNET_MISALIGNMENT, STRAY_FIELD)
+EFFECTS = (MAGNET_HARMONIC, MAGNET_MISALIGNMENT, MOTOR_POLES, STRAY_FIELD)

@@ -9,7 +9,8 @@ import numpy as np
 
 from twin.angles import Array, radians
 from twin.drawing import whole
-from twin.effect import Effect, Param, Parameters
+from twin.effect import Comb, Effect, Param, Parameters
+from twin.found_by import order_of
 from twin.motion import Motion
 
 
@@ -64,6 +65,13 @@ MAGNET_HARMONIC = Effect(
     forward=forward,
     needs=frozenset({"one turn"}),
     shapes=shapes,
+    comb=Comb(
+        orders=order_of,
+        also=(
+            "mechanics",
+            "from mechanics (a pulley, gear or coupling): turn the magnet on its shaft: its own line follows",
+        ),
+    ),
     repeatable=True,
     drawing=drawing,
     source="azimuthal Fourier series of the field of an imperfectly magnetised cylinder",

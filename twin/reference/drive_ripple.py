@@ -8,7 +8,8 @@ import numpy as np
 
 from twin.angles import Array, radians
 from twin.drawing import whole
-from twin.effect import BoolArray, Effect, Line, Param, Parameters
+from twin.effect import BoolArray, Comb, Effect, Line, Param, Parameters
+from twin.found_by import order_of
 from twin.motion import Motion
 
 LOWEST_ORDER = 20
@@ -53,6 +54,13 @@ DRIVE_RIPPLE = Effect(
     },
     forward=forward,
     line=Line(param="order", clock="shaft", limits=limits, within=within, multiples=(2, 3, 4, 5)),
+    comb=Comb(
+        orders=order_of,
+        also=(
+            "mechanics",
+            "from mechanics (teeth of a belt or gear): count them, or turn the shaft by another drive",
+        ),
+    ),
     repeatable=True,
     drawing=drawing,
     needs=frozenset({"one turn"}),

@@ -22,9 +22,10 @@ from diagnosis.discovery.search.likelihood_ratio import (
     likelihood,
     settle,
 )
+from diagnosis.discovery.search.parts import lacks_a_part
 from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import Candidate
-from twin.catalogue import find, unnamed
+from twin.catalogue import find, found_together, unnamed
 from twin.effect import Effect
 
 
@@ -43,7 +44,8 @@ class Search:
     @classmethod
     def among(cls, effects: Sequence[Effect], fit: Fit) -> Search:
         """The search of a fit for these effects."""
-        visible = tuple(effect for effect in effects if effect.visible_in(fit.observations.motion.provides))
+        provides = fit.observations.motion.provides
+        visible = tuple(effect for effect in effects if effect.visible_in(provides) and not found_together(effect))
         threshold = fit.settings.effect_log_p(len(visible))
         if fit.weighting.coarse:
             # No smooth model of coarse stairs takes all of them out: only what is beyond doubt counts.
@@ -78,7 +80,7 @@ def _held_or_exchanged(fit: Fit, key: str, keys: list[str], plan: Search) -> tup
     others = [other for other in keys if other != key]
     removal = Removal.of(fit, key)
     idle = removal.log_p + handicap(removal.effect, fit) > plan.level_beside(fit, others)
-    if idle or ends_at_bound(fit, key):
+    if idle or ends_at_bound(fit, key) or lacks_a_part(fit, key, fit.settings.footprint_log_p):
         return removal.without, others, plan
     for rival in _rivals(fit, removal, plan.contenders.get(key, plan.effects), others):
         trial = Trial.of(removal.removed, rival)

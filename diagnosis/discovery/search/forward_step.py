@@ -20,6 +20,7 @@ from diagnosis.discovery.search.likelihood_ratio import (
     settle,
     take_out,
 )
+from diagnosis.discovery.search.parts import of_parts
 from diagnosis.discovery.search.screening import Base, Candidate, screen, screen_one
 from twin.catalogue import base_name, find, of_one_source, unnamed
 from twin.effect import Effect
@@ -109,9 +110,10 @@ def best_addition(
     members = either(*(t.members for t in trials))
     judged = [(t.log_p(fit, members, base.dof) + handicap(t.candidate.effect, fit), k) for k, t in enumerate(trials)]
     score, place = min(judged)
-    if ends_at_bound(trials[place].fit, trials[place].key):
-        others = [effect for effect in effects if effect.name != trials[place].candidate.effect.name]
-        return best_addition(fit, base, others, keys, threshold)
+    if ends_at_bound(trials[place].fit, trials[place].key) or (score > threshold and of_parts(near[0].effect)):
+        # Of lines that one cause joins first order may promise what the cause does not keep: they are asked alone.
+        tried = trials[place].candidate.effect if score <= threshold else near[0].effect
+        return best_addition(fit, base, [one for one in effects if one.name != tried.name], keys, threshold)
     if score > threshold:
         return None
     trial, chosen = trials[place], trials[place].candidate

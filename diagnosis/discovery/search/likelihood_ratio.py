@@ -200,5 +200,5 @@ def doubt_beside(fit: Fit, keys: Sequence[str]) -> float:
 
 def _aliased(effect: Effect, fit: Fit) -> bool:
     """Whether an effect has so many shapes, lines and places, that stairs' own pattern resembles one of them."""
-    any_order = effect.line is not None or "order" in effect.params or unnamed(effect.name)
+    any_order = effect.line is not None or effect.comb is not None or "order" in effect.params or unnamed(effect.name)
     return any_order or len(effect.shapes(fit.linear.motion)) > fit.settings.aliased_shapes

@@ -20,7 +20,7 @@ from diagnosis.discovery.fitting.linearised_chain import Term
 from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.search.periodogram import line_shapes
 from twin.angles import Array, IntArray
-from twin.effect import Effect
+from twin.effect import BoolArray, Effect
 
 _CHUNK = 4_000_000
 _ZOOMS = 3
@@ -142,10 +142,25 @@ def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, floa
         return None
     looks = max(looks, float(len(shapes)))
     gains, coefficients = gains_of(base, effect, shapes)
+    if effect.comb is not None and effect.comb.parts:
+        gains = np.where(borne_out(base, effect, shapes, gains, looks=looks), gains, 0.0)
     if not np.any(gains > 0.0):
         return None
     (point,) = sharpened(base, effect, shapes, gains, coefficients)
     return candidate_at(base, effect, point.shape, point.gain, point.coefficient, looks=looks)
+
+
+def borne_out(
+    base: Base, effect: Effect, shapes: Sequence[Mapping[str, float]], gains: Array, *, looks: float
+) -> BoolArray:
+    """At which shapes (batch, G) of these gains each part of the effect shows by itself beside the others."""
+    level = base.fit.settings.footprint_log_p
+    terms = len(base.fit.linear.terms(effect))
+    found = np.asarray(by_chance(base, effect, gains, terms, looks) < level)
+    for part in effect.comb.parts if effect.comb is not None and found.any() else ():
+        rest, _ = gains_of(base, effect.without_strengths(part), shapes)
+        found &= by_chance(base, effect, gains - rest, len(part), 1.0) < level
+    return found
 
 
 def candidate_at(

@@ -22,6 +22,7 @@ from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit
 from diagnosis.discovery.stages.listed import listed
 from diagnosis.discovery.stages.observe import observe
+from diagnosis.discovery.stages.one_source import one_source
 from diagnosis.discovery.stages.own_parameters import own_parameters
 from diagnosis.discovery.stages.own_shapes import own_shapes
 from diagnosis.discovery.stages.predictive_check import predictive_check
@@ -48,7 +49,10 @@ from twin.angles import Array
 from twin.chain import Chain
 from twin.sweep import Sweep
 
-LOOP: tuple[Stage, ...] = (recording_levels, repeated_frames, variance, stepwise, sense_check, own_shapes, spread)
+LOOP: tuple[Stage, ...] = (
+    *(recording_levels, repeated_frames, variance, stepwise, one_source, sense_check),
+    *(own_shapes, spread),
+)
 """The stages that the pipeline repeats until none of them has anything more to say."""
 ONCE: tuple[Stage, ...] = (
     *(observe, initial_fit, row_masks, own_parameters, quantisation),

@@ -148,7 +148,7 @@ def test_columns_of_a_candidate_at_null(chain: str, effect: Effect) -> None:
             # An amplitude has one side: what is even in it, as a single displacement squared, shows there alone.
             below = 0.0 if param.lower == 0.0 else -step
             at = {name: values[name] for name in names} | dict.fromkeys(effect.roles("phase"), term.phase_deg)
-            up, down = (observed(present(base, effect, {**at, term.param: to})) for to in (step, below))
+            up, down = (observed(present(base, effect, {**at, term.param: param.null + to})) for to in (step, below))
             change, size = wrap(up - down) / (step - below), 1.0 / step
         else:
             whole = {name: values[name] for name in names}
@@ -157,8 +157,9 @@ def test_columns_of_a_candidate_at_null(chain: str, effect: Effect) -> None:
             elif effect.roles("phase"):
                 whole |= {effect.roles("phase")[0]: effect.null()[effect.roles("phase")[0]]}
             change, size = wrap(observed(present(base, effect, whole)) - observed(base)), 1.0
-        # The next order: the square of the angle that it turns by.
-        second = 2.0 * float(np.max(np.abs(change)) / size) ** 2 * size
+        # The next order: the square of the angle that it turns by, which within one of several periods is so many times
+        # as large.
+        second = 2.0 * values.get("periods", 1.0) * float(np.max(np.abs(change)) / size) ** 2 * size
         rounding = 4.0 * EPS * float(np.max(np.abs(observed(base)))) * size
         assert np.max(np.abs(column)) > 10.0 * rounding
         behind = 2.0 * INNER_STEP * float(np.max(np.abs(change)))

@@ -45,7 +45,7 @@ CHIPPED = 13
 def test_a_displaced_magnet_is_in_the_class_of_the_order_that_it_makes() -> None:
     (cause,) = misaligned().causes
     assert cause.name == HARMONIC
-    assert cause.indistinguishable_from == (MISPLACED,)
+    assert cause.indistinguishable_from == (MISPLACED, "mechanics")
     assert "record vx and vy" in cause.to_tell_apart
 
 

@@ -1,0 +1,36 @@
+"""What would explain the same readings as well as a cause does, and what would tell them apart."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from diagnosis.discovery.finding import Finding
+from diagnosis.discovery.further.power import advice
+from diagnosis.discovery.result import Discovery
+from twin.catalogue import find
+from twin.each_recording import everywhere
+
+
+def as_well(found: Discovery, cause: Finding) -> dict[str, Any]:
+    """The answer's keys of a cause: its rivals, and the measurements that part them.
+
+    Among the rivals is the stage of which a part that no effect stands for makes the same line, where nothing but
+    angles is recorded.
+    """
+    told = [advice(cause.options, found.fit.settings)] if cause.rivals else []
+    beside = _beside(found, cause)
+    return {
+        "indistinguishable_from": [*dict.fromkeys(map(everywhere, cause.rivals)), *(stage for stage, _ in beside)],
+        "rivals_sought": found.cut_short is None,
+        "to_tell_apart": "; ".join([*told, *(words for _, words in beside)]),
+        "to_tell_apart_options": [
+            {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options
+        ],
+    }
+
+
+def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
+    """Such stages, each with what would tell it apart; none where rivals were not looked for."""
+    comb = find(cause.keys[0], found.fit.chain.effects).comb
+    sought = found.cut_short is None and found.fit.observations.observables == 1
+    return [comb.also] if sought and comb is not None and comb.also is not None else []

@@ -1,0 +1,63 @@
+"""Mutations of what several lines have in common: each mechanism off, with the test that notices."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation
+
+_SEARCH = "tests/diagnosis/discovery/search/test_parts.py"
+_STAGES = "tests/diagnosis/discovery/stages/test_one_source.py"
+
+PERIODS: tuple[Mutation, ...] = tuple(
+    Mutation(name, file, old, new, (test,))
+    for name, file, old, new, test in (
+        (
+            "periods.one_line_is_enough_for_a_sensor_of_several",
+            "diagnosis/discovery/search/screening.py",
+            "gains = np.where(borne_out(base, effect, shapes, gains, looks=looks), gains, 0.0)",
+            "pass",
+            f"{_SEARCH}::test_a_screening_passes_over_periods_of_which_only_one_line_shows",
+        ),
+        (
+            "periods.a_part_that_has_gone_is_not_missed",
+            "diagnosis/discovery/search/exchange.py",
+            " or lacks_a_part(fit, key, fit.settings.footprint_log_p)",
+            "",
+            f"{_SEARCH}::test_one_that_was_taken_before_the_rest_was_known_gives_way",
+        ),
+        (
+            "periods.a_motor_by_two_of_a_magnets_orders",
+            "twin/magnet/motor_poles.py",
+            "fewest = 4 if slots % poles == 0 else 2 if bare else 3",
+            "fewest = 2",
+            f"{_STAGES}::test_the_lines_of_a_motor_are_one_cause_and_others_stay[two orders of a magnet]",
+        ),
+        (
+            "periods.a_motor_that_cannot_be_wound",
+            "twin/magnet/motor_poles.py",
+            "slots % (PHASES * gcd(slots, poles // 2)) == 0",
+            "slots % PHASES == 0",
+            f"{_STAGES}::test_a_motor_is_one_that_can_be_wound_and_makes_most_of_the_lines",
+        ),
+        (
+            "periods.lines_of_a_motor_stay_apart",
+            "diagnosis/discovery/stages/one_source.py",
+            "return state.with_(joint, keys",
+            "state.with_(joint, keys",
+            f"{_STAGES}::test_the_lines_of_a_motor_are_one_cause_and_others_stay[slots, poles and their doubles]",
+        ),
+        (
+            "periods.lines_of_a_motor_are_entries_of_their_own",
+            "twin/catalogue.py",
+            "return found_together(effect) or ",
+            "return ",
+            f"{_STAGES}::test_the_answer_names_the_motor_once_with_its_lines",
+        ),
+        (
+            "periods.mechanics_make_no_lines",
+            "diagnosis/report/as_well.py",
+            "return [comb.also] if sought",
+            "return [] if sought",
+            "tests/diagnosis/report/test_as_well.py::test_mechanics_may_stand_behind_a_line_of_an_angle_alone",
+        ),
+    )
+)

@@ -1,0 +1,90 @@
+"""multipole: the sensor turns several periods while the shaft turns once, and errs within each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from twin.angles import Array, radians, wrap
+from twin.drawing import YARDSTICK_DEG
+from twin.effect import Effect, Param, Parameters
+from twin.found_by import Comb
+from twin.hall.gain_mismatch import GAIN_MISMATCH
+from twin.hall.offset import OFFSET
+from twin.hall.phase import PHASE
+from twin.hall.quadratic_nonlinearity import QUADRATIC_NONLINEARITY
+from twin.motion import Motion
+
+MOST_PERIODS = 19
+"""Beyond it a line and its double are what a motor sets, unless somebody says how many periods the sensor has."""
+
+
+def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    """Turn the field angle (..., 2, n) by what the error model does within a period, over the number of periods.
+
+    The periods are counted, so that the angle of one, divided by their number, is that of the shaft.
+    """
+    periods = np.asarray(values["periods"])
+    along_x, along_y = periods * signal[..., :1, :], periods * signal[..., 1:, :]
+    x, y = np.cos(along_x), np.sin(along_y + radians(values["beta_deg"]))
+    bent = 0.01 * np.asarray(values["q_percent"])
+    x, y = x + bent * x**2, y + bent * y**2
+    x, y = x + 0.01 * np.asarray(values["x_percent"]), y + 0.01 * np.asarray(values["y_percent"])
+    away = np.arctan2(y * np.asarray(values["ratio"]), x) - np.arctan2(np.sin(along_y), np.cos(along_x))
+    return np.asarray(signal + wrap(away) / periods)
+
+
+def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    return [{"periods": float(p)} for p in range(2, MOST_PERIODS + 1) if 6 * p < motion.points_per_turn]
+
+
+def orders(values: Parameters) -> tuple[float, ...]:
+    """The orders of its lines, to first order."""
+    return float(values["periods"]), 2.0 * float(values["periods"])
+
+
+def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
+    """Few periods, as magnets and resolvers have; the errors within them grow with their number for the same angle."""
+    periods = 2.0 + np.floor(7.0 * uniform[:, 2])
+    size = strength_deg / YARDSTICK_DEG * periods
+    around, share = 2.0 * np.pi * uniform[:, 0], 2.0 * np.pi * uniform[:, 3]
+    return {
+        "periods": periods,
+        "x_percent": 0.15 * size * np.cos(around),
+        "y_percent": 0.15 * size * np.sin(around),
+        "ratio": 1.0 + 0.003 * size * np.cos(share),
+        "beta_deg": 0.15 * size * np.sin(share),
+    }
+
+
+def _own(effect: Effect, name: str, *, mirror: Literal[-1, 0, 1]) -> Param:
+    """A factor of the error model as a factor within a period."""
+    known = effect.params[name]
+    return replace(known, doc=f"{known.doc}, within a period", typical=4.0 * known.typical, scatter=0.0, mirror=mirror)
+
+
+MULTIPOLE = Effect(
+    name="multipole",
+    stage="hall",
+    acts_on="field",
+    params={
+        "periods": Param(
+            unit="1/turn", null=2.0, lower=2.0, upper=1e4, doc="periods of the sensor", role="shape", counts=True
+        ),
+        "x_percent": _own(OFFSET, "x_percent", mirror=1),
+        "y_percent": _own(OFFSET, "y_percent", mirror=-1),
+        "ratio": _own(GAIN_MISMATCH, "ratio", mirror=1),
+        "beta_deg": _own(PHASE, "beta_deg", mirror=-1),
+        "q_percent": _own(QUADRATIC_NONLINEARITY, "q_percent", mirror=0),
+    },
+    forward=forward,
+    needs=frozenset({"one turn"}),
+    shapes=shapes,
+    comb=Comb(orders=orders, parts=(("x_percent", "y_percent"), ("ratio", "beta_deg"))),
+    drawing=drawing,
+    source="the paper's Eq. 1, 2 and 5 with p times the angle: a sensor over p pole pairs, a resolver of p speeds",
+    signature="orders p, 2p and 3p, phases as of the error model within a period",
+)

@@ -13,6 +13,7 @@ from twin.angles import Array
 from twin.errors import SweepError
 from twin.logs.angles import AngleUnit, Pair, units_of_pair
 from twin.logs.channels import channels
+from twin.logs.lookups import statements_of
 from twin.logs.names import Meaning, meaning_of
 from twin.logs.others import others
 from twin.logs.statement import Column, text_of
@@ -20,6 +21,7 @@ from twin.logs.table import Table
 from twin.sweep_columns import COLUMNS
 
 _SHOWN, _SIDES = 2, 2
+_FIT = {2: "two guesses fit"}
 _FEWEST, _LARGEST = 4, 1e20
 """Numbers that a column must hold to be judged, and the largest; nanoseconds since 1970 are 2e18."""
 _MOST_ANGLES = 12
@@ -67,6 +69,8 @@ class _Candidate:
 
 def guessed(table: Table) -> Guess:
     """The one statement that fits a table. Raises SweepError where none does, and where two do."""
+    if table.entries:
+        return _guessed_of_entries(table)
     said = tuple(meaning_of(name) for name in table.names)
     usable = [k for k, values in enumerate(table.values) if k not in table.faults and _told(values)]
     angles = [k for k in usable if said[k].role in ("angle", "")]
@@ -85,6 +89,13 @@ def guessed(table: Table) -> Guess:
     columns = sorted((*pair, *found.columns, *rest.columns), key=lambda one: COLUMNS.index(one.target))
     unused = unused_by(tuple(columns), table, {**found.why, **rest.why})
     return Guess(tuple(columns), (*found.notes, *rest.notes), unused)
+
+
+def _guessed_of_entries(table: Table) -> Guess:
+    fitting, notes = statements_of(table)
+    if len(fitting) > 1:
+        _raise_open(table, _FIT.get(len(fitting), "several guesses fit"), [text_of(one) for one in fitting])
+    return Guess(fitting[0], notes, unused_by(fitting[0], table))
 
 
 def _told(values: Array) -> bool:

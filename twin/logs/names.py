@@ -31,7 +31,9 @@ _WORDS = {
     "agc": "agc",
     "status": "status",
     "frame": "frame frames framecounter",
-    "other": "index idx sample samples n no nr row i id flag flags error err diff deviation mag_field "
+    "error": "error err deviation dev abweichung fehler",
+    "correction": "correction corrections corr comp compensation korrektur",
+    "other": "index idx sample samples n no nr row i id flag flags diff mag_field "
     "voltage torque crc counter load power valid ok note comment",
 }
 _MEANING = {word: role for role, words in _WORDS.items() for word in words.split()}
@@ -45,7 +47,7 @@ _PARTED = (
 """A unit in brackets, behind a slash, a comma or "in"."""
 _AXES = {"x": "cos", "y": "sin"}
 _SURE, _LIKELY = 2, 1
-_OF_SENSOR = ("current", "magnitude", "agc", "status", "frame")
+_OF_SENSOR = ("current", "magnitude", "agc", "status", "frame", "error", "correction")
 _ORDER = (*_OF_SENSOR, "other", "temperature", "speed", "gap", "time", "direction", "sin", "cos", "mounting")
 """Roles that a name has before those of an angle: the speed of the encoder is a speed."""
 

@@ -10,11 +10,12 @@ from twin.angles import Array
 from twin.bounded_input import LARGEST_SWEEP_BYTES, checked_bytes, whole
 from twin.errors import SweepError, UserError
 from twin.log import LOG
+from twin.logs.arrays import read_arrays
 from twin.logs.formats import read_format
 from twin.logs.guess import Guess, OpenGuess, guessed, in_words, unused_by
 from twin.logs.statement import Column, parsed, values_of
 from twin.logs.table import Table
-from twin.logs.text import read_text
+from twin.logs.text import decoded, read_rows
 
 EXPECTED = "a log (CSV, XLSX, MAT, NPZ, HDF5 or Parquet)"
 
@@ -35,7 +36,11 @@ def read_table(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> Table:
     except UserError as error:
         raise SweepError(str(error)) from None
     found = read_format(raw, file=path.name)
-    return read_text(raw, file=path.name) if found is None else found
+    if found is not None:
+        return found
+    text, encoding = decoded(raw, path.name)
+    found = read_arrays(text, file=path.name)
+    return read_rows(text, encoding, file=path.name) if found is None else found
 
 
 def read_log(path: Path, *, columns: str | None = None, max_bytes: int = LARGEST_SWEEP_BYTES) -> Log:

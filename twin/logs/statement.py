@@ -1,15 +1,16 @@
 """What ``--columns`` says: which column of a log becomes which of a sweep, by which factor and unit.
 
 ``reference_deg=enc_counts*360/40000, measured_deg=angle:rad``: a column of the sweep, a column of the log by its name,
-by its name in single quotes, or by its place (``#3``); then factors, at most one addend, and a unit.
-``measured_deg=atan2(sin, cos)`` is the angle of two channels.
+by its name in single quotes, or by its place (``#3``); then factors, at most one addend, and a unit; then at most one
+more column, its factors and its unit behind a plus or a minus. ``measured_deg=atan2(sin, cos)`` is the angle of two
+channels, ``measured_deg=unwrap(theta_e:rad)/7`` an angle that turns seven times a turn, followed over its turns.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,8 +27,11 @@ _TERM = re.compile(rf"\s*({_NAME})((?:\s*[*/]\s*-?{_NUMBER})*)(\s*[+-]\s*{_NUMBE
 _STEP = re.compile(rf"([*/+-])\s*(-?{_NUMBER})")
 _BARE = re.compile(r"[^\W\d]\w*(?:\.\w+)*")
 _UNQUOTED = re.compile(r"[^\x00-\x1f'\"$`\\!]+")
-_ITEM = re.compile(r"(?:'[^']*'|\((?:'[^']*'|[^()'])*\)|[^,'(])+|[^,]")
-_UNIT = re.compile(r"\s*:\s*([^\s:]+)\s*")
+_BRACKETS = r"\((?:'[^']*'|[^()'])*\)"
+_ITEM = re.compile(rf"(?:'[^']*'|\((?:'[^']*'|{_BRACKETS}|[^()'])*\)|[^,'(])+|[^,]")
+_UNIT = re.compile(r"\s*:\s*([^\s:+-]+)\s*")
+_UNWRAPPED = re.compile(rf"\s*unwrap\s*\((.*)\)\s*/\s*({_NUMBER})\s*")
+_SECOND = re.compile(r"\s*([+-])(.*)", re.DOTALL)
 EXAMPLE = "reference_deg=enc_counts*360/40000, measured_deg=angle:rad"
 
 
@@ -53,30 +57,74 @@ class Term:
 
 
 @dataclass(frozen=True)
+class Addend:
+    """A second column of a log that is added (``+``) to a first or taken off it (``-``), in a unit of its own."""
+
+    sign: str
+    term: Term
+    unit: str | None = None
+
+    def of(self, table: Table) -> Array:
+        """What is added (n,), in the unit of the sweep's column. Raises SweepError."""
+        values = _in_unit(self.term.of(table), self.unit)
+        return values if self.sign == "+" else -values
+
+    def __str__(self) -> str:
+        return f"{self.sign}{_with_unit(self.term, self.unit)}"
+
+
+@dataclass(frozen=True)
 class Column:
-    """One column of the sweep: a term and its unit, or the angle of two terms (``across`` is the second channel)."""
+    """One column of the sweep: a term and its unit, or the angle of two terms (``across`` is the second channel).
+
+    ``plus`` is a second term that is added to it. ``per`` is how often the angle turns in a turn of the shaft: it is
+    followed over its turns and divided by it.
+    """
 
     target: str
     term: Term
     unit: str | None = None
     across: Term | None = None
+    plus: Addend | None = None
+    per: float | None = None
 
     def of(self, table: Table) -> Array:
         """The values (n,) in the unit of the sweep's column. Raises SweepError."""
         values = self.term.of(table)
         if self.across is not None:
-            return np.degrees(np.arctan2(values, self.across.of(table)))
-        return values if self.unit is None else UNITS[self.unit].converted(values)
+            values = np.degrees(np.arctan2(values, self.across.of(table)))
+        else:
+            values = _in_unit(values, self.unit)
+        if self.plus is not None:
+            values = values + self.plus.of(table)
+        return values if self.per is None else unwrapped_deg(values) / self.per
 
     @property
     def sources(self) -> tuple[str, ...]:
         """The columns of the log that it is made of."""
-        return (self.term.source,) if self.across is None else (self.term.source, self.across.source)
+        further = (self.across, None if self.plus is None else self.plus.term)
+        return (self.term.source, *(term.source for term in further if term is not None))
 
     def __str__(self) -> str:
-        if self.across is not None:
-            return f"{self.target}=atan2({self.term}, {self.across})"
-        return f"{self.target}={self.term}{'' if self.unit is None else f':{self.unit}'}"
+        text = _with_unit(self.term, self.unit) if self.across is None else f"atan2({self.term}, {self.across})"
+        text += "" if self.plus is None else str(self.plus)
+        return f"{self.target}={text if self.per is None else f'unwrap({text})/{self.per:.15g}'}"
+
+
+def unwrapped_deg(angle_deg: Array) -> Array:
+    """An angle (n,) [deg] over its turns from row to row; rows without one stay so and interrupt nothing."""
+    known = np.isfinite(angle_deg)
+    followed = np.full(angle_deg.shape, np.nan)
+    followed[known] = np.unwrap(angle_deg[known], period=360.0)
+    return followed
+
+
+def _in_unit(values: Array, unit: str | None) -> Array:
+    return values if unit is None else UNITS[unit].converted(values)
+
+
+def _with_unit(term: Term, unit: str | None) -> str:
+    return f"{term}{'' if unit is None else f':{unit}'}"
 
 
 def can_be_quoted(name: str) -> bool:
@@ -119,6 +167,15 @@ def _column(item: str) -> Column:
         raise UserError(f"--columns: {shown(item.strip())}: expected COLUMN=NAME, e.g. {EXAMPLE!r}")
     if target not in COLUMNS:
         raise UserError(f"--columns: {shown(target)} is no column of a sweep; expected one of {', '.join(COLUMNS)}")
+    turned = _UNWRAPPED.fullmatch(rest) if QUANTITY.get(target) == "angle" else None
+    if turned and float(turned[2]) == 0.0:
+        raise UserError(f"--columns: {shown(item.strip(), 80)}: {turned[2]} is no factor; expected a number but 0")
+    column = _sum(target, turned[1] if turned else rest, item)
+    return column if turned is None else replace(column, per=float(turned[2]))
+
+
+def _sum(target: str, rest: str, item: str) -> Column:
+    """A term or the angle of two, and what is added to it."""
     pair = re.fullmatch(r"\s*atan2\s*\((.*)\)\s*", rest)
     if pair and QUANTITY.get(target) == "angle":
         terms = [_term(part, item)[0] for part in _items(pair[1])]
@@ -126,7 +183,18 @@ def _column(item: str) -> Column:
             raise UserError(f"--columns: {shown(item.strip())}: expected two channels, e.g. {target}=atan2(sin, cos)")
         return Column(target, terms[0], across=terms[1])
     term, more = _term(rest, item, whole=False)
-    return Column(target, term, unit=_unit(more, target, item))
+    unit, more = _unit(more, target, item)
+    second = _SECOND.fullmatch(more)
+    if not second:
+        return Column(target, term, unit=unit)
+    added, more = _term(second[2], item, whole=False)
+    added_unit, more = _unit(more, target, item)
+    if more.strip() or any(sign in "+-" for sign, _ in added.steps):
+        raise UserError(
+            f"--columns: {shown(item.strip(), 80)}: more than two columns, or a number behind the second; expected at "
+            "most two, the number behind the first, e.g. 'reference_deg=index*360/64-2.5-lut:rad'"
+        )
+    return Column(target, term, unit=unit, plus=Addend(second[1], added, added_unit))
 
 
 def _term(text: str, item: str, *, whole: bool = True) -> tuple[Term, str]:
@@ -145,13 +213,14 @@ def _term(text: str, item: str, *, whole: bool = True) -> tuple[Term, str]:
     return Term(name, steps), text[found.end() :]
 
 
-def _unit(text: str, target: str, item: str) -> str | None:
-    """The unit behind a term; None where nothing stands there. Raises UserError."""
-    if not text.strip():
-        return None
-    found = _UNIT.fullmatch(text)
+def _unit(text: str, target: str, item: str) -> tuple[str | None, str]:
+    """The unit behind a term, None where nothing stands there, and what follows. Raises UserError."""
+    if not text.strip() or _SECOND.fullmatch(text):
+        return None, text
+    found = _UNIT.match(text)
     fitting = [name for name, unit in UNITS.items() if unit.quantity == QUANTITY.get(target)]
-    if not found or found[1] not in fitting:
+    rest = text[found.end() :] if found else ""
+    if not found or found[1] not in fitting or (rest and not _SECOND.fullmatch(rest)):
         units = f"one of {', '.join(fitting)} behind a colon" if fitting else f"none, as {target} has no unit"
         raise UserError(f"--columns: {shown(item.strip(), 80)}: found {shown(text.strip())} as unit; expected {units}")
-    return found[1]
+    return found[1], rest

@@ -16,7 +16,8 @@ class Table:
     """Columns of a log, each (n,), NaN where a cell is missing.
 
     ``names`` are those of the file, empty where it gives none. ``faults`` says for a column's place which cell is no
-    number, ``notes`` how the file was read, ``left`` what it holds beside columns of numbers.
+    number, ``notes`` how the file was read, ``left`` what it holds beside columns of numbers. ``entries``: the rows are
+    the entries of a firmware's table, and the first column, ``index``, counts them from 0.
     """
 
     file: str
@@ -25,6 +26,7 @@ class Table:
     faults: Mapping[int, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     left: tuple[str, ...] = ()
+    entries: bool = False
 
     @property
     def sources(self) -> tuple[str, ...]:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import codecs
 import csv
+import math
 import re
 from collections import Counter
 from collections.abc import Sequence
 
+import numpy as np
+
 from twin.errors import SweepError
-from twin.logs.cells import Row, is_number, table_of
+from twin.logs.cells import Row, is_number, number_of, table_of
 from twin.logs.table import Table
 from twin.shown import shown
 
@@ -18,13 +21,14 @@ _SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", "": 
 _COMMENTS = ("#", "%", "//")
 _JUDGED_LINES = 400
 """Lines at the end of a file that its separator is told by: far from what may stand above the numbers."""
+_FEW_ROWS, _WIDE_ROW = 4, 16
+"""So few rows of so many cells are no log, but the entries of a table."""
 _WIDE_SHARE = 0.4
 """Share of zero bytes in every other place from which a text without a mark is UTF-16."""
 
 
-def read_text(raw: bytes, *, file: str) -> Table:
-    """The table in a text file. Raises SweepError where there is none."""
-    text, encoding = _decoded(raw, file)
+def read_rows(text: str, encoding: str, *, file: str) -> Table:
+    """The table in a text, a row a line. Raises SweepError where there is none."""
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     numbered = [(k, line.strip("\ufeff\0 ").rstrip()) for k, line in enumerate(lines, start=1)]
     told = [(k, line) for k, line in numbered if line.strip()]
@@ -33,6 +37,9 @@ def read_text(raw: bytes, *, file: str) -> Table:
         raise SweepError(f"{file}: the file is empty; expected a header line and one row per reading")
     separator = _separator([line for _, line in plain[-_JUDGED_LINES:]])
     if separator is None:
+        single = _one_a_line(plain, file=file, notes=(encoding, "one number in each line"))
+        if single is not None:
+            return single
         raise SweepError(
             f"{file}: line {plain[-1][0]} holds {shown(plain[-1][1])}; expected two or more numbers in each line, "
             "parted by commas, semicolons, tabs or blanks: export the log as CSV"
@@ -45,10 +52,30 @@ def read_text(raw: bytes, *, file: str) -> Table:
     ]
     rows = _without_empty_ends(rows)
     notes = (encoding, f"cells parted by {_SEPARATORS[separator]}")
+    if len(rows) <= _FEW_ROWS and len(rows[-1].cells) >= _WIDE_ROW:
+        listed = _entries([cell for row in rows for cell in row.cells], "entry", file=file, notes=notes)
+        if listed is not None:
+            return listed
     return table_of(rows, remarks, file=file, comma_parts=separator == ",", notes=notes)
 
 
-def _decoded(raw: bytes, file: str) -> tuple[str, str]:
+def _one_a_line(lines: Sequence[tuple[int, str]], *, file: str, notes: tuple[str, ...]) -> Table | None:
+    """One number in each line, with or without a name above them, as a table's entries; None for anything else."""
+    cells = [line.strip().rstrip(",;").strip() for _, line in lines]
+    named = not is_number(cells[0], comma_parts=False)
+    return _entries(cells[named:], cells[0] if named else "entry", file=file, notes=notes)
+
+
+def _entries(cells: Sequence[str], name: str, *, file: str, notes: tuple[str, ...]) -> Table | None:
+    """Numbers as the entries of a table; None where one is no number, or they are few."""
+    values = [number_of(cell, comma_parts=False) for cell in cells]
+    if len(values) < _WIDE_ROW or any(value is None or math.isnan(value) for value in values):
+        return None
+    entries = np.array(values, dtype=np.float64)
+    return Table(file, ("index", name), (np.arange(entries.size, dtype=np.float64), entries), notes=notes, entries=True)
+
+
+def decoded(raw: bytes, file: str) -> tuple[str, str]:
     """The text and the name of its encoding. Raises SweepError for what is no text."""
     encoding = "UTF-8"
     wide = next((bom for bom in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) if raw.startswith(bom)), None)

@@ -1,0 +1,108 @@
+"""Tables of firmwares are read to the angles that they store, or asked back with the statement that reads them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.command_line import halltwin
+from tests.untidy.tables import Stored, stored
+from twin.errors import SweepError
+from twin.logs.guess import OpenGuess
+from twin.logs.read import Log, read_log
+from twin.sweep import Sweep
+
+STORED = stored()
+READ = [name for name, one in STORED.items() if not one.asked]
+ASKED = [name for name, one in STORED.items() if one.asked]
+
+
+def written(one: Stored, folder: Path) -> Path:
+    path = folder / "table.txt"
+    path.write_text(one.text, encoding="utf-8")
+    return path
+
+
+def check_same(sweep: Sweep, one: Stored) -> None:
+    """Row by row the angles that the table stores."""
+    for found, expected in ((sweep.reference_deg, one.reference_deg), (sweep.measured_deg, one.measured_deg)):
+        assert np.max(np.abs((found - expected + 180.0) % 360.0 - 180.0)) <= one.resolution_deg
+
+
+def told(log: Log) -> str:
+    return " ".join([log.guess.text, *log.guess.notes, *log.guess.unused, *log.table.notes, *log.table.left])
+
+
+@pytest.mark.parametrize("name", READ)
+def test_a_table_is_read_to_the_angles_that_it_stores(name: str, tmp_path: Path) -> None:
+    """Its guess, said by ``--columns``, reads the same; the sweep knows that its readings are the table's index."""
+    one = STORED[name]
+    path = written(one, tmp_path)
+    log = read_log(path)
+    for word in one.told:
+        assert word in told(log)
+    sweep = Sweep.read(path, columns=log.guess.text)
+    check_same(sweep, one)
+    assert np.array_equal(sweep.reference_deg, log.columns["reference_deg"])
+    if one.grid_deg is not None:
+        assert sweep.reading_grid_deg == pytest.approx(one.grid_deg)
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_a_table_that_fits_several_ways_is_asked_back(name: str, tmp_path: Path) -> None:
+    """With the right one told first."""
+    one = STORED[name]
+    path = written(one, tmp_path)
+    with pytest.raises(OpenGuess, match="guesses fit") as caught:
+        read_log(path)
+    check_same(Sweep.read(path, columns=caught.value.options[0]), one)
+
+
+def test_of_two_sources_one_is_asked_for(tmp_path: Path) -> None:
+    text = STORED["moteus"].text
+    both = written(Stored(text + text.replace("sources.0", "sources.2"), *[np.zeros(1)] * 2, 0.0), tmp_path)
+    with pytest.raises(OpenGuess, match=r"two guesses fit.*sources\.0.*sources\.2"):
+        read_log(both)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('{"axis0": {"anticogging": {"cogging_map": [0.1, -0.2, 0.3, 0.1, 0.2, -0.1, 0.2, 0.4]}}}', "holds torques"),
+        (
+            "<?xml version='1.0'?><MCConfiguration><foc_encoder_ratio>7</foc_encoder_ratio></MCConfiguration>",
+            "settings",
+        ),
+        ("float calibrationLut[8] = {0, 0, 0, 0, 0, 0, 0, 0};", "all entries of calibrationLut are 0"),
+        ("int16_t sine[16] = {0,12539,23170,30273,32767,30273,23170,12539,0,-9,-7,-3,-2,-3,-7,-9};", "neither angles"),
+        ("\n".join(f"{k * k % 97}" for k in range(40)), "two or more numbers in each line"),
+    ],
+)
+def test_what_is_no_table_of_angles_is_refused_with_the_reason(text: str, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "table.txt"
+    path.write_text(text)
+    ended = halltwin("import", path)
+    assert ended.code == 2
+    assert words in ended.err
+    assert ended.err.count("\n") == 1
+
+
+def test_a_table_is_diagnosed_by_its_statement(tmp_path: Path) -> None:
+    """Where explain refuses it, its message ends with the statement that diagnose takes."""
+    path = written(STORED["SimpleFOC"], tmp_path)
+    refused = halltwin("diagnose", path)
+    statement = "reference_deg=index*360/200-calibrationLut:rad, measured_deg=index*360/200"
+    assert f'--columns "{statement}"' in refused.err
+    assert halltwin("diagnose", path, "--columns", statement).code == 0
+
+
+def test_the_sign_of_a_second_column_is_that_of_arithmetic(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("a,b,c\n" + "".join(f"{k},{k % 7},{k}\n" for k in range(0, 360, 2)))
+    rows = np.arange(0.0, 360.0, 2.0)
+    sweep = Sweep.read(path, columns="reference_deg=a*2+5-b*3/2:mrad, measured_deg=a*2")
+    np.testing.assert_allclose(sweep.reference_deg, 2.0 * rows + 5.0 - np.degrees(1.5e-3 * (rows % 7.0)), atol=1e-9)
+    with pytest.raises(SweepError, match="no column 'd'"):
+        Sweep.read(path, columns="reference_deg=a+d, measured_deg=c")

@@ -14,6 +14,8 @@ from twin.sweep_columns import OF_SETUP, PLAUSIBLE, SMALLEST_AMPLITUDE
 FEWEST_ROWS = 8
 _ONE_ANGLE_DEG = 0.1
 """Angles closer than this count as one: a jig's stop, read again."""
+_CLOSE_DEG = 20.0
+"""Median distance below which an angle follows another in parts of a turn: unrelated ones are 90 deg apart."""
 
 
 def check_plausible(key: str, values: Array, *, name: str) -> None:
@@ -66,6 +68,8 @@ def check_usable(data: Mapping[str, Array], *, name: str, rejected: int) -> None
 def check_follows(measured: Array, reference: Array, *, name: str) -> None:
     """Refuse columns (n,) [deg] that do not go round together, with the reason where it can be seen."""
     to_deg = 180.0 / np.pi
+    if _follows_but_for_a_bit(measured, reference):
+        return
     if follows(measured, reference):
         if _repeats_every_radian_turn(measured, reference):
             raise SweepError(
@@ -94,6 +98,18 @@ def check_follows(measured: Array, reference: Array, *, name: str) -> None:
         f"off, in the better counting sense; expected below {FOLLOWS_DEG:g}); "
         "check that both columns belong to one sweep and are in degrees"
     )
+
+
+def _follows_but_for_a_bit(measured: Array, reference: Array) -> bool:
+    """Whether readings (n,) [deg] follow but for one of the two highest bits of their word, always 0 or always 1.
+
+    They do where half a turn, or a quarter, is a whole turn, and their word has but half of all codes.
+    """
+    for parts in (2.0, 4.0):
+        of_bit = np.mod(measured, 720.0 / parts) >= 360.0 / parts
+        if np.all(of_bit == of_bit[0]) and distance_deg(parts * measured, parts * reference) < _CLOSE_DEG:
+            return bool(np.ptp(np.mod(reference, 360.0)) > 360.0 / parts)
+    return False
 
 
 def check_channels(vx: Array, vy: Array, measured: Array, *, name: str) -> None:

@@ -5,26 +5,28 @@ from __future__ import annotations
 import argparse
 import tempfile
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
-from tests.untidy.mixed import drawn
+from tests.untidy.mixed import Mixed, drawn, drawn_geared
 from twin.errors import UserError
 from twin.logs.guess import OpenGuess
 from twin.logs.read import read_log
+from twin.sweep import Sweep
 
 
-def outcome(seed: int, folder: Path) -> str:
+def outcome(seed: int, folder: Path, draw: Callable[[int], Mixed] = drawn) -> str:
     """What becomes of the log of a seed."""
-    log = drawn(seed)
+    log = draw(seed)
     path = folder / "log.csv"
     path.write_text(log.text, encoding="utf-8")
     try:
-        found = read_log(path).columns
+        found = Sweep.from_columns(read_log(path).columns)
     except OpenGuess:
         return "asked back"
     except UserError:
         return "refused"
-    return "right" if log.held(found["reference_deg"], found["measured_deg"]) else "wrong"
+    return "right" if log.held(found.reference_deg, found.measured_deg) else "wrong"
 
 
 def main() -> None:
@@ -32,10 +34,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--draws", type=int, default=400)
     parser.add_argument("--seed", type=int, default=7)
+    parser.add_argument("--geared", action="store_true", help="one angle turns several times in a turn of the other")
     asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         seeds = range(1000 * asked.seed, 1000 * asked.seed + asked.draws)
-        counted = Counter(outcome(seed, Path(folder)) for seed in seeds)
+        counted = Counter(outcome(seed, Path(folder), drawn_geared if asked.geared else drawn) for seed in seeds)
     print(", ".join(f"{counted[word]} {word}" for word in ("right", "asked back", "refused", "wrong")))
 
 

@@ -28,12 +28,16 @@ class Mixed:
     reference_deg: Array
     measured_deg: Array
     resolution_deg: tuple[float, float]
+    up_to_a_zero: bool = False
 
     def held(self, reference_deg: Array, measured_deg: Array) -> bool:
         """Whether these are the angles of the log."""
         pairs = ((reference_deg, self.reference_deg), (measured_deg, self.measured_deg))
-        off = [np.max(np.abs((found - true + 180.0) % 360.0 - 180.0)) for found, true in pairs]
-        return bool(off[0] <= self.resolution_deg[0] and off[1] <= self.resolution_deg[1])
+        off = [(found - true + 180.0) % 360.0 - 180.0 for found, true in pairs]
+        if self.up_to_a_zero:
+            off = [(one - one[0] + 180.0) % 360.0 - 180.0 for one in off]
+        parts = 2.0 if self.up_to_a_zero else 1.0
+        return all(bool(np.max(np.abs(one)) <= parts * to) for one, to in zip(off, self.resolution_deg, strict=True))
 
 
 def drawn(seed: int) -> Mixed:
@@ -53,7 +57,9 @@ def drawn(seed: int) -> Mixed:
     return Mixed(table(columns, sep=separator, decimal=decimal), shaft, measured, (to, sensor_to))
 
 
-def _told(rng: np.random.Generator, angle_deg: Array, name: str, *, wrapped: bool) -> tuple[str, Array, float]:
+def _told(
+    rng: np.random.Generator, angle_deg: Array, name: str, *, wrapped: bool, counts_wrapped: bool = False
+) -> tuple[str, Array, float]:
     """A name, the angle in the unit that it tells or does not tell, and the resolution [deg]."""
     values = angle_deg % 360.0 if wrapped else angle_deg
     fine = 1e-3
@@ -71,7 +77,7 @@ def _told(rng: np.random.Generator, angle_deg: Array, name: str, *, wrapped: boo
         return ways[k]
     a_turn = int(rng.choice(A_TURN))
     called = str(rng.choice([f"{name}_counts", f"{name} raw", name]))
-    return called, counts(angle_deg, a_turn, wrapped=wrapped), 180.0 / a_turn + fine
+    return called, counts(angle_deg, a_turn, wrapped=wrapped or counts_wrapped), 180.0 / a_turn + fine
 
 
 def _further(rng: np.random.Generator, shaft: Array) -> list[tuple[str, Array]]:
@@ -85,3 +91,26 @@ def _further(rng: np.random.Generator, shaft: Array) -> list[tuple[str, Array]]:
         [("x", rows)],
         [],
     )[rng.integers(0, 6)]
+
+
+def drawn_geared(seed: int) -> Mixed:
+    """The log of a seed in which one of both angles turns 2 to 20 times in a turn of the shaft; up to a zero.
+
+    It is sampled at least three times a turn of the faster one. Counts are wrapped: of others it is not told whether a
+    turn of the shaft has so many, or a turn of what is geared to it.
+    """
+    rng = np.random.default_rng(seed)
+    times, turns = int(rng.choice([2, 3, 4, 5, 7, 11, 14, 20])), float(rng.choice([1.0, 1.5, 3.0]))
+    rows = int(max(rng.choice([180, 360, 720]), 3 * times * turns))
+    shaft = np.linspace(0.0, 360.0 * turns, rows, endpoint=False) + rng.uniform(0.0, 360.0)
+    shaft = np.concatenate([shaft, shaft[::-1]]) if rng.random() < 0.3 else shaft
+    errors = (rng.uniform(0.1, 1.5), rng.uniform(0.0, 0.3), 0.02)
+    waves = (np.sin(np.radians(shaft + 10.0)), np.sin(np.radians(times * shaft)), rng.standard_normal(shaft.size))
+    measured = rng.choice([-1.0, 1.0]) * shaft + sum(size * wave for size, wave in zip(errors, waves, strict=True))
+    faster = (1, times) if rng.random() < 0.7 else (times, 1)
+    names = str(rng.choice(REFERENCES[:6])), str(rng.choice(SENSORS[:6]))
+    (ref, reference, to), (sensor, read, sensor_to) = (
+        _told(rng, one * angle, name, wrapped=rng.random() < 0.6, counts_wrapped=True)
+        for name, one, angle in zip(names, faster, (shaft, measured), strict=True)
+    )
+    return Mixed(table({ref: reference, sensor: read}), shaft, measured, (to, sensor_to), up_to_a_zero=True)

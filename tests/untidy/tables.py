@@ -76,7 +76,7 @@ def _known() -> dict[str, Stored]:
     read = (reading_of(steps) + 77.0) % 360.0
     cells = [f"{value * 65536.0 / 360.0:.1f}" for value in read]
     saved = "".join(f"#*# \t{','.join(cells[k : k + 8])}{',' if k < 192 else ''}\n" for k in range(0, 200, 8))
-    klipper = f"[stepper_x]\nmicrosteps: 16\n\n[angle x_angle]\nsensor_type: a1333\n\n#*# [angle x_angle]\n"
+    klipper = "[stepper_x]\nmicrosteps: 16\n\n[angle x_angle]\nsensor_type: a1333\n\n#*# [angle x_angle]\n"
     fine, true_fine = _on_grid(16_384)
     cheetah, true_cheetah = _on_grid(128)
     moteus = f"motor.poles 14\n{_lines(f'{source}.0.compensation_table', (true_few - few) / 360.0, 8)}"

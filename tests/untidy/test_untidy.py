@@ -14,6 +14,7 @@ from tests.command_line import halltwin
 from tests.pages import GUIDE, block, lines
 from tests.untidy.__main__ import outcome
 from tests.untidy.generator import COS, MEASURED_DEG, REFERENCE_DEG, ROWS, SIN, Way, counts, files, table, ways
+from tests.untidy.mixed import drawn_geared
 from twin.errors import SweepError, UserError
 from twin.logs.read import Log, read_log
 from twin.logs.statement import parsed, text_of
@@ -304,6 +305,33 @@ def test_every_unit_of_an_angle_that_a_header_names_is_read(name: str, tmp_path:
     columns = read_log(path).columns
     np.testing.assert_allclose(columns["reference_deg"], REFERENCE_DEG, atol=1e-5)
     np.testing.assert_allclose(columns["measured_deg"], MEASURED_DEG, atol=1e-5)
+
+
+def test_of_geared_logs_drawn_at_random_none_is_misread(tmp_path: Path) -> None:
+    """Of 60; one in seven may be asked back or refused: counts that are wrapped after steps of a sixth of a turn."""
+    found = [outcome(seed, tmp_path, drawn_geared) for seed in range(60)]
+    assert found.count("wrong") == 0
+    assert found.count("right") >= 51
+
+
+def test_electrical_degrees_are_read_and_said(tmp_path: Path) -> None:
+    """An electrical angle of seven pole pairs, wrapped and in radians; its errors are those of the shaft."""
+    path = tmp_path / "log.csv"
+    electrical = np.radians(7.0 * MEASURED_DEG % 360.0)
+    path.write_text(table({"encoder_deg": REFERENCE_DEG, "theta_e [rad]": electrical}))
+    log = read_log(path)
+    assert log.guess.text == "reference_deg=encoder_deg, measured_deg=unwrap('theta_e [rad]':rad)/7"
+    assert log.guess.notes == ("measured_deg turns 7 times in a turn of the shaft: pole pairs, or a gear",)
+    off = log.columns["measured_deg"] - MEASURED_DEG
+    assert np.max(np.abs((off - off[0] + 180.0) % 360.0 - 180.0)) < 1e-4
+
+
+def test_own_names_are_told_how_an_electrical_angle_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(table({"reference_deg": REFERENCE_DEG, "measured_deg": 4.0 * MEASURED_DEG % 360.0}))
+    refused = halltwin("diagnose", path).err
+    assert "turns 4 times as fast" in refused
+    assert OPTION.findall(refused) == ["reference_deg=reference_deg, measured_deg=unwrap(measured_deg)/4"]
 
 
 def test_of_logs_drawn_at_random_none_is_misread(tmp_path: Path) -> None:

@@ -80,7 +80,7 @@ def units_of_pair(reference: Array, measured: Array, *, said: tuple[Meaning, Mea
     if both.sum() < 4:
         return []
     reference, measured = reference[both], measured[both]
-    options = [_options(values, one) for values, one in zip((reference, measured), said, strict=True)]
+    options = [options_of(values, one) for values, one in zip((reference, measured), said, strict=True)]
     many = min(sum(bool(one.counts) for one in each) for each in options) > _FEW
     untold = any(one.unit is None for one in said)
     step = -(-reference.size // _JUDGED_ROWS)
@@ -98,7 +98,7 @@ def units_of_pair(reference: Array, measured: Array, *, said: tuple[Meaning, Mea
     least = min((distance for distance, _ in fitting), default=0.0)
     times = _CLEARLY if whole else _CLEARLY_ON_A_PART
     kept = [pair for distance, pair in fitting if distance <= times * least + _ALIKE_DEG]
-    return _with_rivals(_preferred(kept), kept, reference, measured, said=said)
+    return _with_rivals(preferred(kept), kept, reference, measured, said=said)
 
 
 def _fit(reference: Array, measured: Array, pair: Pair) -> bool:
@@ -107,7 +107,7 @@ def _fit(reference: Array, measured: Array, pair: Pair) -> bool:
         return False
     if {one.name for one in pair} == {"deg"} and max(np.ptp(reference), np.ptp(measured)) <= _LEAST_DEG:
         return False
-    return not (any(one.counts for one in pair) and _drifts(reference, measured))
+    return not (any(one.counts for one in pair) and drifts(reference, measured))
 
 
 def _with_rivals(
@@ -132,7 +132,12 @@ def _may_be_counts(values: Array, said: Meaning) -> bool:
     return not bool(np.any(np.abs(np.diff(values)) > _WRAP_SHARE * np.ptp(values)))
 
 
-def _drifts(reference: Array, measured: Array) -> bool:
+def same_angle(measured_deg: Array, reference_deg: Array) -> bool:
+    """Whether an angle (n,) follows another closely enough for a unit or a ratio to be guessed by it."""
+    return follows(measured_deg, reference_deg) and distance_deg(measured_deg, reference_deg) <= _MOST_GUESSED_DEG
+
+
+def drifts(reference: Array, measured: Array) -> bool:
     """Whether one angle (n,) [deg] runs away from the other, as with a wrong number of counts a turn."""
     reference = _unwrapped(reference)
     order = np.argsort(reference)
@@ -156,7 +161,7 @@ def _unwrapped(angle_deg: Array) -> Array:
     return np.unwrap(angle_deg, period=360.0) if follow else angle_deg
 
 
-def _options(values: Array, said: Meaning) -> list[AngleUnit]:
+def options_of(values: Array, said: Meaning) -> list[AngleUnit]:
     """The units that a column (n,) may be in, by its name or else by its values."""
     if said.unit is not None:
         return [AngleUnit(said.unit.name)]
@@ -190,7 +195,7 @@ def _leaps(values: Array, a_turn: int) -> bool:
     return bool(np.ptp(values) > 1.5 * a_turn and np.median(np.abs(np.diff(values))) > a_turn / 3.0)
 
 
-def _preferred(pairs: list[Pair]) -> list[Pair]:
+def preferred(pairs: list[Pair]) -> list[Pair]:
     """Without those that no values could tell from a plainer one: both in the same unit, or both in equal counts."""
     for plain in (_BOTH_DEG, _BOTH_RAD):
         if plain in pairs:

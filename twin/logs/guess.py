@@ -16,6 +16,7 @@ from twin.logs.channels import channels
 from twin.logs.lookups import statements_of
 from twin.logs.names import Meaning, meaning_of
 from twin.logs.others import others
+from twin.logs.ratios import turned
 from twin.logs.statement import Column, text_of
 from twin.logs.table import Table
 from twin.sweep_columns import COLUMNS
@@ -88,7 +89,10 @@ def guessed(table: Table) -> Guess:
     rest = others(table, said, usable, pair[0].of(table))
     columns = sorted((*pair, *found.columns, *rest.columns), key=lambda one: COLUMNS.index(one.target))
     unused = unused_by(tuple(columns), table, {**found.why, **rest.why})
-    return Guess(tuple(columns), (*found.notes, *rest.notes), unused)
+    several = tuple(
+        f"{one.target} turns {one.per:g} times in a turn of the shaft: pole pairs, or a gear" for one in pair if one.per
+    )
+    return Guess(tuple(columns), (*several, *found.notes, *rest.notes), unused)
 
 
 def _guessed_of_entries(table: Table) -> Guess:
@@ -121,11 +125,31 @@ def _pair(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[C
     """The reference and the sensor; None where there are not two angles. Raises SweepError, see :func:`guessed`."""
     fitting = list(_candidates(table, said, angles))
     if not fitting:
+        several = _turned(table, said, angles)
+        if several is not None:
+            return several
         _raise_contradiction(table, said, angles)
         return _by_name_alone(table, said, angles)
     if len(fitting) > 1:
         _raise_open(table, "two guesses fit", [text_of(one.columns(table)) for one in fitting])
     return fitting[0].columns(table)
+
+
+def _turned(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[Column, Column] | None:
+    """A reference and a sensor of which one turns a whole number of times faster. Raises OpenGuess where two fit."""
+    weighed = [(_weight(said[a], said[b]), a, b) for a, b in itertools.permutations(angles, 2)]
+    for weight in sorted({weight for weight, _, _ in weighed if weight >= 0}, reverse=True):
+        fitting = [
+            one.columns((table.sources[a], table.sources[b]))
+            for own, a, b in weighed
+            if own == weight
+            for one in turned(table.values[a], table.values[b], said=(said[a], said[b]))
+        ]
+        if len(fitting) > 1:
+            _raise_open(table, _FIT.get(len(fitting), "several guesses fit"), [text_of(one) for one in fitting])
+        if fitting:
+            return fitting[0]
+    return None
 
 
 def _raise_open(table: Table, what: str, options: Sequence[str]) -> NoReturn:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,18 +22,24 @@ _TURN_DEG = 360.5
 """The largest step from row to row, where an angle begins anew; numbers that leap farther are in another unit."""
 _UNEVEN, _NOISE_DEG = 0.25, 3.0
 """Share of a step, and angle beside it, by which steps may differ from those expected."""
-_LARGEST_STEP_DEG = 150.0
-"""Typical step from row to row up to which an angle is followed over its turns."""
+_LARGEST_STEP_DEG, _LARGEST_STEP_OF_COUNTS_DEG = 150.0, 30.0
+"""Typical step from row to row up to which an angle is followed over its turns; up to which counts show their turn."""
+_CLEARLY, _ALIKE_DEG = 1.5, 0.1
+"""A unit is clearly meant where another's steps are off by so many times as much, and this much more."""
 _FEW_COUNTS = 4
 """Numbers of counts a turn up to which a column is taken to show its own."""
 
 
 @dataclass(frozen=True)
 class Turned:
-    """The units of a reference and a sensor, and how often either turns in a turn of the shaft; one of both is 1."""
+    """The units of a reference and a sensor, and how often either turns in a turn of the shaft; one of both is 1.
+
+    ``off_deg`` is how far steps of the faster one are off those that the slower one lets expect.
+    """
 
     units: tuple[AngleUnit, AngleUnit]
     times: tuple[float, float]
+    off_deg: float
 
     def columns(self, sources: tuple[str, str]) -> tuple[Column, Column]:
         """The statement, with the faster one followed over its turns and divided."""
@@ -54,42 +61,41 @@ def turned(reference: Array, measured: Array, *, said: tuple[Meaning, Meaning]) 
         [unit for unit in units if not unit.counts or len(units) <= _FEW_COUNTS]
         for units in (options_of(values[known], one) for values, one in zip((reference, measured), said, strict=True))
     ]
-    pairs = [(a, b) for a in options[0] for b in options[1]]
-    found = {pair: _times(pair[0].degrees(reference[known]), pair[1].degrees(measured[known])) for pair in pairs}
-    fitting = preferred([pair for pair, times in found.items() if times is not None])
-    return [Turned(pair, times) for pair in fitting if (times := found[pair]) is not None]
+    found: dict[tuple[AngleUnit, AngleUnit], Turned] = {}
+    for pair in itertools.product(options[0], options[1]):
+        one = _turned((reference[known], measured[known]), pair)
+        found |= {pair: one} if one is not None else {}
+    kept = [found[pair] for pair in preferred(list(found))]
+    least = min((one.off_deg for one in kept), default=0.0)
+    return [one for one in kept if one.off_deg <= _CLEARLY * least + _ALIKE_DEG]
 
 
-def _times(reference_deg: Array, measured_deg: Array) -> tuple[float, float] | None:
+def _turned(values: tuple[Array, Array], units: tuple[AngleUnit, AngleUnit]) -> Turned | None:
     """How often each of two angles (n,) turns in a turn of the slower; None where that is no whole number from 2."""
-    both = (reference_deg, measured_deg)
-    if any(_typical_step(one) > _LARGEST_STEP_DEG or np.max(np.abs(np.diff(one))) > _TURN_DEG for one in both):
+    wrapped = [unit.degrees(one) for one, unit in zip(values, units, strict=True)]
+    if not all(_can_be_followed(one, unit) for one, unit in zip(wrapped, units, strict=True)):
         return None
-    a, b = unwrapped_deg(reference_deg), unwrapped_deg(measured_deg)
-    span = float(np.ptp(a)), float(np.ptp(b))
-    if min(span) < 360.0 * _LEAST_TURNS:
+    a, b = (unwrapped_deg(one) for one in wrapped)
+    first_is_slow = bool(np.ptp(a) <= np.ptp(b))
+    slow, fast = (a, b) if first_is_slow else (b, a)
+    if np.ptp(slow) < 360.0 * _LEAST_TURNS:
         return None
-    slow, fast = (a, b) if span[0] <= span[1] else (b, a)
     slope = float(np.polyfit(slow - np.mean(slow), fast, 1)[0])
     times = float(np.round(abs(slope)))
     if not 2.0 <= times <= MOST_TIMES or abs(abs(slope) - times) > min(_WHOLE, _WHOLE_SHARE * times):
         return None
-    if (
-        not same_angle(fast / times, slow)
-        or drifts(slow, fast / times)
-        or _stumbles(slow * np.sign(slope), fast, times)
-    ):
+    expected = times * np.sign(slope) * np.diff(slow)
+    off = float(np.quantile(np.abs(np.diff(fast) - expected), 0.98))
+    # Steps that are now and then much smaller or larger: it wraps at no turn.
+    stumbles = off > _UNEVEN * float(np.median(np.abs(expected))) + _NOISE_DEG
+    if stumbles or not same_angle(fast / times, slow) or drifts(slow, fast / times):
         return None
-    return (1.0, times) if span[0] <= span[1] else (times, 1.0)
+    return Turned(units, (1.0, times) if first_is_slow else (times, 1.0), off)
 
 
-def _typical_step(angle_deg: Array) -> float:
-    """Nine tenths of the steps (n - 1,) are smaller."""
-    return float(np.quantile(np.abs(wrap_deg(np.diff(angle_deg))), 0.9))
-
-
-def _stumbles(slow_deg: Array, fast_deg: Array, times: float) -> bool:
-    """Whether the faster angle (n,) moves now and then by much less or more, as where it wraps at no turn."""
-    steps, expected = np.diff(fast_deg), times * np.diff(slow_deg)
-    off = float(np.quantile(np.abs(steps - expected), 0.98))
-    return off > _UNEVEN * float(np.median(np.abs(expected))) + _NOISE_DEG
+def _can_be_followed(angle_deg: Array, unit: AngleUnit) -> bool:
+    """Whether an angle (n,) moves by little enough from row to row; nine tenths of its steps are judged."""
+    steps = np.abs(np.diff(angle_deg))
+    typical = float(np.quantile(np.abs(wrap_deg(steps)), 0.9))
+    largest = _LARGEST_STEP_OF_COUNTS_DEG if unit.counts else _LARGEST_STEP_DEG
+    return typical <= largest and float(np.max(steps)) <= _TURN_DEG

@@ -43,6 +43,8 @@ _WRAP_SHARE = 0.5
 """A step of more than this share of the span is where an angle begins anew."""
 _FULL_SHARE = 0.9
 """Share of a turn that wrapped counts fill at least."""
+_EVEN = 0.8
+"""By how much an angle moves at least with the other, on a span that tells little of units."""
 _LEAST_DEG, _SHORT_DEG = 6.4, 100.0
 """A span up to the first looks like one turn of radians, or less; one up to the second may be several."""
 
@@ -90,7 +92,7 @@ def units_of_pair(reference: Array, measured: Array, *, said: tuple[Meaning, Mea
         if many and pair[0].counts and pair[1].counts:
             continue
         a, b = pair[0].degrees(reference[::step]), pair[1].degrees(measured[::step])
-        if not _fit(a, b, pair) or (untold and distance_deg(b, a) > _MOST_GUESSED_DEG):
+        if not _fit(a, b, pair) or (untold and (distance_deg(b, a) > _MOST_GUESSED_DEG or _lags(a, b))):
             continue
         # By the span, so that no unit wins by making all angles small.
         fitting.append((360.0 * distance_deg(b, a) / float(np.ptp(a)), pair))
@@ -108,6 +110,14 @@ def _fit(reference: Array, measured: Array, pair: Pair) -> bool:
     if {one.name for one in pair} == {"deg"} and max(np.ptp(reference), np.ptp(measured)) <= _LEAST_DEG:
         return False
     return not (any(one.counts for one in pair) and drifts(reference, measured))
+
+
+def _lags(reference: Array, measured: Array) -> bool:
+    """Whether, over a short span, one angle (n,) [deg] moves much less than the other: they may be geared radians."""
+    if np.ptp(reference) > _SHORT_DEG:
+        return False
+    slope = abs(float(np.polyfit(reference - np.mean(reference), measured, 1)[0]))
+    return not _EVEN <= slope <= 1.0 / _EVEN
 
 
 def _with_rivals(

@@ -217,7 +217,7 @@ class Sweep:
         ----------
         path : str or Path
             CSV, plain or gzip, or Parquet where pyarrow is installed; its content says which. With ``columns`` a log
-            of any dialect, XLSX, MAT, NPZ, HDF5 or Parquet.
+            of any dialect, a file of another program or a firmware's table, as ``halltwin import`` reads them.
         max_bytes, name : int and str, optional
             Most bytes of the file after decompression; what messages call it, if not by the file's name.
         columns : str, optional

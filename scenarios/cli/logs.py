@@ -13,7 +13,10 @@ from scenarios.cli.options import Columns, Force, MaxSize, written
 def import_log(
     log: Annotated[
         Path,
-        typer.Argument(metavar="LOG", help="A log: CSV of any dialect, XLSX, MAT, NPZ, HDF5 or Parquet."),
+        typer.Argument(
+            metavar="LOG",
+            help="A log (CSV of any dialect, XLSX, MAT, NPZ, HDF5, Parquet, MDF, TDMS, of a bus) or a firmware table.",
+        ),
     ],
     output: Annotated[
         Path | None, written("Sweep to write: .csv or .csv.gz; without it the guess is told alone.", "-o", "--output")

@@ -231,6 +231,7 @@ def files(name: str) -> Way:
         "MAT": (_matlab, ".mat", ("fs", "who")),
         "NPZ": (_numpy, ".npz", ("rate",)),
         "HDF5": (_hdf5, ".h5", ()),
+        "Parquet": (_parquet, ".parquet", ("who",)),
     }
     make, ending, unused = made[name]
     exact = {"reference_deg": 1e-9, "measured_deg": 1e-9}
@@ -265,6 +266,16 @@ def _numpy() -> bytes:
     out = io.BytesIO()
     np.savez(out, t_s=T, encoder_deg=R, hall_rad=np.radians(M), rate=20.0)
     return out.getvalue()
+
+
+def _parquet() -> bytes:
+    import pyarrow
+    from pyarrow import parquet
+
+    out = pyarrow.BufferOutputStream()
+    columns = {"t [ms]": 1000.0 * T, "encoder [rad]": np.radians(R), "hall": M, "who": ["me"] * ROWS}
+    parquet.write_table(pyarrow.table(columns), out)
+    return bytes(out.getvalue())
 
 
 def _hdf5() -> bytes:

@@ -25,7 +25,8 @@ from twin.sweep_columns import COLUMNS
 WAYS = ways()
 READ = [name for name, way in WAYS.items() if not way.refused]
 REFUSED = [name for name, way in WAYS.items() if way.refused]
-FILES = ("workbook", "MAT", "NPZ", "HDF5")
+FILES = ("workbook", "MAT", "NPZ", "HDF5", "Parquet")
+LIBRARIES = {"workbook": "openpyxl", "HDF5": "h5py", "Parquet": "pyarrow"}
 OPTION = re.compile(r'--columns "([^"]*)"')
 
 
@@ -90,7 +91,7 @@ def test_what_is_not_certain_is_refused_with_the_reason_and_what_mends_it(name: 
 
 @pytest.mark.parametrize("name", FILES)
 def test_a_file_of_another_program_is_read_to_the_same_sweep(name: str, tmp_path: Path) -> None:
-    pytest.importorskip({"workbook": "openpyxl", "HDF5": "h5py"}.get(name, "numpy"))
+    pytest.importorskip(LIBRARIES.get(name, "numpy"))
     way = files(name)
     path = written(way, tmp_path)
     log = read_log(path)
@@ -100,7 +101,7 @@ def test_a_file_of_another_program_is_read_to_the_same_sweep(name: str, tmp_path
         assert word in told(log) + " ".join(log.table.notes)
 
 
-@pytest.mark.parametrize(("name", "module"), [("workbook", "openpyxl"), ("HDF5", "h5py")])
+@pytest.mark.parametrize(("name", "module"), LIBRARIES.items())
 def test_a_missing_library_is_named_with_its_extra(
     name: str, module: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -121,7 +122,7 @@ def test_a_missing_library_is_named_with_its_extra(
 
 @pytest.mark.parametrize("name", FILES)
 def test_a_damaged_file_is_one_line(name: str, tmp_path: Path) -> None:
-    pytest.importorskip({"workbook": "openpyxl", "HDF5": "h5py"}.get(name, "numpy"))
+    pytest.importorskip(LIBRARIES.get(name, "numpy"))
     path = tmp_path / "log"
     path.write_bytes(files(name).content[:700])
     ended = halltwin("import", path)

@@ -1,45 +1,44 @@
-"""Logs in formats of other programs: workbooks, MATLAB, numpy, HDF5 and Parquet, each by its own library."""
+"""Logs in formats of other programs, told by their first bytes and read by their libraries."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from twin.errors import SweepError
+from twin.logs.buses import read_blf
+from twin.logs.by_library import by_library
 from twin.logs.cells import Row, table_of
+from twin.logs.equal_lengths import of_arrays
+from twin.logs.recorders import read_mdf, read_tdms
 from twin.logs.table import Table
 
 _ZIP, _HDF5, _PARQUET, _MATLAB = b"PK\x03\x04", b"\x89HDF\r\n\x1a\n", b"PAR1", b"MATLAB 5.0"
-_EXTRA = "pip install '.[formats]' in the checkout"
+_MDF, _TDMS, _BLF = b"MDF     ", b"TDSm", b"LOGG"
 
 
-def read_format(raw: bytes, *, file: str) -> Table | None:
+def read_format(raw: bytes, path: Path) -> Table | None:
     """The table in a file of a known format, told by its first bytes; None for another. Raises SweepError."""
-    readers: tuple[tuple[bool, str, Callable[..., Table]], ...] = (
+    file = path.name
+    readers: tuple[tuple[bool, str, str, Callable[[io.BytesIO], Table]], ...] = (
         # MATLAB's newer files are HDF5 behind a header of 512 bytes.
-        (raw.startswith(_HDF5) or raw[512:520] == _HDF5, "HDF5", _hdf5),
-        (raw.startswith(_MATLAB), "MAT", _matlab),
-        (raw.startswith(_PARQUET), "Parquet", _parquet),
-        (raw.startswith(_ZIP) and b"xl/" in raw, "XLSX", _workbook),
-        (raw.startswith(_ZIP) and b".npy" in raw, "NPZ", _numpy),
+        (raw.startswith(_HDF5) or raw[512:520] == _HDF5, "HDF5", "formats", partial(_hdf5, file=file)),
+        (raw.startswith(_MATLAB), "MAT", "formats", partial(_matlab, file=file)),
+        (raw.startswith(_PARQUET), "Parquet", "formats", partial(_parquet, file=file)),
+        (raw.startswith(_ZIP) and b"xl/" in raw, "XLSX", "formats", partial(_workbook, file=file)),
+        (raw.startswith(_ZIP) and b".npy" in raw, "NPZ", "formats", partial(_numpy, file=file)),
+        (raw.startswith(_MDF), "MDF", "mdf", partial(read_mdf, file=file)),
+        (raw.startswith(_TDMS), "TDMS", "formats", partial(read_tdms, file=file)),
+        (raw.startswith(_BLF), "BLF", "bench", partial(read_blf, path=path)),
     )
-    for fits, word, reader in readers:
-        if not fits:
-            continue
-        try:
-            return reader(io.BytesIO(raw), file=file)
-        except SweepError:
-            raise
-        except ImportError as error:
-            raise SweepError(f"{file}: reading {word} needs {error.name}; {_EXTRA}, or save as CSV") from None
-        except Exception as error:
-            said = " ".join(str(error).split())[:200]
-            raise SweepError(
-                f"{file}: cannot be read as {word} ({said}); expected a whole file: save it again"
-            ) from None
+    for fits, word, extra, reader in readers:
+        if fits:
+            return by_library(partial(reader, io.BytesIO(raw)), word, extra=extra, file=file)
     return None
 
 
@@ -90,12 +89,12 @@ def _matlab(raw: io.BytesIO, *, file: str) -> Table:
     from scipy.io import loadmat
 
     found = loadmat(raw, squeeze_me=True)
-    return _of_arrays({name: value for name, value in found.items() if not name.startswith("__")}, file=file)
+    return of_arrays({name: value for name, value in found.items() if not name.startswith("__")}, file=file)
 
 
 def _numpy(raw: io.BytesIO, *, file: str) -> Table:
     with np.load(raw, allow_pickle=False) as found:
-        return _of_arrays(dict(found), file=file)
+        return of_arrays(dict(found), file=file)
 
 
 def _hdf5(raw: io.BytesIO, *, file: str) -> Table:
@@ -111,42 +110,11 @@ def _hdf5(raw: io.BytesIO, *, file: str) -> Table:
 
     with h5py.File(raw, "r") as store:
         store.visititems(take)
-    return _of_arrays({name: np.squeeze(value) for name, value in arrays.items()}, file=file)
+    return of_arrays({name: np.squeeze(value) for name, value in arrays.items()}, file=file)
 
 
 def _parquet(raw: io.BytesIO, *, file: str) -> Table:
     import pyarrow.parquet as parquet  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
     table = parquet.read_table(raw)
-    return _of_arrays({name: table.column(name).to_numpy() for name in table.column_names}, file=file)
-
-
-def _of_arrays(arrays: Mapping[str, Any], *, file: str) -> Table:
-    """The arrays of the most common length as columns; tables of numbers give one for each of theirs."""
-    flat = list(_flat(arrays))
-    columns = [(name, values) for name, values in flat if values is not None and values.size > 1]
-    lengths = [values.size for _, values in columns]
-    rows = max(set(lengths), key=lambda n: (lengths.count(n), n), default=0)
-    kept = [(name, values) for name, values in columns if values.size == rows]
-    if len(kept) < 2:
-        raise SweepError(f"{file}: holds no two columns of numbers of one length; expected a reference and a sensor")
-    left = tuple(
-        f"{name} (no column of {rows} numbers)" for name, values in flat if values is None or values.size != rows
-    )
-    return Table(file, tuple(name for name, _ in kept), tuple(values for _, values in kept), left=left)
-
-
-def _flat(arrays: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """Each column (n,) by its full name, also the fields of structures and columns of tables; None: no numbers."""
-    for own, value in arrays.items():
-        name, array = f"{before}{own}", np.squeeze(np.asarray(value))
-        if array.dtype.names:
-            fields = {field: array[field].item() if array.ndim == 0 else array[field] for field in array.dtype.names}
-            yield from _flat(fields, f"{name}.")
-        elif array.dtype.kind not in "fiub" or array.ndim > 2:
-            yield name, None
-        elif array.ndim == 2:
-            across = array.T if array.shape[0] > array.shape[1] else array
-            yield from ((f"{name}.{k + 1}", part.astype(np.float64)) for k, part in enumerate(across))
-        else:
-            yield name, np.atleast_1d(array).astype(np.float64)
+    return of_arrays({name: table.column(name).to_numpy() for name in table.column_names}, file=file)

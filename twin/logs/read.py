@@ -11,13 +11,14 @@ from twin.bounded_input import LARGEST_SWEEP_BYTES, checked_bytes, whole
 from twin.errors import SweepError, UserError
 from twin.log import LOG
 from twin.logs.arrays import read_arrays
+from twin.logs.buses import read_bus_text
 from twin.logs.formats import read_format
 from twin.logs.guess import Guess, OpenGuess, guessed, in_words, unused_by
 from twin.logs.statement import Column, parsed, values_of
 from twin.logs.table import Table
 from twin.logs.text import decoded, read_rows
 
-EXPECTED = "a log (CSV, XLSX, MAT, NPZ, HDF5 or Parquet)"
+EXPECTED = "a log (CSV, XLSX, MAT, NPZ, HDF5, Parquet, MDF, TDMS, a bus log or a firmware's table)"
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,11 +36,11 @@ def read_table(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> Table:
         raw = whole(path, most=checked_bytes(max_bytes), expected=EXPECTED)
     except UserError as error:
         raise SweepError(str(error)) from None
-    found = read_format(raw, file=path.name)
+    found = read_format(raw, path)
     if found is not None:
         return found
     text, encoding = decoded(raw, path.name)
-    found = read_arrays(text, file=path.name)
+    found = read_bus_text(text, path) or read_arrays(text, file=path.name)
     return read_rows(text, encoding, file=path.name) if found is None else found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from diagnosis.explanation import Explanation
 from diagnosis.input_checks import SweepLike, TwinLike, as_sweeps, as_twin, checked_seed
@@ -184,30 +184,38 @@ def _begun(
 
     from diagnosis.discovery.fitting.initial_fit import senses_of_channels
     from diagnosis.discovery.fitting.subsample import searched_part
+    from diagnosis.discovery.marks.words import read_words
+    from diagnosis.discovery.settings import DiscoverySettings
     from diagnosis.discovery.state import State
     from diagnosis.error_model.fit import fit_baseline
     from diagnosis.joining import joined
 
+    parts = sweeps if len(sweeps) > 1 else [searched_part(sweeps[0])]
+    read = read_words(parts, (given or start).effects, settings or DiscoverySettings())
+    read, given = read.beside(given)
+    in_words: dict[str, Any] = {"touched": read.lost, "findings": read.findings, "words": read.words, "watch": watch}
     if len(sweeps) > 1:
         watch.told("error_model", ())
-        together = joined(sweeps, (given or start).effects, mounting=mounting, given=given, rng=rng)
+        together = joined(read.sweeps, (given or start).effects, mounting=mounting, given=given, rng=rng)
         chain = together.start if given is not None else replace(together.start, magnet=start.magnet)
         state = State.of(together.sweep, chain, given=None if given is None else chain, settings=settings, rng=rng)
-        return state.with_(suspects=together.suspects, watch=watch)
-    sweep = searched_part(sweeps[0])
+        return state.with_(suspects=together.suspects | read.lost, **in_words)
+    sweep = read.sweeps[0]
     if given is not None:
-        return State.of(sweep, given, given=given, settings=settings, rng=rng).with_(watch=watch)
+        state = State.of(sweep, given, given=given, settings=settings, rng=rng)
+        return state.with_(suspects=read.lost, **in_words)
     watch.told("error_model", ())
     fit = fit_baseline(
         np.radians(sweep.reference_deg),
         np.radians(sweep.measured_deg),
         rng=rng,
+        weights=(~read.lost).astype(np.float64) if read.lost.any() else None,
         senses=senses_of_channels(sweep),
         robust=True,
     )
     model = replace(fit.chain(), effects=start.effects, magnet=start.magnet)
     state = State.of(sweep, model, settings=settings, rng=rng)
-    return state.with_(suspects=fit.outliers, watch=watch)
+    return state.with_(suspects=fit.outliers | read.lost, **in_words)
 
 
 def _start(effects: tuple[Effect, ...], mounting: Mounting | None, given: Chain | None) -> Chain:

@@ -12,7 +12,7 @@ from twin.effect import Effect
 from twin.known_names import nearest
 
 STAGES = ("mechanics", "magnet", "concentrator", "hall", "adc", "cordic", "empirical", "link", "reference")
-ACTS_ON = ("shaft", "field", "channels", "angle", "reference")
+ACTS_ON = ("shaft", "field", "channels", "angle", "word", "reference")
 
 _DECLARED: tuple[Effect, ...] = (
     *mechanics.EFFECTS,

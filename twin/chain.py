@@ -24,8 +24,8 @@ from twin.shown import shown
 from twin.sweep import Sweep
 
 Values = Mapping[str, Parameters]
-SIGNALS: tuple[ActsOn, ...] = ("shaft", "field", "channels", "angle")
-"""The signals on the sensor's side, in order; behind its effects each is converted to the next."""
+SIGNALS: tuple[ActsOn, ...] = ("shaft", "field", "channels", "angle", "word")
+"""The signals on the sensor's side, in order; behind its effects each but the last is converted to the next."""
 
 
 @dataclass(frozen=True)
@@ -257,8 +257,10 @@ class Chain:
                 after = self.driven(signal, motion)
             elif acts_on == "channels":
                 after = self.computed(signal, as_built=rng is not None)
-            else:
+            elif acts_on == "angle":
                 after = self.output_sense * signal
+            else:
+                return
             yield Step(f"after {acts_on}", None, sense, signal, after)
             signal = after
 
@@ -342,8 +344,7 @@ class Chain:
         Returns
         -------
         dict of str to ndarray
-            By the name of the operation, with the shapes of :data:`twin.effect.ActsOn`; angles in rad. ``reference``
-            is the reference's reading (n,).
+            By the operation's name, shaped as in :data:`twin.effect.ActsOn`, in rad; ``reference`` is what that reads.
         """
         rng = None if seed is None else np.random.default_rng(seed)
         signals = {"shaft": motion.shaft_rad}

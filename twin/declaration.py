@@ -10,7 +10,7 @@ from typing import Any, get_args
 import numpy as np
 
 from twin.catalogue import STAGES
-from twin.effect import ActsOn, Behind, Effect, Footprint, Line, Marks, Owner, Param, Role
+from twin.effect import ActsOn, Behind, Effect, Footprint, InWords, Line, Marks, Owner, Param, Role
 from twin.shown import shown
 
 NEEDS = frozenset(
@@ -68,6 +68,7 @@ _TYPES: tuple[tuple[tuple[str, ...], Callable[[Any], bool], str], ...] = (
     (("behind",), lambda value: value is None or isinstance(value, Behind), "a Behind, or None"),
     (("line",), lambda value: value is None or isinstance(value, Line), "a Line, or None"),
     (("marks",), lambda value: value is None or isinstance(value, Marks), "Marks, or None"),
+    (("in_words",), lambda value: value is None or isinstance(value, InWords), "InWords, or None"),
     (
         ("baseline", "output_grid", "repeatable", "record_wide"),
         lambda value: isinstance(value, bool | np.bool_),
@@ -141,7 +142,7 @@ def _unsearchable(effect: Effect) -> str:
         "mean": not any(effect.roles(role) for role in ("strength", "level", "per turn")) and "a strength or a level",
         "spread": (effect.spread is None or not effect.roles("random")) and "`spread` and a parameter of role 'random'",
         "values": (effect.attainable is None or not effect.roles("level")) and "`attainable` and a level",
-        "sequence": effect.marks is None and "`marks`",
+        "sequence": effect.marks is None and effect.in_words is None and "`marks`",
     }[effect.footprint]
     # The baseline's noise is not searched for, and a burst by code of its own.
     exempt = effect.baseline or effect.name.startswith("unnamed_")

@@ -21,14 +21,16 @@ from twin.param import Owner as Owner
 from twin.param import Param as Param
 from twin.param import Parameters as Parameters
 from twin.param import Role as Role
+from twin.words import InWords as InWords
 
-ActsOn = Literal["shaft", "field", "channels", "angle", "reference"]
+ActsOn = Literal["shaft", "field", "channels", "angle", "word", "reference"]
 """The signal an effect changes, in the order of the chain.
 
 ``shaft``      angle of the magnet on the shaft [rad], one for each channel's sampling instant, ``(..., 2, n)``
 ``field``      angle of the field in the sensor's axes [rad], ``(..., 2, n)``
 ``channels``   x and y, nominal amplitude 1, ``(..., 2, n)``
 ``angle``      the angle computed from them [rad], ``(..., 1, n)``
+``word``       the same as it is sent, counted as the output counts [rad], ``(..., 1, n)``
 ``reference``  the reference encoder's reading [rad], ``(..., 1, n)``
 """
 
@@ -159,8 +161,8 @@ class Effect:
         For the footprint "values": from the parameters to the mean step [rad] between these; not given: counted.
     output_grid : bool
         Whether its attainable angles are the grid of the output's word, which the readings themselves show.
-    marks : Marks, optional
-        For the footprint "sequence": how the touched readings are found.
+    marks, in_words : Marks and InWords, optional
+        For the footprint "sequence": how the touched readings are found; how the words tell them ahead of every fit.
     computes : callable, optional
         For a stage that computes the angle: from the channels (..., 2, n) and its parameters to the angle [rad]
         (..., 1, n) as its integers return it, or None where the parameters do not say how it is built. Where they do, a
@@ -211,6 +213,7 @@ class Effect:
     stair: Callable[[Parameters], float] | None = None
     output_grid: bool = False
     marks: Marks | None = None
+    in_words: InWords | None = None
     computes: Callable[[Array, Parameters], Array | None] | None = None
     at_magnet: Callable[[Any], Effect] | None = None
     assumes: str = ""

@@ -179,9 +179,9 @@ class Sweep:
             rejected.update({int(row) + 1: f"{key} missing or not finite" for row in bad})
         used: dict[str, Any] = {key: np.ascontiguousarray(values[keep]) for key, values in data.items()}
         check_usable(used, name=name, rejected=len(rejected))
-        check_follows(used["measured_deg"], used["reference_deg"], name=name)
+        following_deg = check_follows(used["measured_deg"], used["reference_deg"], name=name)
         if "vx" in used:
-            check_channels(used["vx"], used["vy"], used["measured_deg"], name=name)
+            check_channels(used["vx"], used["vy"], following_deg, name=name)
         return cls(**used, rejected=dict(sorted(rejected.items())), name=name, row_numbers=np.flatnonzero(keep) + 1)
 
     @classmethod

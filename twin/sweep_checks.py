@@ -14,8 +14,6 @@ from twin.sweep_columns import OF_SETUP, PLAUSIBLE, SMALLEST_AMPLITUDE
 FEWEST_ROWS = 8
 _ONE_ANGLE_DEG = 0.1
 """Angles closer than this count as one: a jig's stop, read again."""
-_CLOSE_DEG = 20.0
-"""Median distance below which an angle follows another in parts of a turn: unrelated ones are 90 deg apart."""
 
 
 def check_plausible(key: str, values: Array, *, name: str) -> None:
@@ -65,18 +63,22 @@ def check_usable(data: Mapping[str, Array], *, name: str, rejected: int) -> None
         raise SweepError(f"{name}: column reference_deg: {count} different angles; expected at least {FEWEST_ROWS}")
 
 
-def check_follows(measured: Array, reference: Array, *, name: str) -> None:
-    """Refuse columns (n,) [deg] that do not go round together, with the reason where it can be seen."""
+def check_follows(measured: Array, reference: Array, *, name: str) -> Array:
+    """Refuse columns (n,) [deg] that do not go round together, with the reason where it can be seen.
+
+    Returns the readings (n,) [deg] that do: those measured, or what they are once a fault of their words is taken off.
+    """
     to_deg = 180.0 / np.pi
-    if _follows_but_for_a_bit(measured, reference):
-        return
     if follows(measured, reference):
         if _repeats_every_radian_turn(measured, reference):
             raise SweepError(
                 f"{name}: columns reference_deg and measured_deg: the error repeats every 6.283 over a span of "
                 f"{np.ptp(reference):.4g}: that looks like radians; expected degrees: convert both columns"
             )
-        return
+        return measured
+    without_fault = _without_faults_of_words(measured, reference)
+    if without_fault is not None:
+        return without_fault
     for wrong, (scale_measured, scale_reference) in {
         "column reference_deg": (1.0, to_deg),
         "column measured_deg": (to_deg, 1.0),
@@ -98,18 +100,6 @@ def check_follows(measured: Array, reference: Array, *, name: str) -> None:
         f"off, in the better counting sense; expected below {FOLLOWS_DEG:g}); "
         "check that both columns belong to one sweep and are in degrees"
     )
-
-
-def _follows_but_for_a_bit(measured: Array, reference: Array) -> bool:
-    """Whether readings (n,) [deg] follow but for one of the two highest bits of their word, always 0 or always 1.
-
-    They do where half a turn, or a quarter, is a whole turn, and their word has but half of all codes.
-    """
-    for parts in (2.0, 4.0):
-        of_bit = np.mod(measured, 720.0 / parts) >= 360.0 / parts
-        if np.all(of_bit == of_bit[0]) and distance_deg(parts * measured, parts * reference) < _CLOSE_DEG:
-            return bool(np.ptp(np.mod(reference, 360.0)) > 360.0 / parts)
-    return False
 
 
 def check_channels(vx: Array, vy: Array, measured: Array, *, name: str) -> None:
@@ -135,6 +125,22 @@ def check_channels(vx: Array, vy: Array, measured: Array, *, name: str) -> None:
         f"{name}: columns vx, vy: atan2(vy, vx) does not follow measured_deg; expected the two channels that the angle "
         f"is computed from, zero at zero field; {hint}"
     )
+
+
+def _without_faults_of_words(measured: Array, reference: Array) -> Array | None:
+    """The readings (n,) [deg] as they go round with the reference once faults of the link are taken off; None: never.
+
+    A top bit that is stuck, or a third of all frames lost, makes readings that follow nothing.
+    """
+    from twin.catalogue import CATALOGUE
+    from twin.words import LIMIT_LOG_P, Words, faults_of
+
+    words = Words(radians(reference), radians(measured), np.ones(measured.size, dtype=bool))
+    finders = {effect.name: effect.in_words for effect in CATALOGUE if effect.in_words is not None}
+    found = faults_of(words, finders, LIMIT_LOG_P)
+    for _, fault in found:
+        words = words.without(fault)
+    return np.degrees(words.measured) if found else None
 
 
 def _repeats_every_radian_turn(measured: Array, reference: Array) -> bool:

@@ -26,7 +26,8 @@ class Finding:
     footprint.
     ``rivals`` are the fits with another effect in its place, ``options`` the measurements that would part them.
     ``rows`` are the raw rows (from 0) that a cause of single readings has touched; ``intervals`` are of parameters
-    that no fit of the mean has, by instance and name.
+    that no fit of the mean has, by instance and name. ``rows_off_deg`` is the RMS of what it did to its rows, where
+    that was taken off them ahead of the fit.
     """
 
     keys: tuple[str, ...]
@@ -39,6 +40,7 @@ class Finding:
     after_deg: float = float("nan")
     rows: tuple[int, ...] = ()
     intervals: Mapping[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
+    rows_off_deg: float | None = None
 
     def __repr__(self) -> str:
         others = ", ".join(dict.fromkeys(map(everywhere, self.rivals)))

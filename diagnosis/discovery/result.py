@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -20,7 +21,7 @@ from diagnosis.discovery.state import State
 from twin.catalogue import unnamed
 from twin.chain import Chain
 from twin.each_recording import device_of, everywhere
-from twin.effect import BoolArray
+from twin.effect import BoolArray, Parameters
 from twin.moved_placement import settled
 from twin.sweep import Sweep
 
@@ -40,7 +41,8 @@ class Discovery:
     not held at the twin's values. ``in_factors`` are effects that an angle alone never tells from the error model's
     factors, which hold what they do. ``rival_fits`` are the fits with another effect, whose name stands beside, in the
     place of a cause. ``alone`` is each of several recordings fitted by itself, and ``whole_recordings`` whether these
-    were held out as a whole.
+    were held out as a whole. ``words`` are the effects on the words as they were sent: ``sweep`` holds the readings
+    without them, ``fit`` is of these, and the device has them.
     """
 
     sweep: Sweep
@@ -67,6 +69,7 @@ class Discovery:
     alone: tuple[Alone, ...] = ()
     rival_fits: tuple[tuple[str, Fit], ...] = ()
     whole_recordings: bool = False
+    words: Mapping[str, Parameters] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         names = ", ".join(cause.name for cause in self.causes) or "no cause"
@@ -112,13 +115,14 @@ class Discovery:
             cut_short=state.watch.stopped_in,
             alone=state.alone,
             rival_fits=state.rival_fits,
+            words=state.words,
             whole_recordings=state.fold is not None and are_halves(fit, state.fold),
         )
 
     @property
     def device(self) -> Chain:
         """The extended twin as it is in a single recording: of several, in the first one's."""
-        return settled(device_of(self.fit.chain))
+        return settled(device_of(self.fit.chain)).with_values(self.words)
 
     @property
     def _turn_contradicted(self) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ from twin.angles import TAU, Array, IntArray
 from twin.catalogue import base_name
 from twin.chain import Chain
 from twin.each_recording import everywhere
-from twin.effect import BoolArray, Effect
+from twin.effect import BoolArray, Effect, Parameters
 from twin.sweep import Sweep
 
 if TYPE_CHECKING:
@@ -47,7 +47,8 @@ class State:
     ``likeness``, the predictive check; ``lack``, what is left against repeated readings. Of a given twin
     also ``own``, its parameters that are asked whether they have moved, ``changed``, those that have,
     ``other_device``, whether so many have that it is another's twin, and ``fitted_anew``, whether the others were not
-    held at its values, as it hardly tells some from the rest. Of several recordings ``alone``, each of them fitted by
+    held at its values, as it hardly tells some from the rest. ``words``, the effects on the words as they were sent,
+    which the readings of the sweep have been freed of. Of several recordings ``alone``, each of them fitted by
     itself.
     """
 
@@ -75,6 +76,7 @@ class State:
     changed: tuple[Change, ...] = ()
     other_device: bool = False
     fitted_anew: bool = False
+    words: Mapping[str, Parameters] = field(default_factory=dict)
     watch: Watch = field(default_factory=Watch)
 
     def __repr__(self) -> str:

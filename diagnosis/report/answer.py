@@ -240,10 +240,10 @@ def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
         "heldout_rms_deg_after": cause.after_deg,
         **as_well(found, cause),
     }
-    if effect.marks is not None:
+    if effect.footprint == "sequence":
         touched = np.degrees(raw_residual(fit, found.sweep))[list(cause.rows)]
-        answer["rows_rms_deg"] = _rms(touched)
-        if effect.marks.rows_listed:
+        answer["rows_rms_deg"] = _rms(touched) if cause.rows_off_deg is None else cause.rows_off_deg
+        if any(way is not None and way.rows_listed for way in (effect.marks, effect.in_words)):
             answer["rows"] = found.sweep.numbers[list(cause.rows)].tolist()
     return answer | in_recordings(found, cause.keys)
 
@@ -254,7 +254,7 @@ def parameters(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
     answer: dict[str, dict[str, Any]] = {}
     for number, key in enumerate(cause.keys):
         suffix = "" if number == 0 else f"_{number + 1}"
-        figures = _instance(found.fit, key, deviation) | _row_numbers(found, key)
+        figures = _instance(found, key, deviation) | _row_numbers(found, key)
         for (instance, name), (low, high) in cause.intervals.items():
             if instance == key:
                 figures[name] |= {"low": low, "high": high}
@@ -262,10 +262,11 @@ def parameters(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
     return answer | _counted(found, cause)
 
 
-def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, Any]]:
+def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, dict[str, Any]]:
     """The parameters of one instance of an effect, each with its 95 % interval."""
+    fit = found.fit
     effect = find(key, fit.chain.effects)
-    values = {**effect.null(), **fit.chain.values.get(key, {})}
+    values = {**effect.null(), **fit.chain.values.get(key, {}), **found.words.get(key, {})}
     derived, known = effect.derived(values), intervals_95(fit)
     figures: dict[str, dict[str, Any]] = {}
     for name, param in effect.params.items():
@@ -303,7 +304,7 @@ def _instance(fit: Fit, key: str, deviation: Deviations) -> dict[str, dict[str, 
 def _derived(fit: Fit, key: str, name: str, figure: tuple[float, float, float, str]) -> dict[str, Any]:
     """A figure that follows from the parameters, with the interval that theirs make where it has none of its own."""
     value, low, high, unit = figure
-    if low == value == high:
+    if low == value == high and any(one.key == key for one in fit.free):
         low, high = interval_of_derived(fit, key, name)
     return _figure(value, low, high, unit)
 

@@ -32,7 +32,9 @@ from tests.contract.signatures import (
     stepper,
     stuck,
     tone,
+    turned,
     warm,
+    zone,
 )
 from twin import example
 from twin.angles import Array
@@ -194,6 +196,16 @@ EXAMPLES: dict[str, Example] = {
     "output_quantisation": Example(strengths={"bits": 11.0}, shapes={}, signature=None),
     "stale_frames": Example(strengths={"fraction_percent": 5.0}, shapes={}, signature=None, memory=True),
     "bus_glitch": Example(strengths={"count": 7.0}, shapes={}, signature=None),
+    "error_code": Example(
+        strengths={"fraction_percent": 5.0}, shapes={"reading_deg": 90.0, "run_rows": 2.0}, signature=None, memory=True
+    ),
+    "word_bit": Example(strengths={"bit": 9.0}, shapes={"word_bits": 14.0, "level": 1.0}, signature=None),
+    "dead_zone": Example(
+        strengths={"width_deg": 36.0}, shapes={"start_deg": 100.0, "jump_percent": 50.0}, signature=zone
+    ),
+    "scale_error": Example(
+        strengths={"factor": 1.002}, shapes={}, signature=lambda m, p: (p["factor"] - 1.0) * turned(m)
+    ),
     # reference
     "drive_ripple": Example(strengths=_LINE, shapes={**_PHASE, "order": 24.0}, signature=stepper),
     "reference_eccentricity": Example(strengths=_LINE, shapes=_PHASE, signature=lambda m, p: line(m, p, 1.0, -1.0)),

@@ -178,3 +178,15 @@ def over_flanks(motion: Motion, p: Params) -> Array:
 def bump(motion: Motion, p: Params) -> Array:
     away = (np.degrees(motion.shaft_rad) - p["centre_deg"] + 180.0) % 360.0 - 180.0
     return np.asarray(rad(p["height_deg"]) * np.exp(-0.5 * (away / p["width_deg"]) ** 2))
+
+
+def turned(motion: Motion) -> Array:
+    """Shaft angle within the turn [rad]."""
+    return np.asarray(np.mod(motion.shaft_rad, TAU))
+
+
+def zone(motion: Motion, p: Params) -> Array:
+    """The way to the lower edge of a dead zone, from where it jumps on to the upper one."""
+    width, inside = rad(p["width_deg"]), np.mod(motion.shaft_rad - rad(p["start_deg"]), TAU)
+    to_edge = np.where(inside < 0.01 * p["jump_percent"] * width, -inside, width - inside)
+    return np.where(inside < width, to_edge, 0.0)

@@ -18,6 +18,7 @@ from tests.mutations.signs import signs
 from tests.mutations.stages import STAGES
 from tests.mutations.studies import STUDIES
 from tests.mutations.thermal import THERMAL
+from tests.mutations.words import WORDS
 
 
 def mutations() -> tuple[Mutation, ...]:
@@ -36,6 +37,7 @@ def mutations() -> tuple[Mutation, ...]:
         *STUDIES,
         *SCRIPTS,
         *THERMAL,
+        *WORDS,
         *settings(),
         *signs(),
     )

@@ -12,7 +12,10 @@ from twin.param import OWNER_OF_STAGE
 OTHERS = {
     "mounting": {"stray_field": {"field_mT"}},
     "bench": {"mains_pickup": {"x_percent", "y_percent"}},
-    "recording": {"mains_pickup": {"frequency_Hz", "phase_deg"}, "reference_ripple": {"phase_deg"}},
+    "recording": {
+        **{"mains_pickup": {"frequency_Hz", "phase_deg"}, "reference_ripple": {"phase_deg"}},
+        "error_code": {"fraction_percent", "run_rows"},
+    },
 }
 """Parameters that belong to another than most of their effect."""
 WHOLE = {

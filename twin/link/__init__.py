@@ -1,8 +1,12 @@
 """The angle word on its way. ``latency`` makes a reading old, so it acts on the shaft angle it shows."""
 
 from twin.link.bus_glitch import BUS_GLITCH
+from twin.link.dead_zone import DEAD_ZONE
+from twin.link.error_code import ERROR_CODE
 from twin.link.latency import LATENCY
 from twin.link.output_quantisation import OUTPUT_QUANTISATION
+from twin.link.scale_error import SCALE_ERROR
 from twin.link.stale_frames import STALE_FRAMES
+from twin.link.word_bit import WORD_BIT
 
-EFFECTS = (LATENCY, OUTPUT_QUANTISATION, STALE_FRAMES, BUS_GLITCH)
+EFFECTS = (LATENCY, OUTPUT_QUANTISATION, STALE_FRAMES, BUS_GLITCH, DEAD_ZONE, WORD_BIT, SCALE_ERROR, ERROR_CODE)

@@ -116,7 +116,10 @@ class Linear:
                 continue
             for effect, values in group:
                 signal = effect.forward(signal, self.motion, values, None)
-        return np.asarray(self.chain.output_sense * signal[0])
+        signal = self.chain.output_sense * signal
+        for _, effect, values in self.chain.active("word"):
+            signal = effect.forward(signal, self.motion, values, None)
+        return np.asarray(signal[0])
 
     def _place_of(self, effect: Effect) -> float:
         return self._order[effect.name, effect.acts_on]
@@ -242,11 +245,21 @@ def _through(step: Step, motion: Motion, sense: Array) -> Array:
     before = step.before
     out = np.empty((sense.shape[0], before.shape[0], before.shape[1]))
     for channel in range(before.shape[0]):
-        moved = np.array(before)
-        moved[channel] += _STEP
-        slope = (step.effect.forward(moved, motion, step.values, None) - step.after) / _STEP
+        slope = _slope(step, motion, channel, _STEP)
+        if step.effect.acts_on == "word":
+            # Where a word begins anew there is an edge, which is no slope.
+            other = _slope(step, motion, channel, -_STEP)
+            slope = np.where(np.abs(other) < np.abs(slope), other, slope)
         out[:, channel] = np.einsum("okn,kn->on", sense, slope)
     return out
+
+
+def _slope(step: Step, motion: Motion, channel: int, by: float) -> Array:
+    """Difference quotient (k, n) of an effect's signal as one channel of what it is given moves."""
+    assert step.effect is not None
+    moved = np.array(step.before)
+    moved[channel] += by
+    return np.asarray((step.effect.forward(moved, motion, step.values, None) - step.after) / by)
 
 
 def _slope_of_channels(chain: Chain, angle: Array, motion: Motion) -> Array:

@@ -64,4 +64,7 @@ def _behind_stairs(fit: Fit, noise: Array) -> Array:
         signal = np.arctan2(signal[:, 1:], signal[:, :1])
     for _, effect, values in chain.active("angle"):
         signal = effect.forward(signal, linear.motion, values, None)
-    return wrap(chain.output_sense * signal[:, 0] - linear.angle)
+    signal = chain.output_sense * signal
+    for _, effect, values in chain.active("word"):
+        signal = effect.forward(signal, linear.motion, values, None)
+    return wrap(signal[:, 0] - linear.angle)

@@ -22,7 +22,7 @@ def observe(state: State) -> State:
     observations = collect(state.sweep)
     _check_enough(state, len(observations))
     observations = observations.masked(observations.usable & ~rows_of(observations, state.suspects))
-    bits = grid_bits(np.radians(state.sweep.measured_deg), state.settings)
+    bits = grid_bits(np.radians(state.sweep.measured_deg[~state.touched]), state.settings)
     return state.with_(unfitted(observations, state.start, state.settings), bits=bits)
 
 

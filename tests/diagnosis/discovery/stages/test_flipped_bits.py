@@ -26,8 +26,8 @@ def test_the_words_that_were_hit_are_named(made: Made) -> None:
     after = flipped_bits(before(flipped_bits, made))
     (cause,) = [finding for finding in after.findings if finding.keys == (GLITCH,)]
     assert cause.rows == rows_hit(made, GLITCH)
-    # Two effects are looked for in the sequence.
-    assert cause.family_log_p == pytest.approx(cause.log_p + np.log(2.0))
+    # Five effects are looked for in the sequence.
+    assert cause.family_log_p == pytest.approx(cause.log_p + np.log(5.0))
     assert cause.family_log_p < LIMIT
     assert set(cause.rows) <= set(np.flatnonzero(after.touched))
     assert flipped_bits(after) is after

@@ -45,8 +45,8 @@ def test_every_repeated_frame_is_named_and_masked(made: Made) -> None:
     (cause,) = after.findings
     assert cause.keys == (STALE,)
     assert cause.rows == rows
-    # Two effects are looked for in the sequence.
-    assert cause.family_log_p == pytest.approx(cause.log_p + np.log(2.0))
+    # Five effects are looked for in the sequence.
+    assert cause.family_log_p == pytest.approx(cause.log_p + np.log(5.0))
     assert cause.family_log_p < LIMIT
     assert tuple(np.flatnonzero(after.touched)) == rows
     assert set(rows) <= set(np.flatnonzero(~after.fit.observations.usable))

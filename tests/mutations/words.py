@@ -1,0 +1,88 @@
+"""Mutations of what the words of a link show: what tells a fault, or takes it off the readings, broken."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation
+
+_TESTS = "tests/twin/test_words.py"
+_ANSWERS = "tests/diagnosis/test_word_faults.py"
+
+WORDS = (
+    Mutation(
+        "error_code.a_frame_sent_again_is_a_code",
+        "twin/link/error_code.py",
+        "coded = far & ~_held(words, far)",
+        "coded = far",
+        (f"{_TESTS}::test_a_frame_that_is_sent_again_is_no_code",),
+    ),
+    Mutation(
+        "error_code.words_alike_by_chance",
+        "twin/link/error_code.py",
+        "_log_choices(rows.size, apart) - ",
+        "-",
+        (f"{_TESTS}::test_wrong_words_that_agree_by_chance_are_no_code",),
+    ),
+    Mutation(
+        "word_bit.no_gain_asked_for",
+        "twin/link/word_bit.py",
+        "likely > plain + _GAIN",
+        "likely > -np.inf",
+        (f"{_TESTS}::test_nothing_is_told_where_the_words_are_sound",),
+    ),
+    Mutation(
+        "word_bit.readings_stay",
+        "twin/link/word_bit.py",
+        "decoded = chosen if told else words.measured",
+        "decoded = words.measured",
+        (f"{_TESTS}::test_a_bit_is_told_and_the_readings_told_back",),
+    ),
+    Mutation(
+        "dead_zone.readings_within_it_stand_anywhere",
+        "twin/link/dead_zone.py",
+        "or np.count_nonzero(held) < (1.0 - MISSED) * count",
+        "",
+        (f"{_TESTS}::test_a_stretch_of_wrong_words_is_no_dead_zone",),
+    ),
+    Mutation(
+        "dead_zone.edges_as_if_held",
+        "twin/link/dead_zone.py",
+        "lower = slack if low.any() else first_high",
+        "lower = slack",
+        (f"{_TESTS}::test_a_zone_is_told_by_its_edges",),
+    ),
+    Mutation(
+        "words.one_fault_alone",
+        "twin/words.py",
+        "if not finders[name].several:",
+        "if True:",
+        (f"{_TESTS}::test_two_codes_are_two_faults",),
+    ),
+    Mutation(
+        "sweep_checks.words_are_taken_as_they_are",
+        "twin/sweep_checks.py",
+        "return np.degrees(words.measured) if found else None",
+        "return None",
+        (f"{_TESTS}::test_a_sweep_that_only_follows_once_decoded_is_read",),
+    ),
+    Mutation(
+        "words.a_known_fault_is_a_cause",
+        "diagnosis/discovery/marks/words.py",
+        "if not _same(self.words[one.keys[0]], own.get(one.keys[0]))",
+        "if True",
+        (f"{_ANSWERS}::test_a_known_fault_of_the_words_is_no_cause",),
+    ),
+    Mutation(
+        "result.the_twin_has_sound_words",
+        "diagnosis/discovery/result.py",
+        ".with_values(self.words)",
+        "",
+        (f"{_ANSWERS}::test_a_bit_is_named_and_its_twin_errs_alike",),
+    ),
+    Mutation(
+        "scale_error.counts_from_anywhere",
+        "twin/link/scale_error.py",
+        "word = np.mod(signal, TAU)",
+        "word = np.mod(signal + 1.0, TAU)",
+        ("tests/contract/test_effects.py::test_leading_signature",),
+    ),
+)

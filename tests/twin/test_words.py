@@ -1,0 +1,135 @@
+"""What the words of a link show by themselves: codes in the place of readings, bits, and ranges that are never sent."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.hidden.link_faults import Drawn, draw
+from twin.catalogue import CATALOGUE
+from twin.decoded import Decoded, decoded
+from twin.sweep import Sweep
+from twin.words import WordFault
+
+DRAWS = 12
+STATES = {"low": (0, 0), "high": (1, 0), "up": (0, 1), "up_or": (0, 1), "down": (0, -1), "down_or": (0, -1)}
+"""Level, and neighbour that it counts as, by kind of fault."""
+
+
+def told(drawn: Drawn) -> Decoded:
+    return decoded(Sweep(**drawn.columns), CATALOGUE)
+
+
+def only(drawn: Drawn) -> tuple[Decoded, WordFault]:
+    found = told(drawn)
+    assert [key for key, _ in found.faults] == [drawn.cause], drawn.truth
+    return found, found.faults[0][1]
+
+
+def error_deg(measured: np.ndarray, drawn: Drawn) -> np.ndarray:
+    """Reading minus reference, about its middle."""
+    away = np.radians(measured - drawn.truth["sense"] * drawn.columns["reference_deg"])
+    return np.degrees(np.angle(np.exp(1j * (away - np.angle(np.mean(np.exp(1j * away)))))))
+
+
+@pytest.mark.parametrize("seed", range(DRAWS))
+def test_a_code_is_told_with_its_rows(seed: int) -> None:
+    drawn = draw("error_code", seed=seed)
+    found, fault = only(drawn)
+    hit = np.zeros(len(found.lost), dtype=bool)
+    hit[drawn.truth["hit_rows"] - 1] = True
+    # A reading that is expected within the noise of the code may be either.
+    assert np.count_nonzero(hit != found.lost) <= 0.03 * hit.sum() + 1
+    assert fault.values["reading_deg"] == pytest.approx(drawn.truth["reading_deg"] % 360.0, abs=1e-5)
+    low, high = fault.intervals["fraction_percent"]
+    assert low <= 100.0 * np.mean(found.lost) <= high
+
+
+@pytest.mark.parametrize("seed", range(DRAWS))
+def test_a_bit_is_told_and_the_readings_told_back(seed: int) -> None:
+    drawn = draw("word_bit", seed=seed)
+    found, fault = only(drawn)
+    state = (fault.values["level"], fault.values["into"])
+    assert fault.values["bit"] == drawn.truth["bit"]
+    assert fault.values["word_bits"] == drawn.truth["bits"]
+    # A bit that counts twice reads like one held at 0, but for its weight in the zero.
+    assert state == STATES[drawn.truth["kind"]] or {state, STATES[drawn.truth["kind"]]} == {(0, 0), (0, 1)}
+    assert not found.lost.any()
+    # All that is left is the sensor's own error: at most 1.7 deg by the draw, and the noise.
+    assert np.max(np.abs(error_deg(found.sweep.measured_deg, drawn))) < 2.0 + 5.0 * drawn.truth["noise_deg"]
+
+
+@pytest.mark.parametrize("seed", range(DRAWS))
+def test_a_zone_is_told_by_its_edges(seed: int) -> None:
+    drawn = draw("dead_zone", seed=seed)
+    _, fault = only(drawn)
+    for name in ("start_deg", "width_deg"):
+        low, high = fault.intervals[name]
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        away = (drawn.truth[name] - middle + 180.0) % 360.0 - 180.0
+        assert abs(away) <= half + 8.0 * drawn.truth["noise_deg"] + 360.0 / 2 ** drawn.truth["bits"], name
+
+
+@pytest.mark.parametrize("kind", ["clean", "index_slip", "table", "typing_error", "scale_error"])
+def test_nothing_is_told_where_the_words_are_sound(kind: str) -> None:
+    # Of draw 59 the readings stand clear of some words by chance.
+    for seed in (*range(2 * DRAWS), 59):
+        drawn = draw(kind, seed=seed)
+        found = told(drawn)
+        assert found.faults == (), (seed, drawn.truth)
+        assert np.array_equal(found.sweep.measured_deg, drawn.columns["measured_deg"])
+
+
+def test_two_codes_are_two_faults() -> None:
+    drawn = draw("clean", seed=1)
+    measured = drawn.columns["measured_deg"].copy()
+    measured[10:60:10], measured[15:65:10] = 0.0, 123.75
+    found = decoded(Sweep(drawn.columns["reference_deg"], measured), CATALOGUE)
+    assert [key for key, _ in found.faults] == ["error_code", "error_code#2"]
+    assert {fault.values["reading_deg"] for _, fault in found.faults} == {0.0, 123.75}
+
+
+def test_a_frame_that_is_sent_again_is_no_code() -> None:
+    drawn = draw("clean", seed=1)
+    measured = drawn.columns["measured_deg"].copy()
+    measured[20:40] = measured[19]
+    assert decoded(Sweep(drawn.columns["reference_deg"], measured), CATALOGUE).faults == ()
+    # A word that was not there before is one.
+    measured[20:40] = 5.625
+    (key, _), *_ = decoded(Sweep(drawn.columns["reference_deg"], measured), CATALOGUE).faults
+    assert key == "error_code"
+
+
+def sound(points: int = 800, bits: int = 12) -> tuple[np.ndarray, np.ndarray]:
+    """Angles and words of a sensor without fault."""
+    angle = np.arange(points) * (360.0 / points)
+    return angle, np.round((angle + 0.8 * np.sin(np.radians(angle))) / 360.0 * 2**bits).astype(np.int64) % 2**bits
+
+
+def test_wrong_words_that_agree_by_chance_are_no_code() -> None:
+    """Of sixty random words of 12 bit two are alike in a third of all cases."""
+    angle, words = sound()
+    wrong = np.random.default_rng(5).integers(0, 2**12, 60)
+    wrong[31] = wrong[7]
+    words[5:785:13] = wrong
+    assert decoded(Sweep(angle, words * (360.0 / 2**12)), CATALOGUE).faults == ()
+
+
+def test_a_stretch_of_wrong_words_is_no_dead_zone() -> None:
+    """Over ten degrees the word before is sent again, and then others that stand anywhere else."""
+    angle, words = sound()
+    words[100:114] = words[99]
+    words[114:122] = 1500 + 97 * np.arange(8)
+    keys = [key for key, _ in decoded(Sweep(angle, words * (360.0 / 2**12)), CATALOGUE).faults]
+    assert "dead_zone" not in keys
+
+
+def test_a_sweep_that_only_follows_once_decoded_is_read() -> None:
+    """The top bit always reads 1: half of the readings are half a turn off, so that they follow nothing."""
+    angle = np.arange(0.0, 360.0, 9.0)
+    words = np.round((angle + 0.8 * np.sin(np.radians(angle))) / 360.0 * 2**14).astype(np.int64) % 2**14
+    measured = (words | 2**13) * (360.0 / 2**14)
+    sweep = Sweep.from_columns({"reference_deg": angle, "measured_deg": measured})
+    (key, fault), *rest = decoded(sweep, CATALOGUE).faults
+    assert (key, rest) == ("word_bit", [])
+    assert (fault.values["bit"], fault.values["level"]) == (13.0, 1.0)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tests.command_line import halltwin
-from tests.untidy.tables import Stored, stored
+from tests.untidy.generator import Array, table
+from tests.untidy.tables import Stored, reading_of, stored, true_of
 from twin.errors import SweepError
 from twin.logs.guess import OpenGuess
 from twin.logs.read import Log, read_log
@@ -87,6 +88,54 @@ def test_what_is_no_table_of_angles_is_refused_with_the_reason(text: str, words:
     assert ended.code == 2
     assert words in ended.err
     assert ended.err.count("\n") == 1
+
+
+EVEN_DEG = np.arange(0.0, 360.0, 5.0)
+READ_DEG, TRUE_DEG = reading_of(EVEN_DEG), true_of(EVEN_DEG)
+CODES = 2.8125 * np.arange(128)
+TRUE_OF_CODES = true_of(CODES)
+OF_REFERENCE, OF_SENSOR = (EVEN_DEG, READ_DEG), (TRUE_DEG, EVEN_DEG)
+LISTED: dict[str, tuple[dict[str, Array], tuple[Array, Array], float, bool]] = {
+    "errors of a bench": ({"reference_deg": EVEN_DEG, "error_deg": READ_DEG - EVEN_DEG}, OF_REFERENCE, 1e-6, False),
+    "errors in arc minutes": (
+        {"Reference [deg]": EVEN_DEG, "Abweichung [arcmin]": 60.0 * (READ_DEG - EVEN_DEG)},
+        OF_REFERENCE,
+        1e-6,
+        False,
+    ),
+    "errors without units": ({"stage": EVEN_DEG, "err": READ_DEG - EVEN_DEG}, OF_REFERENCE, 1e-6, False),
+    "corrections of readings": (
+        {"sensor_deg": EVEN_DEG, "correction_deg": TRUE_DEG - EVEN_DEG},
+        OF_SENSOR,
+        1e-6,
+        False,
+    ),
+    "corrections in counts": (
+        {"AS5600 raw": 32.0 * np.arange(128.0), "correction": np.round((TRUE_OF_CODES - CODES) * 4096 / 360)},
+        (TRUE_OF_CODES, CODES),
+        0.0441,
+        False,
+    ),
+    "an angle of either side": ({"angle": EVEN_DEG, "error": EVEN_DEG - TRUE_DEG}, OF_SENSOR, 1e-6, True),
+    "an index": ({"index": np.arange(72.0), "error [rad]": np.radians(EVEN_DEG - TRUE_DEG)}, OF_SENSOR, 6e-5, True),
+}
+
+
+@pytest.mark.parametrize("name", LISTED)
+def test_errors_listed_beside_an_angle_are_read(name: str, tmp_path: Path) -> None:
+    """On the axis of either angle, by the sign that the words have; where the axis is not told, that is asked."""
+    columns, angles, resolution_deg, asked = LISTED[name]
+    path = tmp_path / "log.csv"
+    path.write_text(table(columns))
+    one = Stored("", *angles, resolution_deg)
+    if asked:
+        with pytest.raises(OpenGuess, match="two guesses fit") as caught:
+            read_log(path)
+        check_same(Sweep.read(path, columns=caught.value.options[0]), one)
+    else:
+        log = read_log(path)
+        assert "an error is the reading less the true angle" in told(log)
+        check_same(Sweep.read(path, columns=log.guess.text), one)
 
 
 def test_a_table_is_diagnosed_by_its_statement(tmp_path: Path) -> None:

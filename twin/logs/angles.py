@@ -175,6 +175,8 @@ def options_of(values: Array, said: Meaning) -> list[AngleUnit]:
     """The units that a column (n,) may be in, by its name or else by its values."""
     if said.unit is not None:
         return [AngleUnit(said.unit.name)]
+    if said.turns:
+        return [AngleUnit(counts=n) for n in said.turns]
     counts = _counts(values, stated=said.counts)
     if said.counts:
         return counts

@@ -13,8 +13,10 @@ from twin.angles import Array
 from twin.errors import SweepError
 from twin.logs.angles import AngleUnit, Pair, units_of_pair
 from twin.logs.channels import channels
+from twin.logs.devices import meanings_of
+from twin.logs.errors_listed import statements_of_errors
 from twin.logs.lookups import statements_of
-from twin.logs.names import Meaning, meaning_of
+from twin.logs.names import Meaning
 from twin.logs.others import others
 from twin.logs.ratios import turned
 from twin.logs.statement import Column, text_of
@@ -22,6 +24,7 @@ from twin.logs.table import Table
 from twin.sweep_columns import COLUMNS
 
 _SHOWN, _SIDES = 2, 2
+_ERROR_IS = "an error is the reading less the true angle, a correction the reverse"
 _FIT = {2: "two guesses fit"}
 _FEWEST, _LARGEST = 4, 1e20
 """Numbers that a column must hold to be judged, and the largest; nanoseconds since 1970 are 2e18."""
@@ -72,7 +75,7 @@ def guessed(table: Table) -> Guess:
     """The one statement that fits a table. Raises SweepError where none does, and where two do."""
     if table.entries:
         return _guessed_of_entries(table)
-    said = tuple(meaning_of(name) for name in table.names)
+    said = meanings_of(table.names)
     usable = [k for k, values in enumerate(table.values) if k not in table.faults and _told(values)]
     angles = [k for k in usable if said[k].role in ("angle", "")]
     if len(angles) > _MOST_ANGLES:
@@ -84,6 +87,8 @@ def guessed(table: Table) -> Guess:
         )
     pair = _pair(table, said, angles)
     found = channels(table, said, usable, None if pair is None else pair[1].of(table))
+    if pair is None and not found.columns and (listed := statements_of_errors(table, said, usable)):
+        return _one_of(listed, (_ERROR_IS,), table)
     if pair is None:
         pair = _by_channels(table, said, angles, found.columns)
     rest = others(table, said, usable, pair[0].of(table))
@@ -96,7 +101,11 @@ def guessed(table: Table) -> Guess:
 
 
 def _guessed_of_entries(table: Table) -> Guess:
-    fitting, notes = statements_of(table)
+    return _one_of(*statements_of(table), table)
+
+
+def _one_of(fitting: Sequence[tuple[Column, Column]], notes: tuple[str, ...], table: Table) -> Guess:
+    """The one statement that fits. Raises OpenGuess where more do."""
     if len(fitting) > 1:
         _raise_open(table, _FIT.get(len(fitting), "several guesses fit"), [text_of(one) for one in fitting])
     return Guess(fitting[0], notes, unused_by(fitting[0], table))

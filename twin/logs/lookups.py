@@ -110,7 +110,6 @@ def _rule(holds: str, unit: AngleUnit) -> Rule:
 
 def _units_of_correction(entries: Array, said: Meaning) -> list[AngleUnit]:
     """The units in which entries (n,) are corrections of an angle, of a size that a sensor may need."""
-    half_span = float(np.ptp(entries)) / 2.0
     whole = bool(np.all(entries % 1.0 == 0.0))
     if said.unit is not None:
         options = [AngleUnit(said.unit.name)]
@@ -118,9 +117,11 @@ def _units_of_correction(entries: Array, said: Meaning) -> list[AngleUnit]:
         options = [AngleUnit(counts=n) for n in _COUNTS]
     else:
         options = [AngleUnit(name) for name in _FLOATS]
-    return [one for one in options if _SMALLEST_DEG <= half_span * _degrees(one) <= _LARGEST_DEG]
+    return [one for one in options if correction_fits(entries, one)]
 
 
-def _degrees(unit: AngleUnit) -> float:
-    """What one step of a unit is in degrees."""
-    return UNITS[unit.name].factor if unit.name else 360.0 / unit.counts
+def correction_fits(entries: Array, unit: AngleUnit) -> bool:
+    """Whether entries (n,), in a unit, are as large as what a sensor may need."""
+    step_deg = UNITS[unit.name].factor if unit.name else 360.0 / unit.counts
+    half_span = float(np.nanmax(entries) - np.nanmin(entries)) / 2.0
+    return _SMALLEST_DEG <= half_span * step_deg <= _LARGEST_DEG

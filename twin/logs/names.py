@@ -57,7 +57,8 @@ class Meaning:
     """What a name says. ``role``: a kind of column, "angle", or "" where it says nothing.
 
     ``reference`` and ``sensor`` weigh how much speaks for either side of an angle. ``unit`` is the stated one,
-    ``counts`` whether it is a count of steps; ``own`` the column of a sweep whose name it is, large or small.
+    ``counts`` whether it is a count of steps, ``turns`` which numbers of them may make a turn, if that is known;
+    ``own`` the column of a sweep whose name it is, large or small.
     """
 
     role: str
@@ -66,6 +67,7 @@ class Meaning:
     unit: Unit | None = None
     counts: bool = False
     own: str | None = None
+    turns: tuple[int, ...] = ()
 
 
 def meaning_of(name: str) -> Meaning:

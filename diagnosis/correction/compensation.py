@@ -165,7 +165,7 @@ def _inverse(chain: Chain, temperature_c: float) -> tuple[int, float, Array, tup
     shaft = TAU * np.arange(_GRID) / _GRID
     slope = chain.sensor_sense * chain.output_sense
     kept = chain.without(*left_out)
-    ways = [wrap(_settled_turn(kept, shaft, way, temperature_c) - slope * shaft) for way in (1.0, -1.0)]
+    ways = [wrap(settled_turn(kept, shaft, way, temperature_c) - slope * shaft) for way in (1.0, -1.0)]
     error = ways[0] + 0.5 * wrap(ways[1] - ways[0])
     # An error near half a turn would tear: take its mean out on the circle first.
     mean = float(np.angle(np.mean(np.exp(1j * error))))
@@ -192,7 +192,7 @@ def _to_middle(chain: Chain) -> tuple[str, ...]:
     return tuple(key for key in directed if "both directions" in find(key, chain.effects).needs)
 
 
-def _settled_turn(chain: Chain, shaft: Array, way: float, temperature_c: float) -> Array:
+def settled_turn(chain: Chain, shaft: Array, way: float, temperature_c: float) -> Array:
     """Readings [rad] of one turn at standstill at the ascending angles (n,), each approached from one side.
 
     A turn runs before it, after which effects with a memory have settled.

@@ -12,7 +12,7 @@ from scenarios.cli.effects import causes, check_effect, new_effect
 from scenarios.cli.logs import import_log
 from scenarios.cli.simulation import hardware, paper, simulate, spinning
 from scenarios.cli.studies import design, generate, recover
-from scenarios.cli.sweeps import compensate, diagnose, explain, monitor
+from scenarios.cli.sweeps import compensate, diagnose, explain, export, monitor
 from scenarios.cli.verbosity import with_verbosity
 
 
@@ -73,6 +73,7 @@ for command in (
     spinning,
     paper,
     compensate,
+    export,
     monitor,
     hardware,
     bench,

@@ -213,6 +213,86 @@ def compensate(
     )
 
 
+def export(
+    context: typer.Context,
+    sources: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="SOURCES...",
+            help="Twin TOML, such as explain --extended writes, or preset; or measured sweep, or sweeps of one sensor "
+            "at several temperatures.",
+        ),
+    ],
+    target: Annotated[
+        str,
+        typer.Option(
+            "--for",
+            metavar="TARGET[:N]",
+            help="What loads it, and of how many entries: simplefoc (N, without: 200), moteus (256, or 32 floats), "
+            "klipper (N full steps, 200), mechaduino (16384), magalpha (MA600, 32), c (N, 64), autosar (N, 32), "
+            "lut (N, 64). ODrive and VESC take no table: asked for, the reason is told.",
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        written(
+            "Table to write: .cfg for moteus and klipper, .csv for lut, .h for the others; without it the errors are "
+            "told alone.",
+            "-o",
+            "--output",
+        ),
+    ] = None,
+    json: Json = None,
+    plot: ErrorPlot = None,
+    name: Annotated[
+        str, written("Name in the file: prefix of C names, section of Klipper.", metavar="NAME")
+    ] = "halltwin",
+    check: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="SWEEPS",
+            help="Sweep, glob or folder to test the table on; may be repeated. Exit code 1 where it makes the error "
+            "larger.",
+        ),
+    ] = None,
+    temperature: Annotated[
+        float, typer.Option(metavar="C", help="Temperature in C for which the table is made.")
+    ] = 25.0,
+    least: Annotated[
+        str,
+        typer.Option(metavar="worst|rms", help="What the entries are chosen for: the smallest worst error, or RMS."),
+    ] = "worst",
+    force: Force = False,
+    effects: EffectFiles = None,
+    columns: Columns = None,
+    max_size: MaxSize = "2GB",
+    seed: Seed = 0,
+    fail_on: Annotated[
+        list[str] | None, fail_on_option("worse (the error is larger with the table, on held-out readings too)")
+    ] = None,
+) -> None:
+    """Write the correction of a twin or of sweeps as the table that a drive or sensor loads, on its axis and its sign.
+
+    The entries are chosen for the drive's own interpolation, read back by a model of it, and judged on readings that
+    they were not made of. What no table removes is told beside it.
+    """
+    from scenarios.commands.export import Outputs, run
+    from scenarios.commands.export_made import Asked
+    from scenarios.commands.inputs import SweepFiles
+    from twin.bounded_input import bytes_of
+
+    run(
+        sources,
+        wish=Asked.checked(target, least, temperature, name),
+        outputs=Outputs(table=output, json=json, plot=plot, force=force),
+        check=SweepFiles(check or (), bytes_of(max_size), columns),
+        effect_files=effects or (),
+        seed=seed,
+        fail_on=fail_on or (),
+        command=command_line(context),
+    )
+
+
 def monitor(
     context: typer.Context,
     sweeps: Annotated[

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from diagnosis.correction.compensation import Correction, correction_of, correction_over
 from diagnosis.correction.compensation_c import check_prefix, header
 from diagnosis.correction.correction_file import to_dict
-from diagnosis.report.row_counts import counts_of, rejected_words
-from diagnosis.report.wording import plain
-from scenarios.commands.compensate_judge import Judged, held_out, on_others
+from scenarios.commands.compensate_judge import Judged, held_out, on_others, rows_of, say_where_worse
 from scenarios.commands.compensate_source import Readings, readings_of
 from scenarios.commands.compensate_table import table, temperatures_c
 from scenarios.commands.compensate_text import made_of, show
-from scenarios.commands.fail_on import COMPENSATE, FoundError, asked
-from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels, sweep_paths
+from scenarios.commands.correction_sources import files_of, is_one_twin, read_files, rejected_lines
+from scenarios.commands.fail_on import COMPENSATE, asked
+from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels
 from scenarios.commands.intervals import interval
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
@@ -26,7 +25,7 @@ from twin.chain import Chain
 from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.limits import require_within
-from twin.presets import is_twin, read_twin_or_preset
+from twin.presets import read_twin_or_preset
 from twin.shown_name import shown_name
 
 _FEWEST_POINTS = 4
@@ -76,29 +75,29 @@ def run(
     require_within("tolerance", tolerance_deg, 0.0, _COARSEST_DEG, "deg")
     check_prefix(outputs.prefix)
     effects = effects_with(effect_files)
-    of_twin = _is_one_twin(sources)
+    of_twin = is_one_twin(sources)
     if temperature is not None and not of_twin:
         raise UserError(
             "--temperature is for a twin, and these are sweeps; leave it out: the correction follows the temperatures "
             "of their column temperature_c"
         )
     twin = read_twin_or_preset(sources[0], effects=effects) if of_twin else Chain(effects=effects)
-    checked_on, paths = check.paths(), [Path(sources[0])] if of_twin else _paths(sources)
+    checked_on, paths = check.paths(), [Path(sources[0])] if of_twin else files_of(sources)
     files = _files(outputs, inputs=[*paths, *checked_on, *effect_files])
     others = check.read(checked_on)
-    given = SweepsRead(()) if of_twin else _read(paths, check)
+    given = SweepsRead(()) if of_twin else read_files(paths, check)
     check_panels(outputs.plot, len(others.sweeps) if checked_on or of_twin else 1)
     readings = None if of_twin else readings_of(given.sweeps, tolerance_deg=tolerance_deg, seed=seed)
     correction = _of_twin(twin, low_c, high_c, tolerance_deg) if readings is None else readings.correction
     judged = _judge(correction, readings, others)
     source = shown_name(paths[0]) if len(paths) == 1 else f"{len(given.sweeps)} sweeps"
-    rows = _rows(judged, other=bool(checked_on))
+    rows = rows_of(judged, other=bool(checked_on))
     show(made_of(readings, source, tolerance_deg), correction, [(one.name, one.found) for one in rows])
-    for line in (*_rejected(others), *given.lines, *others.lines):
+    for line in (*rejected_lines(others), *given.lines, *others.lines):
         print(line)
     shown = [one.without_zeros() for one in judged] if checked_on else judged
     _write(files, outputs, correction, source=source, judged=shown, readings=readings, tolerance_deg=tolerance_deg)
-    _say_where_worse(judged, fails=bool(checked_on or words))
+    say_where_worse(judged, fails=bool(checked_on or words))
     SweepsRead((*given.sweeps, *others.sweeps), (*given.unusable, *others.unusable)).raise_unusable()
 
 
@@ -112,35 +111,6 @@ def _of_twin(twin: Chain, low_c: float, high_c: float, tolerance_deg: float) -> 
     return correction_of(twin, temperature_c=low_c, tolerance_deg=tolerance_deg)
 
 
-def _is_one_twin(sources: Sequence[str | Path]) -> bool:
-    """Whether the sources are one twin. Raises UserError where one of several is."""
-    twins = [source for source in sources if is_twin(source)]
-    if twins and len(sources) > 1:
-        raise UserError(
-            f"{shown_name(twins[0])} is a twin beside other sources; give one twin alone, or the sweeps of one sensor"
-        )
-    return bool(twins)
-
-
-def _paths(sources: Sequence[str | Path]) -> list[Path]:
-    """The files of sweeps; a single name that is no folder or pattern stands for itself, there or not."""
-    only = Path(sources[0])
-    if len(sources) == 1 and not only.is_dir() and (only.exists() or not set(str(only)) & set("*?[")):
-        return [only]
-    return sweep_paths([str(source) for source in sources])
-
-
-def _read(paths: Sequence[Path], how: SweepFiles) -> SweepsRead:
-    """The sweeps, read as those that the correction is checked on."""
-    return SweepsRead((how.read_one(paths[0]),)) if len(paths) == 1 else how.read(paths)
-
-
-def _rejected(others: SweepsRead) -> list[str]:
-    """Which sweeps of ``--check`` hold rows that could not be used."""
-    counts = [(one.name, counts_of(one, ())) for one in others.sweeps if one.rejected]
-    return [f"{name}: {told['rows']} readings; {rejected_words(told)}" for name, told in counts]
-
-
 def _files(outputs: Outputs, *, inputs: Sequence[Path]) -> OutputFiles:
     """The files to write. Raises UserError where one of them cannot or must not be written."""
     asked = [(outputs.header, HEADER), (outputs.table, TABLE), (outputs.toml, TOML), (outputs.plot, PICTURE)]
@@ -151,42 +121,6 @@ def _judge(correction: Correction, readings: Readings | None, others: SweepsRead
     if others.sweeps:
         return on_others(correction.shaft, others.sweeps)
     return [] if readings is None else held_out(readings)
-
-
-def _rows(judged: Sequence[Judged], *, other: bool) -> list[Judged]:
-    """As it is and, where the reference may have found its zero anew, with each turn's own zero taken out.
-
-    Of the readings that the correction is made of also without their gross errors, which all others count.
-    """
-    rows = []
-    for one in judged:
-        if one.part:
-            rows.append(replace(one.without_zeros() if other or one.own_zeros else one, name=f"  {one.name}"))
-            continue
-        apart, kept = other or one.several_turns, one.without_gross()
-        rows.append(one)
-        if apart:
-            rows.append(replace(one.without_zeros(), name="  each turn's own zero taken out"))
-        if kept is not None:
-            rows.append(replace(kept.without_zeros() if apart else kept, name=f"  {'and ' * apart}{kept.name}"))
-    return rows
-
-
-def _say_where_worse(judged: Sequence[Judged], *, fails: bool) -> None:
-    """Say on which readings the correction makes the error larger; raise FoundError there where that is a failure.
-
-    Judged with each turn's own zero taken out: a reference that was mounted anew says nothing about the correction.
-    """
-    larger = []
-    for one in judged:
-        before, after = one.without_zeros().found.rms_deg
-        if after > before:
-            larger.append(f"{one.name} ({plain(before, 4)} -> {plain(after, 4)} deg RMS, own zero taken out)")
-    if larger:
-        said = f"the correction makes the error larger {', '.join(larger)}; do not load it"
-        if fails:
-            raise FoundError(said)
-        print(said)
 
 
 def _write(

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from diagnosis.correction.cross_validation import BeforeAfter, Shaft, between, cross_validated, on
+from diagnosis.report.wording import plain
 from diagnosis.thermal.levels import levels_of
 from diagnosis.thermal.recording import Recording, joined
 from scenarios.commands.compensate_source import Readings
+from scenarios.commands.fail_on import FoundError
 from twin.effect import BoolArray
 from twin.sweep import Sweep
 
@@ -61,11 +63,14 @@ def on_others(shaft: Shaft, sweeps: Sequence[Sweep]) -> list[Judged]:
     return judged
 
 
-def held_out(readings: Readings) -> list[Judged]:
-    """The correction that readings make, on parts of them that it was not made of."""
+def held_out(readings: Readings, build: Callable[[Recording], Shaft] | None = None) -> list[Judged]:
+    """The correction that readings make, on parts of them that it was not made of.
+
+    ``build`` makes of some of the readings what is judged, where that is not the correction itself.
+    """
     recording = readings.recording
     level = levels_of(recording)
-    build = readings.shaft_of
+    build = build or readings.shaft_of
     numbers = level.of_reading if readings.over_temperature else np.zeros_like(recording.unit)
     found = cross_validated(recording, numbers, build)
     gross, zeros = readings.calibration.gross, readings.own_zeros
@@ -80,6 +85,42 @@ def held_out(readings: Readings) -> list[Judged]:
             Judged(f"at {name}", f"{readings.title}, {name}", one, rows, readings.own_zeros, part=True, alone=True)
         )
     return judged
+
+
+def rows_of(judged: Sequence[Judged], *, other: bool) -> list[Judged]:
+    """As it is and, where the reference may have found its zero anew, with each turn's own zero taken out.
+
+    Of the readings that the correction is made of also without their gross errors, which all others count.
+    """
+    rows = []
+    for one in judged:
+        if one.part:
+            rows.append(replace(one.without_zeros() if other or one.own_zeros else one, name=f"  {one.name}"))
+            continue
+        apart, kept = other or one.several_turns, one.without_gross()
+        rows.append(one)
+        if apart:
+            rows.append(replace(one.without_zeros(), name="  each turn's own zero taken out"))
+        if kept is not None:
+            rows.append(replace(kept.without_zeros() if apart else kept, name=f"  {'and ' * apart}{kept.name}"))
+    return rows
+
+
+def say_where_worse(judged: Sequence[Judged], *, fails: bool) -> None:
+    """Say on which readings the correction makes the error larger; raise FoundError there where that is a failure.
+
+    Judged with each turn's own zero taken out: a reference that was mounted anew says nothing about the correction.
+    """
+    larger = []
+    for one in judged:
+        before, after = one.without_zeros().found.rms_deg
+        if after > before:
+            larger.append(f"{one.name} ({plain(before, 4)} -> {plain(after, 4)} deg RMS, own zero taken out)")
+    if larger:
+        said = f"the correction makes the error larger {', '.join(larger)}; do not load it"
+        if fails:
+            raise FoundError(said)
+        print(said)
 
 
 def _by_level(whole: Judged) -> list[Judged]:

@@ -78,7 +78,12 @@ def show(made: MadeOf, correction: Correction, rows: Rows, console: Console | No
     if correction.to_middle:
         console.print(Text(f"corrected to the middle between both directions: {', '.join(correction.to_middle)}"))
     if rows:
-        console.print(_table(rows) if console.width >= _NARROW else _list(rows))
+        console.print(figures(rows, console.width))
+
+
+def figures(rows: Rows, width: int) -> Table:
+    """Errors without and with a correction, for a terminal of so many characters."""
+    return _table(rows) if width >= _NARROW else _list(rows)
 
 
 def _following(correction: Correction) -> str:

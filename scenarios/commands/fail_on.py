@@ -43,6 +43,7 @@ DIAGNOSE = ("undetermined", "gross-errors", "rejected")
 MONITOR = ("drift",)
 """Beside it the name of any factor."""
 COMPENSATE = ("worse",)
+EXPORT = ("worse",)
 BENCH = ("missed",)
 
 

@@ -1,9 +1,9 @@
 """The mark by which the program knows a file that it wrote and that nobody has changed since.
 
-A mark is one sentence with the SHA-256 of all that the file holds besides: a comment in TOML, C, HTML, SVG and PDF, the
-entry ``written_by`` in JSON, a text chunk in PNG. CSV stays plain, because many programs read it that know no comments:
-its mark is an extended attribute of the file, where the system has those. A file that was edited, or that someone else
-wrote in the same format, bears no mark that fits: it is the user's.
+A mark is one sentence with the SHA-256 of all that the file holds besides: a comment in TOML, CFG, C, HTML, SVG and
+PDF, the entry ``written_by`` in JSON, a text chunk in PNG. CSV stays plain, because many programs read it that know no
+comments: its mark is an extended attribute of the file, where the system has those. A file that was edited, or that
+someone else wrote in the same format, bears no mark that fits: it is the user's.
 """
 
 from __future__ import annotations
@@ -44,10 +44,12 @@ def _png_text(said: bytes) -> bytes:
     return struct.pack(">I", len(body) - 4) + body + struct.pack(">I", zlib.crc32(body))
 
 
+_HASH = _Form(lambda said: b"# " + said + b"\n")
 _C = _Form(lambda said: b"/* " + said + b" */\n")
 _XML = _Form(lambda said: b"<!-- " + said + b" -->\n", closing=b"")
 _FORMS = {
-    ".toml": _Form(lambda said: b"# " + said + b"\n"),
+    ".toml": _HASH,
+    ".cfg": _HASH,
     ".h": _C,
     ".hh": _C,
     ".hpp": _C,

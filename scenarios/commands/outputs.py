@@ -44,12 +44,18 @@ TOML = Format("such files", (".toml",))
 HTML = Format("reports", (".html", ".htm"))
 HEADER = Format("C headers", (".h", ".hh", ".hpp"))
 PICTURE = Format("pictures", (".png", ".svg", ".pdf"))
+CONFIGURATION = Format("such tables", (".cfg",))
 PYTHON = Format("effects", (".py",), marked=False)
 """A file to write one's own physics into."""
 
-_FILES = {end for form in (TABLE, JSON, TOML, HTML, HEADER, PICTURE, PYTHON) for end in form.endings}
+_FILES = {end for form in (TABLE, JSON, TOML, HTML, HEADER, PICTURE, CONFIGURATION, PYTHON) for end in form.endings}
 
 Given = tuple[Path | None, Format]
+
+
+def drive_table(ending: str) -> Format:
+    """The format of a drive's table whose files end so."""
+    return next(form for form in (HEADER, TABLE, CONFIGURATION) if ending in form.endings)
 
 
 @dataclass(frozen=True)

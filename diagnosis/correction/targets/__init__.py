@@ -1,0 +1,1 @@
+"""The tables that drives and sensors load, one kind a file: fitted, written, read back by the drive's arithmetic."""

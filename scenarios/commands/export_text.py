@@ -1,0 +1,129 @@
+"""A drive's table as a person reads it, as the comment in its file, and as the JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.text import Text
+
+from diagnosis.correction.not_removed import NotRemoved
+from diagnosis.report.provenance import Provenance
+from diagnosis.report.wording import plain, rms_shown
+from scenarios.commands.compensate_judge import Judged
+from scenarios.commands.compensate_text import MadeOf, Rows, figures
+from scenarios.commands.export_made import Exported
+
+SCHEMA = "halltwin.export/1"
+_DIGITS = 2
+
+
+def show(made: Exported, of: MadeOf, rows: Rows, console: Console | None = None) -> None:
+    """Print what the table is, how it does, and what it leaves."""
+    console = console or Console(highlight=False)
+    console.print(Text(f"{of.name}   {of.readings}" if of.readings else of.name))
+    for line in (*_what(made), *of.temperature):
+        console.print(Text(line))
+    console.print(figures(rows, console.width))
+    if made.not_removed:
+        console.print(Text("not removed by a table of the reading alone:"))
+        for left in made.not_removed:
+            console.print(Text(f"  {_left(left)}"))
+    console.print(Text(f"to load it: {made.asked.target.load}"))
+
+
+def about(made: Exported, provenance: Provenance) -> tuple[str, ...]:
+    """The lines of the comment in the file."""
+    judged = [one for one in made.judged if not one.part]
+    return (
+        f"Angle correction for {made.asked.target.what}.",
+        f"Made by halltwin {provenance.version} on {provenance.date} from {made.source.name}, seed {provenance.seed}"
+        f"{'' if provenance.command is None else f': {provenance.command}'}",
+        *_what(made)[1:],
+        *(f"Angle error {one.name}: {_short(one)}" for one in judged),
+        *(f"Not removed: {_left(left)}" for left in made.not_removed),
+        f"To load it: {made.asked.target.load}.",
+    )
+
+
+def _what(made: Exported) -> list[str]:
+    """The table in a few lines."""
+    target = made.asked.target
+    largest = float(np.max(np.abs(made.away_deg)))
+    return [
+        target.what,
+        f"{len(made.table)} entries: {target.axis}; {target.sign}; unit {target.unit}",
+        f"read back, it follows the correction at {made.asked.temperature_c:g} C to {plain(largest, _DIGITS)} deg at "
+        f"worst, {plain(_rms(made.away_deg), _DIGITS)} deg RMS",
+    ]
+
+
+def _short(one: Judged) -> str:
+    found = one.found
+    rms = " -> ".join(rms_shown(value, found.before_rad.size) for value in found.rms_deg)
+    return f"RMS {rms} deg, largest {' -> '.join(plain(value, _DIGITS) for value in found.peak_deg)} deg"
+
+
+def _left(left: NotRemoved) -> str:
+    """One thing that stays, in words."""
+    causes = f" ({', '.join(left.causes)})" if left.causes not in ((), (left.what,)) else ""
+    sizes = list(_sizes(left))
+    return f"{left.what}{causes}{': ' if sizes else ''}{', '.join(sizes)}{f', {left.at}' if left.at else ''}"
+
+
+def _sizes(left: NotRemoved) -> Iterator[str]:
+    if left.rms_deg is not None:
+        yield f"{plain(left.rms_deg, _DIGITS)} deg RMS"
+    if left.largest_deg is not None:
+        yield f"{plain(left.largest_deg, _DIGITS)} deg at most"
+
+
+def to_dict(made: Exported, provenance: Provenance) -> dict[str, Any]:
+    """The answer as plain values."""
+    target, correction = made.asked.target, made.wanted
+    return {
+        "schema": SCHEMA,
+        **provenance.to_dict(),
+        "source": made.source.name,
+        "target": target.name,
+        "what": target.what,
+        "entries": len(made.table),
+        "axis": target.axis,
+        "sign": target.sign,
+        "entry_unit": target.unit,
+        "least": made.asked.least,
+        "load": target.load,
+        "temperature_c": made.asked.temperature_c,
+        "slope": correction.slope,
+        "zero_deg": float(np.degrees(correction.zero_rad)),
+        "read_back": {"largest_deg": float(np.max(np.abs(made.away_deg))), "rms_deg": _rms(made.away_deg)},
+        "judged": [_judged(one) for one in made.judged],
+        "not_removed": [
+            {
+                "what": left.what,
+                "causes": list(left.causes),
+                "rms_deg": left.rms_deg,
+                "largest_deg": left.largest_deg,
+                "at": left.at,
+            }
+            for left in made.not_removed
+        ],
+    }
+
+
+def _judged(one: Judged) -> dict[str, Any]:
+    (before, after), (largest, largest_after) = one.found.rms_deg, one.found.peak_deg
+    return {
+        "on": one.name,
+        "rows": int(one.found.before_rad.size),
+        "rms_deg_before": before,
+        "rms_deg_after": after,
+        "largest_deg_before": largest,
+        "largest_deg_after": largest_after,
+    }
+
+
+def _rms(values: Any) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))

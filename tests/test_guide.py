@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diagnosis.correction.targets.known import TARGETS
 from scenarios.cli.app import app
 from scenarios.commands.protocol import Protocol
 from tests.command_line import halltwin
@@ -56,6 +57,21 @@ def test_over_temperature_is_its_real_output(tmp_path: Path, monkeypatch: pytest
     assert words(out) == words(shown)
     for told, found in zip(figures(shown), figures(out), strict=True):
         assert told == pytest.approx(found, rel=0.1, abs=3e-4)
+
+
+def test_a_table_for_a_drive_is_its_real_output(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Words as they stand, figures to a few percent; those of the read-back table to its rounding."""
+    (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    page = GUIDE / "drive_tables.md"
+    (command,) = re.findall(r"^halltwin (export .*)$", page.read_text(encoding="utf-8"), re.M)
+    out, shown = halltwin(*command.split()).out, block(page, "export")
+    assert words(out) == words(shown)
+    for told, found in zip(figures(shown), figures(out), strict=True):
+        assert told == pytest.approx(found, rel=0.1, abs=3e-4)
+    for target in TARGETS:
+        assert f"| `{target.name}` |" in page.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,7 @@ BASE: dict[str, tuple[str, ...]] = {
     "paper": ("-o", "out/paper"),
     "compensate": ("short.csv", "--header", "out/c.h"),
     "compensate --temperature": ("paper-encoder", "--header", "out/c.h"),
+    "export": ("paper-encoder", "--for", "lut", "-o", "out/t.csv"),
     "import": ("short.csv", "-o", "out/sweep.csv"),
     "monitor": tuple(f"s{k}.csv" for k in range(8)),
     "bench": ("--points", "8", "-o", "out/bench.csv"),
@@ -40,6 +41,7 @@ WORDS = frozenset(
     {
         *("--check", "--prefix", "--twin", "--hide", "--interface", "--channel", "--bus-option", "--fault", "--cause"),
         *("--shape", "--grade", "--sampling", "--scheduler", "--fail-on"),
+        *("--for", "--name", "--least"),
         "--columns",
     }
 )
@@ -57,6 +59,7 @@ RIGHT: dict[str, str] = {
     "--timeout": "36.9",
     "--run-length": "36.9",
     "simulate --max-size": "36.9",
+    "export --max-size": "36.9",
     # A lag that is 0.1 deg at the preset's gap would be 22 deg there.
     "simulate --air-gap": "",
     "compensate --tolerance": "0",

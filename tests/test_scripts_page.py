@@ -7,19 +7,26 @@ import re
 from diagnosis.factors.series import UNITS
 from scenarios.cli.main import CRASHED
 from scenarios.cli.streams import READER_GONE
-from scenarios.commands.fail_on import BENCH, COMPENSATE, DIAGNOSE, EXPLAIN, MONITOR
+from scenarios.commands.fail_on import BENCH, COMPENSATE, DIAGNOSE, EXPLAIN, EXPORT, MONITOR
 from scenarios.commands.interrupt import INTERRUPTED
 from tests.pages import GUIDE
 from twin.catalogue import CATALOGUE
 from twin.presets import preset_names
 
 PAGE = (GUIDE / "scripts.md").read_text(encoding="utf-8")
-WORDS = {"explain": EXPLAIN, "diagnose": DIAGNOSE, "monitor": MONITOR, "compensate": COMPENSATE, "bench": BENCH}
+WORDS = {
+    "explain": EXPLAIN,
+    "diagnose": DIAGNOSE,
+    "monitor": MONITOR,
+    "compensate": COMPENSATE,
+    "export": EXPORT,
+    "bench": BENCH,
+}
 
 
 def test_words_to_fail_on() -> None:
     listed: dict[str, set[str]] = {command: set() for command in WORDS}
-    for row in re.findall(r"^\| (`(?:explain|diagnose|monitor|compensate|bench)[^|]*)\| ([^|]*) \|", PAGE, re.M):
+    for row in re.findall(r"^\| (`(?:explain|diagnose|monitor|compensate|export|bench)[^|]*)\| ([^|]*) \|", PAGE, re.M):
         for command in re.findall(r"`(\w+)", row[0]):
             listed[command] |= set(re.findall(r"`([^`]+)`", row[1]))
     examples = {effect.name for effect in CATALOGUE} | set(UNITS)

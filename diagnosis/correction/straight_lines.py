@@ -30,6 +30,9 @@ _SLACK = 1e-4
 _CANDIDATES = 5
 """Whole numbers tried at each node, about the value that would be best without rounding."""
 _ROUNDS = 40
+_LARGEST_REACH, _SMALLEST_REACH = 0.25, 1e-3
+"""By how much of the room beside it a node is moved at once."""
+_STEP_RAD = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,24 +165,68 @@ def _cheapest(cost: Array) -> IntArray:
 
 
 def spread_nodes(curve: Curve, count: int, low_rad: float, high_rad: float) -> Nodes:
-    """So many nodes from one angle [rad] to another, where straight lines between them follow the curve best.
+    """So many nodes from one angle [rad] to another, placed where straight lines between them follow the curve best.
 
-    They are moved until the curve leaves the chord of each interval equally far: of curves that bend, the worst error
-    is then the smallest.
+    They are spread until the curve leaves the chord of each interval equally far, and from there moved by linear
+    programmes, in each of which the worst error is linear in places and values: near to the smallest worst error.
     """
-    at = np.linspace(low_rad, high_rad, count)
-    best, smallest = at, np.inf
-    share = np.linspace(0.0, 1.0, 33)
+    at = _equal_chords(curve, np.linspace(low_rad, high_rad, count))
+    share = np.linspace(0.0, 1.0, _IN_AN_INTERVAL + 1)
+    worst, reach = np.inf, _LARGEST_REACH
     for _ in range(_ROUNDS):
-        wide = np.diff(at)
-        value = curve(at)
+        moved, values = _moved_together(curve, at, share, reach)
+        inner = moved[:-1, None] + np.diff(moved)[:, None] * share
+        lines = values[:-1, None] + np.diff(values)[:, None] * share
+        found = float(np.max(np.abs(lines - curve(inner))))
+        if found < worst * (1.0 - _SLACK):
+            at, worst = moved, found
+        else:
+            reach *= 0.5
+        if reach < _SMALLEST_REACH:
+            break
+    return Nodes(at, closed=False)
+
+
+def _equal_chords(curve: Curve, at: Array) -> Array:
+    """Nodes (n,) moved until the curve leaves the chord of each interval about equally far; the ends stay."""
+    share = np.linspace(0.0, 1.0, 4 * _IN_AN_INTERVAL + 1)
+    for _ in range(_ROUNDS):
+        wide, value = np.diff(at), curve(at)
         inner = curve(at[:-1, None] + wide[:, None] * share)
-        away = inner - value[:-1, None] - np.diff(value)[:, None] * share
-        bend = np.ptp(np.concatenate([away, np.zeros((count - 1, 1))], axis=1), axis=1)
-        if bend.max() < smallest:
-            best, smallest = at, float(bend.max())
+        bend = np.ptp(inner - value[:-1, None] - np.diff(value)[:, None] * share, axis=1)
         # A chord's height goes with the square of its width.
-        dense = np.sqrt(np.maximum(bend, 1e-3 * bend.max() + 1e-15)) / wide
+        dense = np.sqrt(bend + 1e-3 * bend.max() + 1e-15) / wide
         total = np.concatenate([[0.0], np.cumsum(dense * wide)])
-        at = 0.5 * (at + np.interp(np.linspace(0.0, total[-1], count), total, at))
-    return Nodes(best, closed=False)
+        at = 0.5 * (at + np.interp(np.linspace(0.0, total[-1], at.size), total, at))
+    return at
+
+
+def _moved_together(curve: Curve, at: Array, share: Array, reach: float) -> tuple[Array, Array]:
+    """Places and values (n,) of the smallest worst error to first order; the ends stay.
+
+    Each place is moved by at most ``reach`` of the narrower interval beside it.
+    """
+    from scipy.optimize import linprog
+    from scipy.sparse import csr_matrix, hstack, vstack
+
+    count, wide = at.size, np.diff(at)
+    inner = (at[:-1, None] + wide[:, None] * share).ravel()
+    value = curve(inner)
+    slope = (curve(inner + _STEP_RAD) - curve(inner - _STEP_RAD)) / (2.0 * _STEP_RAD)
+    interval, part = np.repeat(np.arange(count - 1), share.size), np.tile(share, count - 1)
+    rows = np.arange(inner.size)
+    places = (np.concatenate([rows, rows]), np.concatenate([interval, interval + 1]))
+    ends = np.concatenate([1.0 - part, part])
+    lines = csr_matrix((ends, places), shape=(rows.size, count))
+    moving = csr_matrix((-ends * np.concatenate([slope, slope]), places), shape=(rows.size, count))
+    scale = max(float(np.max(np.abs(value))), _NOT_WORTH_IT_RAD)
+    one = csr_matrix(np.ones((rows.size, 1)))
+    both = hstack([lines, moving / scale])
+    room = reach * np.concatenate([[0.0], np.minimum(wide[:-1], wide[1:]), [0.0]])
+    found = linprog(
+        np.append(np.zeros(2 * count), 1.0),
+        A_ub=vstack([hstack([both, -one]), hstack([-both, -one])]).tocsr(),
+        b_ub=np.concatenate([value, -value]) / scale,
+        bounds=[(None, None)] * count + [(-one_room, one_room) for one_room in room] + [(0.0, None)],
+    ).x
+    return at + found[count : 2 * count], scale * found[:count]

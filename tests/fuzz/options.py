@@ -18,6 +18,7 @@ BASE: dict[str, tuple[str, ...]] = {
     "explain": ("short.csv",),
     "diagnose": ("short.csv",),
     "compensate": ("short.csv",),
+    "export": ("short.csv", "--for=lut"),
     "monitor": ("series",),
     "simulate": ("--points=24",),
     "causes": (),

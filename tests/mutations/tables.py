@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tests.mutations.by_hand import BY_HAND
 from tests.mutations.discovery import DISCOVERY
+from tests.mutations.export import EXPORT
 from tests.mutations.files import FILES
 from tests.mutations.forms import FORMS
 from tests.mutations.gaps import GAPS
@@ -34,6 +35,7 @@ def mutations() -> tuple[Mutation, ...]:
         *PARTS,
         *FORMS,
         *FILES,
+        *EXPORT,
         *STUDIES,
         *SCRIPTS,
         *THERMAL,

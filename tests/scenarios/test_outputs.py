@@ -64,6 +64,7 @@ CASES = {
         {"--header": "a.h", "--table": "a.csv.gz", "--toml": "a.toml", "--plot": "a.png"},
         ("sweep.csv", "sweeps/one.csv"),
     ),
+    "export": Case(("sweep.csv", "--for=lut"), {"-o": "a.csv", "--json": "a.json", "--plot": "a.png"}, ("sweep.csv",)),
     "import": Case(("sweep.csv",), {"-o": "a.csv"}, ("sweep.csv",)),
     "monitor": Case(("series.csv",), {"--json": "a.json", "--plot": "a.png"}, ("series.csv",)),
     "simulate": Case(

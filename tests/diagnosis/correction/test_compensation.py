@@ -137,6 +137,14 @@ def test_held_out_rows_are_each_held_out_once() -> None:
         assert np.array_equal(np.sum(list(folds(rows)), axis=0), np.ones(rows))
 
 
+@pytest.mark.parametrize("there_and_back", [False, True])
+def test_no_angle_of_two_turns_is_held_out_twice(there_and_back: bool) -> None:
+    """What is held out of one is seen in the other, but for the ends of blocks."""
+    place = np.concatenate([np.arange(100), np.arange(100)[:: -1 if there_and_back else 1]])
+    for mask in folds(200):
+        assert np.intersect1d(place[:100][mask[:100]], place[100:][mask[100:]]).size == 0
+
+
 def test_held_out_error_of_a_simulated_sweep() -> None:
     rng = np.random.default_rng(1)
     reference = turn(360)

@@ -8,6 +8,7 @@ from tests.mutations.export import EXPORT
 from tests.mutations.files import FILES
 from tests.mutations.forms import FORMS
 from tests.mutations.gaps import GAPS
+from tests.mutations.logs import LOGS
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
 from tests.mutations.paper import PAPER
@@ -36,6 +37,7 @@ def mutations() -> tuple[Mutation, ...]:
         *FORMS,
         *FILES,
         *EXPORT,
+        *LOGS,
         *STUDIES,
         *SCRIPTS,
         *THERMAL,

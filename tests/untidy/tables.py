@@ -55,7 +55,8 @@ def _lines(path: str, values: Iterable[float], digits: int) -> str:
 
 
 def _c(declared: str, listed: str) -> str:
-    return f"#include <stdint.h>\n/* angle table {{rev 3}}, 12 // of it */\n{declared} = {{\n  {listed}\n}};\n"
+    numbers = f"{{\n  /* 0, deg */ {listed} // 360, again\n}}"
+    return f"#include <stdint.h>\n/* angle table {{rev 3}}, 12 // of it */\n{declared} = {numbers};\n"
 
 
 def stored() -> dict[str, Stored]:

@@ -95,6 +95,15 @@ def test_in_a_gap_and_where_an_angle_begins_anew_nothing_is_made_up() -> None:
     np.testing.assert_allclose(table.values[2][~missing], (20.0 + 40.0 * np.arange(10.0)[~missing]) % 360.0, atol=1e-9)
 
 
+def test_where_an_angle_begins_anew_the_cell_is_missing() -> None:
+    slow = Channel("ref [deg]", np.arange(0.0, 9.0, 0.7), 40.0 * np.arange(0.0, 9.0, 0.7))
+    fine_s = np.arange(0.05, 9.0, 0.1)
+    fine = Channel("sensor [deg]", fine_s, (20.0 + 40.0 * fine_s + 4.0) % 360.0)
+    # It begins anew at 8.4, between its samples at 8.35 and 8.45, where the reference has its last sample.
+    found = on_one_clock([slow, fine], file="log").values[2]
+    assert list(np.flatnonzero(np.isnan(found))) == [0, 12]
+
+
 @pytest.mark.parametrize("number", [0, 2])
 def test_a_bus_log_without_its_dbc_says_what_is_missing(number: int, tmp_path: Path) -> None:
     path = written("ASC", tmp_path)

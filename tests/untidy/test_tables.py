@@ -71,7 +71,7 @@ def test_of_two_sources_one_is_asked_for(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ('{"axis0": {"anticogging": {"cogging_map": [0.1, -0.2, 0.3, 0.1, 0.2, -0.1, 0.2, 0.4]}}}', "holds torques"),
+        (f'{{"axis0": {{"cogging_map": {np.round(0.1 * np.sin(np.arange(24) / 4.0), 4).tolist()}}}}}', "holds torques"),
         (
             "<?xml version='1.0'?><MCConfiguration><foc_encoder_ratio>7</foc_encoder_ratio></MCConfiguration>",
             "settings",

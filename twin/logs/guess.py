@@ -17,6 +17,7 @@ from twin.logs.devices import meanings_of
 from twin.logs.errors_listed import statements_of_errors
 from twin.logs.lookups import statements_of
 from twin.logs.names import Meaning
+from twin.logs.odd_factors import odd_factor
 from twin.logs.others import others
 from twin.logs.ratios import turned
 from twin.logs.statement import Column, text_of
@@ -138,6 +139,7 @@ def _pair(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[C
         if several is not None:
             return several
         _raise_contradiction(table, said, angles)
+        _raise_odd_factor(table, said, angles)
         return _by_name_alone(table, said, angles)
     if len(fitting) > 1:
         _raise_open(table, "two guesses fit", [text_of(one.columns(table)) for one in fitting])
@@ -209,6 +211,18 @@ def _raise_contradiction(table: Table, said: tuple[Meaning, ...], angles: list[i
     ]
     what = "; ".join(wrong) or "no two columns follow each other in the units of their names"
     _raise_open(table, what, [text_of(one.columns(table)) for one in fitting])
+
+
+def _raise_odd_factor(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> None:
+    """Raise OpenGuess where two columns follow each other by a factor that no encoder and no whole gear has."""
+    pairs = [pair for pair in itertools.permutations(angles, 2) if _weight(said[pair[0]], said[pair[1]]) >= 0]
+    for a, b in sorted(pairs, key=lambda pair: -_weight(said[pair[0]], said[pair[1]])):
+        odd = odd_factor(
+            (table.values[a], table.values[b]), said=(said[a], said[b]), sources=(table.sources[a], table.sources[b])
+        )
+        if odd is not None:
+            name = table.names[(a, b)[odd.place]] or table.sources[(a, b)[odd.place]]
+            _raise_open(table, f"{name}: {odd.said}", [text_of(odd.columns)])
 
 
 def _by_name_alone(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[Column, Column] | None:

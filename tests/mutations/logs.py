@@ -1,0 +1,218 @@
+"""Mutations of how logs and tables are read: each rule off, with the test that notices."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation, of_one_file
+
+LOGS: tuple[Mutation, ...] = (
+    *of_one_file(
+        "twin/reading_grid.py",
+        "tests/twin/test_reading_grid.py",
+        (
+            "logs.even_references_make_a_grid",
+            " or np.ptp(angle) <= 2.0 * _SAME_DEG:",
+            ":",
+            "::test_readings_that_came_out_are_none",
+        ),
+        (
+            "logs.uneven_readings_make_a_grid",
+            "np.max(np.abs(step - even)) > _SAME_DEG",
+            "np.median(np.abs(step - even)) > _SAME_DEG",
+            "::test_a_sensor_of_few_codes_has_none",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/statement.py",
+        "tests/untidy",
+        (
+            "logs.a_second_column_is_always_added",
+            '        return values if self.sign == "+" else -values',
+            "        return values",
+            "test_tables.py::test_the_sign_of_a_second_column_is_that_of_arithmetic",
+        ),
+        (
+            "logs.a_missing_row_ends_an_unwrapped_angle",
+            "    known = np.isfinite(angle_deg)\n",
+            "    known = np.full(angle_deg.shape, True)\n",
+            "test_untidy.py::test_a_missing_cell_of_an_electrical_angle_stays_one",
+        ),
+        (
+            "logs.an_electrical_angle_is_not_divided",
+            "unwrapped_deg(values) / self.per",
+            "unwrapped_deg(values)",
+            "test_untidy.py::test_electrical_degrees_are_read_and_said",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/arrays.py",
+        "tests/untidy/test_tables.py",
+        (
+            "logs.comments_stand_in_arrays",
+            '    text = _COMMENT.sub(" ", text)\n',
+            "",
+            "::test_a_table_is_read_to_the_angles_that_it_stores",
+        ),
+        (
+            "logs.the_scale_of_moteus_is_not_taken",
+            "(values * scale / 127.0,",
+            "(values * scale,",
+            "::test_a_table_is_read_to_the_angles_that_it_stores[moteus in parts of a scale]",
+        ),
+        (
+            "logs.klippers_own_lines_are_comments",
+            "line.removeprefix(_SAVED).strip()",
+            "line.strip()",
+            "::test_a_table_is_read_to_the_angles_that_it_stores[Klipper]",
+        ),
+        (
+            "logs.a_table_of_zeros_is_one",
+            "zero = [name for name, (values, _) in arrays.items() if not np.any(values)]",
+            "zero: list[str] = []",
+            "::test_what_is_no_table_of_angles_is_refused_with_the_reason",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/firmware.py",
+        "tests/untidy/test_tables.py",
+        (
+            "logs.simplefoc_adds",
+            'Rule("SimpleFOC", ERROR, unit="rad")',
+            'Rule("SimpleFOC", CORRECTION, unit="rad")',
+            "::test_a_table_is_read_to_the_angles_that_it_stores[SimpleFOC]",
+        ),
+        (
+            "logs.entries_of_moteus_stand_at_the_beginning",
+            'unit="rev", middle=True',
+            'unit="rev"',
+            "::test_a_table_is_read_to_the_angles_that_it_stores[moteus]",
+        ),
+        (
+            "logs.klipper_lists_angles",
+            'Rule("Klipper", READING',
+            'Rule("Klipper", ANGLE',
+            "::test_a_table_is_read_to_the_angles_that_it_stores[Klipper]",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/lookups.py",
+        "tests/untidy/test_tables.py",
+        (
+            "logs.the_last_entry_is_one_of_its_own",
+            "return entries.size - 1 if closed else entries.size",
+            "return entries.size",
+            "::test_a_table_is_read_to_the_angles_that_it_stores[an error whose last entry repeats the first]",
+        ),
+        (
+            "logs.any_numbers_are_corrections",
+            "    if not said.role and _unlike_next(entries):\n        return\n",
+            "",
+            "::test_what_is_no_table_of_angles_is_refused_with_the_reason",
+        ),
+        (
+            "logs.torques_are_angles",
+            "if not TORQUES.fullmatch(table.names[k]) for",
+            "for",
+            "::test_what_is_no_table_of_angles_is_refused_with_the_reason",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/errors_listed.py",
+        "tests/untidy/test_tables.py",
+        (
+            "logs.an_axis_is_always_the_sensors",
+            '        return ("reference_deg",)',
+            '        return ("measured_deg",)',
+            "::test_errors_listed_beside_an_angle_are_read[errors of a bench]",
+        ),
+        (
+            "logs.a_part_of_a_turn_is_one",
+            " and missed <= _CLOSE_STEPS * typical",
+            "",
+            "::test_errors_listed_beside_an_angle_are_read[errors without units]",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/ratios.py",
+        "tests/untidy/test_untidy.py",
+        (
+            "logs.what_leaps_farther_than_a_turn_is_followed",
+            " and float(np.max(steps)) <= _TURN_DEG",
+            "",
+            "::test_what_is_not_certain_is_refused_with_the_reason_and_what_mends_it[counts under _deg]",
+        ),
+        (
+            "logs.of_counts_any_may_make_the_turn",
+            "if one.off_deg <= _CLEARLY * least + _ALIKE_DEG]",
+            "]",
+            "::test_of_geared_logs_drawn_at_random_none_is_misread",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/clocks.py",
+        "tests/untidy/test_recorders.py",
+        (
+            "logs.a_gap_is_filled",
+            "(leaps | gaps)[after - 1]",
+            "leaps[after - 1]",
+            "::test_in_a_gap_and_where_an_angle_begins_anew_nothing_is_made_up",
+        ),
+        (
+            "logs.between_two_turns_lies_an_angle",
+            "(leaps | gaps)[after - 1]",
+            "gaps[after - 1]",
+            "::test_where_an_angle_begins_anew_the_cell_is_missing",
+        ),
+        (
+            "logs.the_fastest_clock_is_taken",
+            "base = min(",
+            "base = max(",
+            "::test_in_a_gap_and_where_an_angle_begins_anew_nothing_is_made_up",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/buses.py",
+        "tests/untidy/test_recorders.py",
+        (
+            "logs.any_dbc_of_the_folder_is_taken",
+            "    if len(beside) != 1:",
+            "    if not beside:",
+            "::test_a_bus_log_without_its_dbc_says_what_is_missing[2]",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/angles.py",
+        "tests/untidy/test_untidy.py",
+        (
+            "logs.a_wrong_number_of_counts_drifts",
+            "any(one.counts for one in pair) and drifts(reference, measured)",
+            "False",
+            "::test_counts_a_turn_are_found_or_asked_for",
+        ),
+        (
+            "logs.radians_are_no_rivals_of_degrees",
+            "    if _BOTH_RAD in fitting and span < _SHORT_DEG:\n        return [_BOTH_DEG, _BOTH_RAD]\n",
+            "",
+            "::test_geared_radians_or_degrees_of_a_short_span_are_asked_for",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/cells.py",
+        "tests/untidy/test_untidy.py",
+        (
+            "logs.commas_are_never_points",
+            'text = cell if comma_parts or "." in cell else cell.replace(",", ".")',
+            "text = cell",
+            "::test_an_untidy_log_is_read_to_the_same_sweep[semicolons and decimal commas]",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/text.py",
+        "tests/untidy/test_untidy.py",
+        (
+            "logs.a_last_separator_begins_a_cell",
+            "    rows = _without_empty_ends(rows)\n",
+            "",
+            "::test_lines_that_end_with_the_separator_have_no_further_column",
+        ),
+    ),
+)

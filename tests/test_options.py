@@ -30,6 +30,7 @@ BASE: dict[str, tuple[str, ...]] = {
     "compensate --temperature": ("paper-encoder", "--header", "out/c.h"),
     "export": ("paper-encoder", "--for", "lut", "-o", "out/t.csv"),
     "import": ("short.csv", "-o", "out/sweep.csv"),
+    "doctor": ("short.csv",),
     "monitor": tuple(f"s{k}.csv" for k in range(8)),
     "bench": ("--points", "8", "-o", "out/bench.csv"),
     "generate": ("-o", "out/study"),

@@ -7,6 +7,15 @@ import numpy as np
 from twin.angles import Array, radians, wrap_deg
 
 FOLLOWS_DEG = 40.0
+_FEWEST_SWUNG = 16
+_ROUND_DEG = 300.0
+_WIDEST_SWING_DEG = 300.0
+_UNSWUNG = 0.2
+"""Share of the variance of a reading that swings which orders 1 to 4 of the turn leave at most."""
+_JUMPS = 0.6
+"""A reading that goes round in another unit, or with a bit stuck, falls back by most of its span in each turn."""
+_BACK = 0.2
+"""Share of the way that a reading which swings goes back, at least; one that goes round never does."""
 _FOLLOWS_SHARE = 0.6
 """A sensor follows the shaft if their median difference is below this angle, and below this share of the shaft's own
 movement."""
@@ -26,3 +35,28 @@ def spread_deg(angle: Array) -> float:
 def follows(measured: Array, driver: Array) -> bool:
     """Whether one angle (n,) [deg] follows another. Over part of a turn a constant is near to any, hence the share."""
     return distance_deg(measured, driver) <= min(FOLLOWS_DEG, _FOLLOWS_SHARE * spread_deg(driver))
+
+
+def swing_deg(measured: Array, driver: Array) -> tuple[float, float] | None:
+    """Between which angles [deg] a reading (n,) swings to and fro while its driver (n,) [deg] goes round.
+
+    None where the driver makes less than most of a turn, or the reading goes round, only one way, or by itself.
+    """
+    if driver.size < _FEWEST_SWUNG:
+        return None
+    travel = np.unwrap(driver, period=360.0)
+    centre = np.degrees(np.angle(np.mean(np.exp(1j * radians(measured)))))
+    away = wrap_deg(measured - centre)
+    low, high = np.quantile(away, [0.02, 0.98])
+    if np.ptp(travel) < _ROUND_DEG or high - low > _WIDEST_SWING_DEG or high == low:
+        return None
+    if np.sum(np.abs(np.diff(away)) > _JUMPS * (high - low)) > np.ptp(travel) / 720.0:
+        return None
+    # By the angle, so that noise between neighbouring rows does not count as a way.
+    turn = radians(travel)
+    waves = np.stack([np.ones_like(turn), *(w(k * turn) for k in (1, 2, 3, 4) for w in (np.cos, np.sin))], axis=1)
+    smooth = waves @ np.linalg.lstsq(waves, away, rcond=None)[0]
+    if np.var(away - smooth) > _UNSWUNG * np.var(away):
+        return None
+    back = float(np.mean(np.diff(smooth) * np.diff(travel) < 0.0))
+    return (float(centre + low), float(centre + high)) if min(back, 1.0 - back) > _BACK else None

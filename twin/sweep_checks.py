@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.angles import Array, radians, wrap_deg
 from twin.errors import SweepError
-from twin.following import FOLLOWS_DEG, distance_deg, follows, spread_deg
+from twin.following import FOLLOWS_DEG, distance_deg, follows, spread_deg, swing_deg
 from twin.sweep_columns import OF_SETUP, PLAUSIBLE, SMALLEST_AMPLITUDE
 
 FEWEST_ROWS = 8
@@ -79,6 +79,13 @@ def check_follows(measured: Array, reference: Array, *, name: str) -> Array:
     without_fault = _without_faults_of_words(measured, reference)
     if without_fault is not None:
         return without_fault
+    swing = swing_deg(measured, reference)
+    if swing is not None:
+        raise SweepError(
+            f"{name}: measured_deg swings between {swing[0] % 360.0:.0f} and {swing[1] % 360.0:.0f} deg while "
+            f"reference_deg goes round; expected a reading that goes round with the shaft: the magnet is axial instead "
+            "of diametral, or not over the sensor"
+        )
     for wrong, (scale_measured, scale_reference) in {
         "column reference_deg": (1.0, to_deg),
         "column measured_deg": (to_deg, 1.0),

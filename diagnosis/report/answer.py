@@ -30,6 +30,7 @@ from diagnosis.report.provenance import Provenance
 from diagnosis.report.recordings import in_recordings, recordings_answer
 from diagnosis.report.row_counts import MOST_LISTED
 from diagnosis.report.senses import senses
+from diagnosis.setup.checks import checked_sweep
 from twin.angles import wrap_deg
 from twin.baseline import FACTORS
 from twin.catalogue import base_name, find
@@ -89,9 +90,14 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "cut_short": _cut_short(found),
             "twin": to_dict(found.device),
         }
-        | recordings_answer(found)
+        | (recordings_answer(found) | _setup(found))
     )
     return answer
+
+
+def _setup(found: Discovery) -> dict[str, Any]:
+    """What is wrong with the set-up."""
+    return {"setup": [finding.to_dict() for finding in checked_sweep(found.sweep)]}
 
 
 def _changed(found: Discovery) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from diagnosis.report.change_words import change_line, change_name, change_rival
 from diagnosis.report.over_class import in_factors_words, open_words
 from diagnosis.report.recordings import recordings_notes, recordings_table, where_words
 from diagnosis.report.row_counts import explained_rows
+from diagnosis.report.setup_words import setup_block
 from diagnosis.report.statements import FactorRow
 from diagnosis.report.wording import assumed_words, chance, rivals_words
 
@@ -40,6 +41,7 @@ def show(answer: Mapping[str, Any], console: Console | None = None) -> None:
     console = console or Console(highlight=False)
     parts = [
         _sweep(answer["sweep"]),
+        _setup(answer),
         _baseline(answer, beside=3 if console.width >= _WIDE else 2 if console.width >= _NARROW else 1),
         _changes(answer, width=min(console.width, _WIDE)),
         _causes(answer, width=min(console.width, _WIDE)),
@@ -63,6 +65,12 @@ def text(answer: Mapping[str, Any], *, width: int) -> str:
 def _sweep(sweep: Mapping[str, Any]) -> RenderableType:
     said = f"{', '.join(statements.sweep_facts(sweep))}; {explained_rows(sweep)}"
     return Text.assemble((sweep["name"], "bold"), "   ", said)
+
+
+def _setup(answer: Mapping[str, Any]) -> RenderableType | None:
+    """What of the set-up has to be mended; None where nothing has."""
+    faults = [found for found in answer["setup"] if found["level"] == "fault"]
+    return setup_block(faults, "Set-up, to be mended first") if faults else None
 
 
 def _baseline(answer: Mapping[str, Any], *, beside: int) -> RenderableType:

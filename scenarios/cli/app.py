@@ -9,7 +9,7 @@ from typer.core import TyperCommand
 
 from scenarios.cli.bench import bench
 from scenarios.cli.effects import causes, check_effect, new_effect
-from scenarios.cli.logs import import_log
+from scenarios.cli.logs import doctor, import_log
 from scenarios.cli.simulation import hardware, paper, simulate, spinning
 from scenarios.cli.studies import design, generate, recover
 from scenarios.cli.sweeps import compensate, diagnose, explain, export, monitor
@@ -83,6 +83,7 @@ for command in (
     design,
     recover,
     import_log,
+    doctor,
 ):
     # Python keeps the word import for itself.
     app.command("import" if command is import_log else None, cls=Command)(with_verbosity(command))

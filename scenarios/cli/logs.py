@@ -1,4 +1,4 @@
-"""The command on logs of any kind: into the columns of a sweep."""
+"""The commands on logs of any kind: into the columns of a sweep, and what is wrong with their set-up."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import Columns, Force, MaxSize, written
+from scenarios.cli.options import Columns, Force, Json, MaxSize, fail_on_option, written
+from scenarios.cli.reproduce import command_line
 
 
 def import_log(
@@ -33,3 +34,35 @@ def import_log(
     from twin.bounded_input import bytes_of
 
     run(log, output=output, columns=columns, force=force, max_bytes=bytes_of(max_size))
+
+
+def doctor(
+    context: typer.Context,
+    log: Annotated[
+        Path,
+        typer.Argument(metavar="LOG", help="A sweep, or a log of any kind that halltwin import reads."),
+    ],
+    columns: Columns = None,
+    json: Json = None,
+    force: Force = False,
+    fail_on: Annotated[
+        list[str] | None, fail_on_option("fault, note, or the KIND of a finding such as axial_magnet")
+    ] = None,
+    max_size: MaxSize = "2GB",
+) -> None:
+    """Check the set-up of a recording: magnet, pole pairs, senses, units, counts, clock, frames, points a turn.
+
+    Each finding says what it is seen in, what becomes of an answer with it, and what to do.
+    """
+    from scenarios.commands.doctor import run
+    from twin.bounded_input import bytes_of
+
+    run(
+        log,
+        columns=columns,
+        json=json,
+        force=force,
+        max_bytes=bytes_of(max_size),
+        fail_on=fail_on or (),
+        command=command_line(context),
+    )

@@ -44,6 +44,8 @@ MONITOR = ("drift",)
 """Beside it the name of any factor."""
 COMPENSATE = ("worse",)
 EXPORT = ("worse",)
+DOCTOR = ("fault", "note")
+"""Beside these the kind of any finding."""
 BENCH = ("missed",)
 
 

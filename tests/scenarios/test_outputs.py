@@ -66,6 +66,7 @@ CASES = {
     ),
     "export": Case(("sweep.csv", "--for=lut"), {"-o": "a.csv", "--json": "a.json", "--plot": "a.png"}, ("sweep.csv",)),
     "import": Case(("sweep.csv",), {"-o": "a.csv"}, ("sweep.csv",)),
+    "doctor": Case(("sweep.csv",), {"--json": "a.json"}, ("sweep.csv",)),
     "monitor": Case(("series.csv",), {"--json": "a.json", "--plot": "a.png"}, ("series.csv",)),
     "simulate": Case(
         ("twin.toml", "--motion", "sweep.csv", "--effects", "own.py"),

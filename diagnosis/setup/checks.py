@@ -1,0 +1,112 @@
+"""The checks of a set-up, in the order in which a person would look: is there a signal, in which units, when."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.setup.channels import mid_range, swapped_channels
+from diagnosis.setup.clock import backwards, jitter_of_time, unit_of_time
+from diagnosis.setup.closure import turn_not_closed
+from diagnosis.setup.field import off_centre, too_strong, too_weak
+from diagnosis.setup.finding import Finding
+from diagnosis.setup.frozen import frozen
+from diagnosis.setup.link import lost_frames, other_status
+from diagnosis.setup.magnet_presence import axial_magnet, missing_magnet
+from diagnosis.setup.missing_reference import missing_reference
+from diagnosis.setup.ratio import counts_a_turn, counts_the_other_way, pole_pairs, units
+from diagnosis.setup.record import Record
+from diagnosis.setup.roles import coarse_reference, swapped_roles
+from diagnosis.setup.sampling import aliased_frequency, aliased_order, few_points, part_of_a_turn
+from diagnosis.setup.typing_error import typing_error
+from twin.sweep import Sweep
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check: the kinds that it finds, what it asks of a record, and the columns without which it says nothing.
+
+    Of angles with a finding that ``ends``, no further check of angles means anything.
+    """
+
+    kinds: tuple[str, ...]
+    find: Callable[[Record], Finding | None]
+    needs: tuple[str, ...] = ("reference_deg", "measured_deg")
+    ends: bool = False
+
+
+_CLOCK = ("reference_deg", "measured_deg", "time_s")
+_CHANNELS = ("reference_deg", "measured_deg", "vx", "vy")
+CHECKS: tuple[Check, ...] = (
+    Check(("no_reference",), missing_reference, ()),
+    Check(("frozen",), frozen, ends=True),
+    Check(("units",), units, ends=True),
+    Check(("axial_magnet",), axial_magnet, ends=True),
+    Check(("no_magnet",), missing_magnet, ends=True),
+    Check(("pole_pairs",), pole_pairs),
+    Check(("wrong_counts",), counts_a_turn),
+    Check(("other_way",), counts_the_other_way),
+    Check(("mid_range",), mid_range, _CHANNELS),
+    Check(("swapped_channels",), swapped_channels, _CHANNELS),
+    Check(("swapped_roles",), swapped_roles),
+    Check(("coarse_reference",), coarse_reference),
+    Check(("weak_field",), too_weak),
+    Check(("strong_field",), too_strong),
+    Check(("off_centre",), off_centre),
+    Check(("turn_not_closed",), turn_not_closed),
+    Check(("typing_error",), typing_error),
+    Check(("few_points",), few_points),
+    Check(("part_of_a_turn",), part_of_a_turn),
+    Check(("aliased_order",), aliased_order),
+    Check(("aliased_frequency",), aliased_frequency, _CLOCK),
+    Check(("time_backwards",), backwards, _CLOCK),
+    Check(("time_unit",), unit_of_time, _CLOCK),
+    Check(("time_coarse", "time_jitter"), jitter_of_time, _CLOCK),
+    Check(("lost_frames",), lost_frames, ("frame",)),
+    Check(("other_status",), other_status, ("status",)),
+)
+"""Every check, in order."""
+KINDS = tuple(kind for check in CHECKS for kind in check.kinds)
+"""The words of all findings."""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What the checks found, and which could not be made, each with the columns that it lacks."""
+
+    findings: tuple[Finding, ...]
+    not_checked: dict[str, tuple[str, ...]]
+
+
+def checked(record: Record) -> Checked:
+    """Make every check that the record's columns allow."""
+    findings: list[Finding] = []
+    lacking: dict[str, tuple[str, ...]] = {}
+    ended = False
+    for check in CHECKS:
+        if ended and "reference_deg" in check.needs:
+            continue
+        missing = tuple(name for name in check.needs if name not in record.columns)
+        if missing:
+            lacking.update(dict.fromkeys(check.kinds, missing))
+            continue
+        found = check.find(record)
+        if found is not None:
+            findings.append(found)
+            ended = ended or check.ends
+    return Checked(tuple(findings), lacking)
+
+
+def checked_sweep(sweep: Sweep) -> tuple[Finding, ...]:
+    """What is wrong with the set-up of a sweep; of several recordings with each, by its number."""
+    if sweep.recordings is None:
+        return checked(Record.of(sweep)).findings
+    rows = np.arange(len(sweep))
+    alone = replace(sweep, recordings=None)
+    return tuple(
+        replace(finding, evidence=f"recording {number}: {finding.evidence}")
+        for number, part in enumerate(sweep.recordings.slices, 1)
+        for finding in checked(Record.of(alone.part(rows[part]))).findings
+    )

@@ -1,0 +1,22 @@
+"""A log with one angle alone: there is nothing that the sensor is held against."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnosis.setup.finding import Finding
+from diagnosis.setup.record import Record
+
+
+def missing_reference(record: Record) -> Finding | None:
+    """A sensor's angle without a reference."""
+    if "reference_deg" in record.columns or "measured_deg" not in record.columns:
+        return None
+    return Finding(
+        kind="no_reference",
+        what="the log holds one angle, and no reference",
+        evidence=f"{int(np.isfinite(record.columns['measured_deg']).sum())} readings of the sensor alone",
+        consequence="an error is a difference from a reference: without one only the noise of the reading can be told",
+        remedy="record a reference encoder, a stepper's count or a jig's angle beside it, as reference_deg; of a shaft "
+        "that coasts freely the even turning is one, computed before this",
+    )

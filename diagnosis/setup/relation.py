@@ -1,0 +1,135 @@
+"""How a reading goes with its reference: how many times as fast, which way, and what is left as error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.setup.harmonics import Fitted, fitted, waves
+from twin.angles import Array, wrap_deg
+from twin.following import FOLLOWS_DEG, follows, spread_deg
+
+_MOST_RATIO = 64.0
+_SEARCHED_TURNS, _SEARCHED_ROWS = 3.0, 1500
+_SMALL_STEP_DEG = 90.0
+"""Rows of the reference that are typically closer than this follow one another round the turn."""
+_WHOLE = 0.9
+"""Turns from which orders are told from a slope."""
+_SHARE = 0.6
+"""A reading that follows is off by less than this share of what it follows, see :mod:`twin.following`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Relation:
+    """A reading that turns ``ratio`` times as fast as the reference, negative where it counts the other way.
+
+    Attributes
+    ----------
+    ratio, ratio_error : float
+        The ratio and its standard error.
+    travel_deg : ndarray
+        The reference [deg] over its turns, (n,).
+    error_deg : ndarray
+        Reading minus ratio times reference [deg], (n,), without its mean.
+    fit : Fitted
+        That error by a constant, a slope with the turns, and orders 1 to 4 where a whole turn shows them.
+    """
+
+    ratio: float
+    ratio_error: float
+    travel_deg: Array
+    error_deg: Array
+    fit: Fitted
+
+    @property
+    def turns(self) -> float:
+        """Turns from one end of the reference's range to the other."""
+        return float(np.ptp(self.travel_deg)) / 360.0
+
+    @property
+    def error_at_one_deg(self) -> Array:
+        """The error (n,) of a reading that is to turn as fast as the reference: a slope of the ratio stands in it."""
+        off = self.ratio - float(np.sign(self.ratio))
+        return np.asarray(self.error_deg + off * (self.travel_deg - self.travel_deg[0]))
+
+    @property
+    def follows(self) -> bool:
+        """Whether the reading turns as fast as the reference, either way."""
+        return abs(abs(self.ratio) - 1.0) < 0.2
+
+
+def travel_deg(reference_deg: Array) -> Array:
+    """An angle (n,) [deg] over its turns, where its rows follow one another."""
+    if reference_deg.size < 2 or np.median(np.abs(wrap_deg(np.diff(reference_deg)))) >= _SMALL_STEP_DEG:
+        return reference_deg
+    return np.unwrap(reference_deg, period=360.0)
+
+
+def relation_of(reference_deg: Array, measured_deg: Array) -> Relation | None:
+    """How two angles (n,) [deg] go together; None where they do not.
+
+    Parameters
+    ----------
+    reference_deg, measured_deg : ndarray
+        The angles [deg], in the order in which they were taken, wrapped or not.
+
+    Returns
+    -------
+    Relation or None
+        The ratio with its standard error, and the error beside it.
+    """
+    travel = travel_deg(reference_deg)
+    if np.ptp(travel) < 1.0 or np.ptp(measured_deg) == 0.0:
+        return None
+    if follows(measured_deg, reference_deg):
+        ratio: float | None = min((1.0, -1.0), key=lambda sense: spread_deg(measured_deg - sense * reference_deg))
+    else:
+        ratio = _searched(travel, measured_deg)
+    return None if ratio is None else _refined(ratio, travel, measured_deg)
+
+
+def _searched(travel: Array, measured: Array) -> float | None:
+    """The ratio at which a reading (n,) goes most closely with the reference (n,); None where it does with none."""
+    inside = np.flatnonzero(np.abs(travel - travel[0]) <= 360.0 * _SEARCHED_TURNS)
+    inside = inside[: int(np.argmax(np.diff(inside, append=inside[-1] + 2) > 1)) + 1]
+    part = inside[:: max(-(-inside.size // _SEARCHED_ROWS), 1)]
+    at, reading = travel[part], measured[part]
+    turns = max(float(np.ptp(at)) / 360.0, 0.1)
+    step = float(np.median(np.abs(np.diff(at)))) if part.size > 1 else 360.0
+    most = min(_MOST_RATIO, 180.0 / step if step > 0.0 else _MOST_RATIO)
+    ratios = np.arange(0.2 / turns, most, 0.2 / turns)
+    ratios = np.concatenate([ratios, -ratios])
+    turning = np.exp(1j * np.radians(reading))
+    close = [abs(np.mean(turning * np.exp(-1j * np.radians(ratio * at)))) for ratio in ratios]
+    best = float(ratios[int(np.argmax(close))])
+    finer = best + np.linspace(-0.2, 0.2, 41) / turns
+    best = float(min(finer, key=lambda ratio: spread_deg(reading - ratio * at)))
+    off = spread_deg(reading - best * at)
+    return best if off <= min(FOLLOWS_DEG, _SHARE * spread_deg(best * at)) else None
+
+
+def _refined(ratio: float, travel: Array, measured: Array) -> Relation | None:
+    """The ratio from a fit of the error with a slope."""
+    turn = travel / 360.0
+    whole = bool(np.ptp(turn) >= _WHOLE) and turn.size >= 16
+    shapes = [np.ones_like(turn), turn - float(np.mean(turn))]
+    shapes += waves(np.radians(travel), (1, 2, 3, 4) if turn.size >= 24 else (1, 2)) if whole else []
+    for _ in range(4):
+        error = _along(measured - ratio * travel)
+        fit = fitted(shapes, error)
+        slope = float(fit.values[1]) / 360.0
+        if abs(slope) < 1e-9 or abs(slope) > 0.5 * abs(ratio):
+            break
+        ratio += slope
+    error = _along(measured - ratio * travel)
+    return Relation(ratio, float(fit.errors[1]) / 360.0, travel, error, fitted(shapes, error))
+
+
+def _along(error: Array) -> Array:
+    """Errors (n,) [deg] without their mean; those that drift by whole turns are followed along the rows."""
+    centre = np.degrees(np.angle(np.mean(np.exp(1j * np.radians(error)))))
+    about = wrap_deg(error - centre)
+    if spread_deg(error) > 45.0:
+        about = np.unwrap(about, period=360.0)
+    return np.asarray(about - np.median(about))

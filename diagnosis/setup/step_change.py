@@ -1,0 +1,78 @@
+"""Steps along a record: where the mean of a column changes at once, and whether steps or a slope describe it better."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.setup.harmonics import Fitted, fitted, waves
+from twin.angles import Array
+
+_FEWEST = 6
+"""Rows on either side of a step."""
+_MOST_STEPS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """Steps in an error, found one after the other: their places, the fit with them alone, and with a slope beside."""
+
+    places: tuple[int, ...]
+    alone: Fitted
+    with_slope: Fitted
+    slope_alone: Fitted
+
+    @property
+    def better_than_a_slope(self) -> bool:
+        """Whether up to three steps leave less than a slope does."""
+        return self.alone.sigma < self.slope_alone.sigma
+
+    def largest(self) -> tuple[int, float, float]:
+        """Place, size and standard error of the largest step, with a slope beside."""
+        count = len(self.places)
+        sizes, errors = self.with_slope.values[-count:], self.with_slope.errors[-count:]
+        worst = int(np.argmax(np.abs(sizes)))
+        return self.places[worst], float(sizes[worst]), float(errors[worst])
+
+
+def steps_of(error: Array, travel_deg: Array, *, turn_of: Array) -> Steps:
+    """Up to three steps of an error (n,) along the record, beside orders 1 to 4 and what goes with the direction.
+
+    ``turn_of`` (n,) is the angle [deg] that the sensor's orders go with, ``travel_deg`` (n,) the one that a slope does.
+    """
+    n = error.size
+    way = np.sign(np.diff(travel_deg, prepend=2.0 * travel_deg[0] - travel_deg[1]))
+    rest = [np.ones(n), *waves(np.radians(turn_of), (1, 2, 3, 4))]
+    if np.ptp(way) > 0.0:
+        rest.append(way)
+    slope = travel_deg / 360.0 - float(np.mean(travel_deg)) / 360.0
+    places: list[int] = []
+    for _ in range(_MOST_STEPS):
+        known = [*rest, *(_after(n, place) for place in places)]
+        places.append(_strongest(fitted(known, error), known))
+    steps = [_after(n, place) for place in places]
+    return Steps(
+        tuple(places),
+        fitted([*rest, *steps], error),
+        fitted([*rest, slope, *steps], error),
+        fitted([*rest, slope], error),
+    )
+
+
+def _after(n: int, place: int) -> Array:
+    return np.asarray(np.arange(n) >= place, dtype=np.float64)
+
+
+def _strongest(fit: Fitted, known: list[Array]) -> int:
+    """The place at which one more step would explain most of what a fit leaves, by its sum of squares."""
+    n = fit.left.size
+    basis = np.linalg.qr(np.stack(known, axis=1))[0]
+    left = np.where(fit.kept, fit.left, 0.0)
+    left = left - basis @ (basis.T @ left)
+    sums = np.cumsum(left[::-1])[::-1]
+    parts = np.cumsum(basis[::-1], axis=0)[::-1]
+    own = np.maximum(np.arange(n, 0, -1) - np.sum(parts**2, axis=1), 1e-9)
+    gain = np.where(own > 0.5, sums**2 / own, 0.0)
+    gain[:_FEWEST], gain[n - _FEWEST :] = 0.0, 0.0
+    return int(np.argmax(gain))

@@ -80,9 +80,9 @@ class Checked:
     not_checked: dict[str, tuple[str, ...]]
 
 
-def checked(record: Record) -> Checked:
-    """Make every check that the record's columns allow."""
-    findings: list[Finding] = []
+def checked(record: Record, found_before: tuple[Finding, ...] = ()) -> Checked:
+    """Make every check that the record's columns allow; what was found as it was read stands before the rest."""
+    findings = list(found_before)
     lacking: dict[str, tuple[str, ...]] = {}
     ended = False
     for check in CHECKS:

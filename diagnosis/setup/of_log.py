@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from diagnosis.setup.finding import Finding
+from diagnosis.setup.ratio import pole_pairs
 from diagnosis.setup.record import Record
 from twin.angles import Array
 from twin.bounded_input import LARGEST_SWEEP_BYTES
@@ -38,6 +40,8 @@ class LogRecord:
         How the file was read; what was taken for granted; the columns that are not used.
     refused : str
         Why no statement was found that makes a sweep of it, in the reader's words; empty where one was.
+    findings : tuple of Finding
+        What the guess has mended already: an angle that turns several times as fast.
     """
 
     record: Record
@@ -46,6 +50,7 @@ class LogRecord:
     notes: tuple[str, ...] = ()
     unused: tuple[str, ...] = ()
     refused: str = ""
+    findings: tuple[Finding, ...] = ()
 
 
 def read_record(
@@ -75,10 +80,8 @@ def read_record(
         return _of(table, by_statement(stated, table), name=name)
     try:
         guess = guessed(table)
-        if _leaves_a_reference(guess, table):
-            found = _by_names(table, name=name, refused="")
-            return _of(table, guess, name=name) if found is None else found
-        return _of(table, guess, name=name)
+        found = _by_names(table, name=name, refused="") if _leaves_a_reference(guess, table) else None
+        return _with_mended(_of(table, guess, name=name), table) if found is None else found
     except OpenGuess as two:
         found = _by_names(table, name=name, refused=str(two))
         return found if found is not None else _of_options(table, two, name=name)
@@ -87,6 +90,15 @@ def read_record(
         if found is None:
             raise
         return found
+
+
+def _with_mended(read: LogRecord, table: Table) -> LogRecord:
+    """With what the guess has mended as a finding: whoever recorded an electrical angle wants to know."""
+    columns = tuple(replace(column, per=None) for column in read.record.statement)
+    if columns == read.record.statement:
+        return read
+    found = pole_pairs(replace(read.record, columns=dict(values_of(columns, table)), statement=columns))
+    return read if found is None else replace(read, findings=(replace(found, columns=read.read_as),))
 
 
 def _leaves_a_reference(guess: Guess, table: Table) -> bool:

@@ -161,9 +161,8 @@ def pole_pairs(record: Record) -> Finding | None:
         evidence=f"{abs(relation.ratio):.4f} turns of the reading in one of the reference, over {relation.turns:.2g} "
         "of the latter",
         consequence="the two columns do not tell the same angle, and no sweep can be made of them as they are",
-        remedy="set the number of pole pairs or the gear ratio; or count both in one angle, in each period of which "
-        "the error then repeats",
-        columns=record.stated(reference_deg=float(p), measured_deg=float(q)),
+        remedy="set the number of pole pairs or the gear ratio, or say it",
+        columns=record.turned(measured_deg=p / q) if p > q else record.turned(reference_deg=q / p),
     )
 
 

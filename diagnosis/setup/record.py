@@ -80,6 +80,10 @@ class Record:
         swap = {one: other, other: one}
         return text_of(tuple(replace(column, target=swap.get(column.target, column.target)) for column in self._own))
 
+    def turned(self, **times: float) -> str:
+        """The statement that follows some angles over their turns, and divides them by how often each turns."""
+        return text_of(tuple(replace(one, per=times[one.target]) if one.target in times else one for one in self._own))
+
     @property
     def _own(self) -> tuple[Column, ...]:
         return self.statement or tuple(Column(name, Term(name)) for name in self.columns)
@@ -89,9 +93,11 @@ class Record:
 
 
 def _scaled(column: Column, factor: float) -> Column:
-    """A column multiplied by a factor, with its addend; the angle of two channels cannot be multiplied so."""
-    if factor == 1.0 or column.across is not None:
+    """A column multiplied by a factor, with its addend; what is made of two columns cannot be multiplied so."""
+    if factor == 1.0 or column.across is not None or column.plus is not None:
         return column
+    if column.per is not None and factor > 0.0:
+        return replace(column, per=column.per / factor)
     factors = tuple(step for step in column.term.steps if step[0] in "*/")
     addends = tuple((sign, number * abs(factor)) for sign, number in column.term.steps if sign in "+-")
     if factor < 0.0:

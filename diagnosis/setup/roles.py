@@ -14,8 +14,6 @@ from twin.reading_grid import step_of_grid_deg
 
 _TIMES = 3.0
 """A reference that scatters so many times as much as the sensor is none, or is not the reference."""
-_LEAST_DEG = 0.002
-"""Scatter below which an angle is as good as set: the last digit of a file."""
 _LEAST_RUNS = 8
 _SHARE_OF_STEP = 0.25
 """A reading that goes on by this share of the reference's step while that stands still has been waiting for it."""
@@ -112,6 +110,12 @@ def _by_steps(record: Record) -> str | None:
     return None if step is None else f"measured_deg goes on by {step:.6g} deg in every row, reference_deg does not"
 
 
+def _grid_deg(angle_deg: Array) -> float:
+    """The smallest difference of two values: a column on a grid scatters by its steps, and says nothing by that."""
+    steps = np.diff(np.unique(np.round(np.mod(angle_deg, 360.0), 6)))
+    return float(np.min(steps)) if steps.size else 360.0
+
+
 def _by_noise(record: Record) -> str | None:
     """A reference that scatters much more than the sensor from row to row of an even way."""
     from scipy.stats import f
@@ -122,7 +126,7 @@ def _by_noise(record: Record) -> str | None:
     noisy = white_noise(relation.travel_deg)
     quiet = white_noise(np.unwrap(record.measured_deg, period=360.0))
     quiet = max(quiet, 1e-6)
-    if n < 60 or noisy < max(_TIMES * quiet, _LEAST_DEG):
+    if n < 60 or noisy < max(_TIMES * quiet, 2.0 * _grid_deg(record.reference_deg)):
         return None
     # The median of n absolute third differences tells the variance about as well as a fifth of n squares would.
     if float(f.sf((noisy / quiet) ** 2 / _TIMES**2, n // 5, n // 5)) > FALSE_ALARM:

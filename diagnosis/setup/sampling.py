@@ -14,6 +14,8 @@ FEWEST_ANGLES = 12
 _HIGHEST_ORDER = 200
 """Teeth, slots, poles and steps of a turn make lines up to here; an alias of a higher one is not thought of."""
 _SAME_DEG = 0.05
+_LEAST_LINE_DEG = 1e-3
+"""Below it no sensor of angles resolves a line: the last digits of a file make such."""
 _ON_GRID = 0.01
 """Share of a step by which a reading may miss it: cells of a file have nine digits."""
 _EVEN = 0.02
@@ -89,7 +91,12 @@ def aliased_order(record: Record) -> Finding | None:
     rivals = [one for one in (points - order, points + order) if one <= _HIGHEST_ORDER]
     # Low orders are the field's own; of a fine grid the rival is far above whatever else there is.
     # A coarse word read at even angles makes lines, each below its step.
-    if not rivals or order <= 8 or 4 * order < points or amplitude < _step_of_word(record.measured_deg):
+    if (
+        not rivals
+        or order <= 8
+        or 4 * order < points
+        or amplitude < max(_step_of_word(record.measured_deg), _LEAST_LINE_DEG)
+    ):
         return None
     return Finding(
         kind="aliased_order",

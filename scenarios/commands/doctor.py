@@ -35,7 +35,7 @@ def run(
     words = asked(fail_on, (*DOCTOR, *KINDS))
     files = OutputFiles.checked([(json, JSON)], inputs=[log], force=force)
     read = read_record(log, name=shown_name(log), columns=columns, max_bytes=max_bytes)
-    answer = to_dict(read, checked(read.record), Provenance.today(seed=0, command=command))
+    answer = to_dict(read, checked(read.record, read.findings), Provenance.today(seed=0, command=command))
     try:
         show(answer)
     finally:

@@ -21,7 +21,8 @@ def found_in(path: Path) -> list[str]:
     from diagnosis.setup.checks import checked
     from diagnosis.setup.of_log import read_record
 
-    return [finding.kind for finding in checked(read_record(path, name=path.name).record).findings]
+    read = read_record(path, name=path.name)
+    return [finding.kind for finding in checked(read.record, read.findings).findings]
 
 
 def trial(fault: Fault, rng: np.random.Generator, folder: Path) -> tuple[str, list[str]]:

@@ -23,8 +23,7 @@ from scenarios.commands.paper import run as paper
 from tests.command_line import csv_text, halltwin, sweep_angles
 from twin.whole_file import TEMPORARY
 
-COMMANDS = command_line.app.registered_commands
-COMMAND_LINE = typer.main.get_command(command_line.app)
+COMMANDS, COMMAND_LINE = command_line.app.registered_commands, typer.main.get_command(command_line.app)
 FOREIGN = b"time_s,reference_deg,measured_deg\n0,1,2\n# somebody's own\n"
 
 

@@ -12,7 +12,7 @@ from twin.angles import TAU, Array, radians, wrap
 from twin.catalogue import find
 from twin.chain import Chain
 from twin.effect import Effect
-from twin.motion import Motion
+from twin.motion import RPM, Motion
 
 _KINDS = {
     "speed": {"moving shaft", "two speeds", "varying speed", "speed_rpm"},
@@ -25,6 +25,8 @@ _KINDS = {
 _OF_FOOTPRINT = {"spread": "noise", "values": "steps of the word", "sequence": "single readings"}
 _GRID = 720
 _AWAY_K = 10.0
+_SPEED_RPM = 1000.0
+_NOTHING_DEG = 1e-6
 _BINS = 36
 
 
@@ -72,6 +74,13 @@ def _size(chain: Chain, kind: str, temperature_c: float, *, seed: int) -> tuple[
     if kind == "temperature":
         here, there = (correction_of(chain, temperature_c=temperature_c + away).shaft(shaft) for away in (0.0, _AWAY_K))
         return *_measured(wrap(there - here)), f"{_AWAY_K:g} K away from {temperature_c:g} C"
+    if kind == "speed":
+        others = (key for key in chain.values if _kind(find(key, chain.effects)) not in ("", kind))
+        kept, speed = chain.without(*others), np.full(_GRID, _SPEED_RPM * RPM)
+        turning = kept.readings(Motion.from_angle(shaft, time_s=shaft / speed, speed_rad_s=speed))
+        rms, largest = _measured(wrap(turning - kept.readings(Motion.from_angle(shaft))))
+        # What a varying speed alone makes is nothing at a steady one.
+        return (rms, largest, f"at {_SPEED_RPM:g} rpm") if largest > _NOTHING_DEG else (None, None, "")
     if kind in _OF_FOOTPRINT.values():
         moving = [key for key in chain.values if _kind(find(key, chain.effects)) not in ("", *_OF_FOOTPRINT.values())]
         kept = chain.without(*moving)

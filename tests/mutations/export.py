@@ -79,6 +79,12 @@ EXPORT: tuple[Mutation, ...] = (
             "::test_klipper_solves_the_table_that_was_meant[1]",
         ),
         (
+            "export.klipper_takes_a_turn_that_its_steps_do_not_tell",
+            "        if rank < _BUCKETS:",
+            "        if False:",
+            "::test_klipper_refuses_a_turn_that_its_steps_do_not_tell",
+        ),
+        (
             "export.klipper_forgets_its_sense",
             "        number = wanted.slope * (lowest",
             "        number = (lowest",
@@ -129,6 +135,12 @@ EXPORT: tuple[Mutation, ...] = (
             "    square = float(np.nanmean(half**2) - np.mean(noise))",
             "    square = float(4.0 * np.nanmean(half**2))",
             "::test_direction_of_a_sweep_is_told_apart_from_its_noise",
+        ),
+        (
+            "export.speed_is_told_at_half_the_speed",
+            "np.full(_GRID, _SPEED_RPM * RPM)",
+            "np.full(_GRID, 0.5 * _SPEED_RPM * RPM)",
+            "::test_of_a_twin_tells_what_no_table_removes",
         ),
         (
             "export.causes_that_stay_are_left_out",

@@ -117,7 +117,9 @@ def test_of_a_twin_tells_what_no_table_removes(folder: Path) -> None:
     # 10 K x 0.004 % of the amplitude, in radians at most.
     assert left["temperature"]["largest_deg"] == pytest.approx(np.degrees(10 * 0.004e-2), rel=0.05)
     assert left["steps of the word"]["rms_deg"] == pytest.approx(360 / 4096 / np.sqrt(12), rel=0.05)
-    assert (left["speed"]["rms_deg"], left["speed"]["largest_deg"]) == (None, None)
+    # 20 us at 1000 rpm.
+    assert left["speed"]["rms_deg"] == pytest.approx(0.12, rel=0.01)
+    assert left["speed"]["at"] == "at 1000 rpm"
     assert undescribed(told) == set()
 
 

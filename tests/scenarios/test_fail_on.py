@@ -168,11 +168,12 @@ def test_a_correction_that_makes_the_error_larger(tmp_path: Path) -> None:
     assert (tmp_path / "c.toml").exists()
 
 
-def test_held_out_readings_fail_only_where_asked(tmp_path: Path) -> None:
+@pytest.mark.parametrize("command", [("compensate",), ("export", "--for", "lut")], ids=" ".join)
+def test_held_out_readings_fail_only_where_asked(command: tuple[str, ...], tmp_path: Path) -> None:
     """A perfect sensor leaves a correction nothing but noise to fit: it does harm, if little."""
     motion = Motion.from_angle(TAU * np.arange(36) / 36)
     Chain().with_effect("noise", rms_deg=0.05).simulate(motion, seed=1).write(tmp_path / "a.csv")
-    told, failed = (halltwin("compensate", tmp_path / "a.csv", *more) for more in ((), ("--fail-on", "worse")))
+    told, failed = (halltwin(*command, tmp_path / "a.csv", *more) for more in ((), ("--fail-on", "worse")))
     assert told.code == 0
     assert "the correction makes the error larger on held-out blocks" in told.out
     assert failed.code == 1

@@ -18,6 +18,7 @@ from diagnosis.correction.straight_lines import Least, Nodes, best_whole_numbers
 from diagnosis.correction.targets.target import Target, hash_comment, rows
 from diagnosis.correction.wanted import Wanted
 from twin.angles import TAU, Array, IntArray
+from twin.errors import UserError
 
 _TURN = 65536
 _BUCKETS = 64
@@ -76,7 +77,10 @@ class Klipper:
 
     @cached_property
     def table(self) -> IntArray:
-        """The 65 whole numbers that Klipper solves from the list."""
+        """The 65 whole numbers that Klipper solves from the list.
+
+        Raises UserError where the steps do not tell them all.
+        """
         angle = self.angle[::-1] if self.reversed else self.angle
         angle = np.roll(angle, -int(np.argmin(angle)))
         bucket = (np.floor(angle + 0.5).astype(np.int64) % _TURN) // _WIDE
@@ -86,7 +90,13 @@ class Klipper:
         lines[rows_of, bucket] = 1.0 - share
         lines[rows_of, (bucket + 1) % _BUCKETS] = share
         step = _TURN * rows_of / len(self) - np.where(bucket + 1 >= _BUCKETS, share * _TURN, 0.0)
-        solved = np.trunc(np.linalg.lstsq(lines, step, rcond=None)[0] + 0.5).astype(np.int64)
+        found, _, rank, _ = np.linalg.lstsq(lines, step, rcond=None)
+        if rank < _BUCKETS:
+            raise UserError(
+                f"the sensor turns so unevenly that too few of {len(self)} full steps fall into some of the {_BUCKETS} "
+                "parts of its turn for which Klipper solves an entry; place the sensor better, and measure again"
+            )
+        solved = np.trunc(found + 0.5).astype(np.int64)
         return np.append(solved, solved[0] + _TURN)
 
     def corrected(self, reading_rad: Array) -> Array:

@@ -232,6 +232,13 @@ def test_klipper_solves_the_table_that_was_meant(number: int) -> None:
     assert np.max(np.abs(wrap(model - shaft))) < 1e-9
 
 
+def test_klipper_refuses_a_turn_that_its_steps_do_not_tell() -> None:
+    """An error of 70 deg: from one full step to the next the sensor turns by more than a part of Klipper's."""
+    chain = Chain().with_effect("offset", x_percent=60.0, y_percent=-70.0)
+    with pytest.raises(UserError, match="too few of 200 full steps fall into some of the 64 parts"):
+        klipper.TARGET.stored(Wanted.of(correction_of(chain)), 200, "worst").corrected(WORDS)
+
+
 def test_mechaduino_looks_the_count_up() -> None:
     table = mechaduino.TARGET.stored(wanted_of(1), 16384, "worst")
     assert isinstance(table, mechaduino.Mechaduino)

@@ -24,8 +24,8 @@ NONE_TAKEN = {
     "odrive": "ODrive takes no table: its public firmware (0.5) corrects an offset alone, and firmware 0.6 measures "
     "orders 1 and 2 itself (harmonic compensation), in coefficients whose sign is not published; put --for c into a "
     "firmware of your own, or between sensor and drive",
-    "vesc": "VESC takes no table: its public firmware corrects offset, amplitude and phase of a sine-cosine encoder "
-    "alone, which halltwin diagnose tells; include --for c in a native library that sets a custom encoder",
+    "vesc": "VESC takes no table: its public firmware (6.05) corrects offset, amplitude and phase of a sine-cosine "
+    "encoder alone, which halltwin diagnose tells; include --for c in a native library that sets a custom encoder",
 }
 """Drives whose firmware has no table of angle corrections: what it has, and what to do."""
 

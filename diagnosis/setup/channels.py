@@ -11,8 +11,8 @@ from twin.following import spread_deg
 
 _SURELY = 4.0
 """One sense is clearly meant where the other leaves so many times as much."""
-_QUARTER_DEG = 5.0
-"""Channels that are swapped give 90 deg minus the angle; a sensor's own zero and errors part the two by less."""
+_QUARTER_DEG = 1.0
+"""Channels that are swapped give 90 deg minus the angle, but for what their offsets move its mean by."""
 
 
 def _channels(record: Record) -> tuple[Array, Array, Array] | None:
@@ -37,16 +37,16 @@ def swapped_channels(record: Record) -> Finding | None:
     if against * _SURELY > along or against > 30.0:
         return None
     zero = float(np.degrees(np.angle(np.mean(np.exp(1j * np.radians(measured + angle))))))
-    swapped = abs(float(wrap_deg(zero - 90.0))) < _QUARTER_DEG
-    what = "sine and cosine are swapped" if swapped else "sine and cosine are swapped, or one of them is turned over"
+    # Any other sum is that of a sensor whose output counts against its channels, as many do.
+    if abs(float(wrap_deg(zero - 90.0))) > _QUARTER_DEG:
+        return None
     return Finding(
         kind="swapped_channels",
-        level="fault" if swapped else "note",
-        what=what,
-        evidence=f"the reading and atan2(vy, vx) add up to {zero:.1f} deg, within {against:.2f} deg, where their "
-        "difference should stay the same",
+        what="sine and cosine are swapped",
+        evidence=f"the reading and atan2(vy, vx) add up to {zero:.1f} deg, within {against:.2f} deg: the angle is "
+        "atan2(vx, vy)",
         consequence="offset, gain and phase are told of the wrong channel",
-        remedy="take vx for vy and vy for vx" if swapped else "check which channel is the sine, and its sign",
+        remedy="take vx for vy and vy for vx",
         columns=record.exchanged("vx", "vy"),
     )
 

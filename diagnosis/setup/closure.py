@@ -10,10 +10,8 @@ from diagnosis.setup.ratio import counts_a_turn
 from diagnosis.setup.record import Record
 from diagnosis.setup.step_change import steps_of
 
-_LEAST_DEG = 0.25
-"""A zero that steps by less is the drift of a bench."""
-_NEAR_ROWS = 12
-"""Rows before and after a place that tell whether the shaft turned round there."""
+_LEAST_DEG = 0.5
+"""A zero that steps by less is a bench's: warmth, a counter set to zero anew at its index."""
 
 
 def turn_not_closed(record: Record) -> Finding | None:
@@ -27,13 +25,12 @@ def turn_not_closed(record: Record) -> Finding | None:
         return None
     travel = relation.travel_deg
     found = steps_of(relation.error_at_one_deg, travel, turn_of=record.measured_deg)
-    place, size, error = found.largest()
+    lasting = found.lasting()
+    if lasting is None:
+        return None
+    place, size, error = lasting
     sure = float(norm.isf(FALSE_ALARM / (2.0 * travel.size))) * error
-    # Where the shaft turns round, play and hysteresis step.
-    step = np.sign(np.diff(travel))
-    before, after = step[max(place - _NEAR_ROWS, 0) : place - 2], step[place + 1 : place + _NEAR_ROWS]
-    turned = before.size and after.size and float(np.median(before)) != float(np.median(after))
-    if turned or abs(size) < max(_LEAST_DEG, sure):
+    if abs(size) < max(_LEAST_DEG, sure):
         return None
     rows = record.rows(np.array([place]))
     return Finding(

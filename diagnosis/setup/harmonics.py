@@ -37,8 +37,8 @@ def waves(angle_rad: Array, orders: Iterable[float]) -> list[Array]:
     return [wave(order * angle_rad) for order in orders for wave in (np.cos, np.sin)]
 
 
-def fitted(shapes: list[Array], values: Array) -> Fitted:
-    """Least squares of values (n,) on shapes, wild readings left out.
+def fitted(shapes: list[Array], values: Array, *, most_wild: float = 0.5) -> Fitted:
+    """Least squares of values (n,) on shapes, wild readings left out, unless they are more than this share.
 
     Standard errors hold for neighbours that are alike: they are widened by what the correlation of neighbouring rows
     takes from the number of readings.
@@ -52,7 +52,7 @@ def fitted(shapes: list[Array], values: Array) -> Fitted:
         left = values - design @ coefficients
         scale = 1.4826 * float(np.median(np.abs(left)))
         now = np.abs(left) <= max(_WILD * scale, 1e-12)
-        if np.array_equal(now, kept) or now.sum() <= design.shape[1] + 2:
+        if np.array_equal(now, kept) or now.sum() <= design.shape[1] + 2 or np.mean(~now) > most_wild:
             break
         kept = now
     errors = _standard_errors(design[kept], left[kept])

@@ -164,7 +164,8 @@ def _angle(target: str, source: str, values: Array, said: Meaning) -> Column:
     known = values[np.isfinite(values)]
     span = float(np.ptp(known))
     if said.counts or (span > 370.0 and bool(np.all(known % 1.0 == 0.0))):
-        full = [many for many in COUNTS_PER_TURN if 0.98 * many <= span <= many]
+        wraps = bool(np.any(np.abs(np.diff(known)) > 0.5 * span))
+        full = [many for many in COUNTS_PER_TURN if wraps and 0.98 * many <= span <= many]
         counts = float(full[0]) if full else 2.0 ** max(int(np.ceil(np.log2(span + 1.0))), _FEWEST_BITS)
         return Column(target, Term(source, (("*", 360.0), ("/", counts))))
     return Column(target, Term(source), "rad" if span <= 6.3 and np.any(known % 1.0 != 0.0) else None)

@@ -18,7 +18,8 @@ from twin.logs.names import Meaning
 
 _LARGEST_TERM = 12
 """Of pole pairs and gears: a ratio of larger whole numbers is one of counts."""
-_NEAR = 1e-3
+_NEAR, _FAR = 1e-3, 0.02
+"""A ratio is near a simple one within its uncertainty, but at least and at most within these shares."""
 _MOST_RADIANS = 64.0 * 2.0 * np.pi
 """More turns than this are degrees."""
 _MORE_THAN_A_TURN_DEG = 370.0
@@ -132,7 +133,7 @@ def _simple(relation: Relation) -> Fraction | None:
     ratio = abs(relation.ratio)
     near = Fraction(ratio).limit_denominator(_LARGEST_TERM)
     off = abs(ratio - float(near))
-    allowed = max(times_sure() * relation.ratio_error, _NEAR * ratio)
+    allowed = min(max(times_sure() * relation.ratio_error, _NEAR * ratio), _FAR * ratio)
     if near == 1 or near == 0 or off > allowed or (near.denominator > 1 and near.numerator > 4 * _LARGEST_TERM):
         return None
     return near

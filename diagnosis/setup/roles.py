@@ -8,6 +8,7 @@ from diagnosis.setup.finding import Finding
 from diagnosis.setup.harmonics import FALSE_ALARM, white_noise
 from diagnosis.setup.record import FEWEST, Record
 from diagnosis.setup.relation import travel_deg
+from diagnosis.setup.sampling import step_of_word
 from twin.angles import Array, wrap_deg
 from twin.following import spread_deg
 from twin.reading_grid import step_of_grid_deg
@@ -125,7 +126,8 @@ def _by_noise(record: Record) -> str | None:
     n = record.both.size
     noisy = white_noise(relation.travel_deg)
     quiet = white_noise(np.unwrap(record.measured_deg, period=360.0))
-    quiet = max(quiet, 1e-6)
+    # What a short word hides is no quietness.
+    quiet = max(quiet, step_of_word(record.measured_deg) / np.sqrt(12.0), 1e-6)
     if n < 60 or noisy < max(_TIMES * quiet, 2.0 * _grid_deg(record.reference_deg)):
         return None
     # The median of n absolute third differences tells the variance about as well as a fifth of n squares would.

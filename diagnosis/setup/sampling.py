@@ -95,7 +95,7 @@ def aliased_order(record: Record) -> Finding | None:
         not rivals
         or order <= 8
         or 4 * order < points
-        or amplitude < max(_step_of_word(record.measured_deg), _LEAST_LINE_DEG)
+        or amplitude < max(step_of_word(record.measured_deg), _LEAST_LINE_DEG)
     ):
         return None
     return Finding(
@@ -108,7 +108,7 @@ def aliased_order(record: Record) -> Finding | None:
     )
 
 
-def _step_of_word(measured_deg: Array) -> float:
+def step_of_word(measured_deg: Array) -> float:
     """The step of the shortest word that all readings are on; 0 where they are on none."""
     for bits in range(6, 17):
         steps = measured_deg * 2.0**bits / 360.0

@@ -12,6 +12,9 @@ from twin.angles import Array
 _FEWEST = 6
 """Rows on either side of a step."""
 _MOST_STEPS = 3
+_MOST_WILD = 0.02
+_SOON_ROWS, _SOON = 20, 0.03
+"""Rows, or share of the record, within which a step that is taken back is a burst: stale frames, a word's gap."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +31,24 @@ class Steps:
         """Whether up to three steps leave less than a slope does."""
         return self.alone.sigma < self.slope_alone.sigma
 
-    def largest(self) -> tuple[int, float, float]:
-        """Place, size and standard error of the largest step, with a slope beside."""
+    def lasting(self) -> tuple[int, float, float] | None:
+        """Place, size and standard error of the largest step that no other takes back; None where each one is."""
         count = len(self.places)
         sizes, errors = self.with_slope.values[-count:], self.with_slope.errors[-count:]
-        worst = int(np.argmax(np.abs(sizes)))
+        soon = max(_SOON_ROWS, int(_SOON * self.with_slope.left.size))
+        kept = [
+            k
+            for k in range(count)
+            if not any(
+                sizes[k] * sizes[j] < 0.0
+                and abs(self.places[k] - self.places[j]) <= soon
+                and 2.0 * abs(sizes[j]) > abs(sizes[k])
+                for j in range(count)
+            )
+        ]
+        if not kept:
+            return None
+        worst = max(kept, key=lambda k: abs(float(sizes[k])))
         return self.places[worst], float(sizes[worst]), float(errors[worst])
 
 
@@ -50,14 +66,19 @@ def steps_of(error: Array, travel_deg: Array, *, turn_of: Array) -> Steps:
     places: list[int] = []
     for _ in range(_MOST_STEPS):
         known = [*rest, *(_after(n, place) for place in places)]
-        places.append(_strongest(fitted(known, error), known))
+        places.append(_strongest(_fitted(known, error), known))
     steps = [_after(n, place) for place in places]
     return Steps(
         tuple(places),
-        fitted([*rest, *steps], error),
-        fitted([*rest, slope, *steps], error),
-        fitted([*rest, slope], error),
+        _fitted([*rest, *steps], error),
+        _fitted([*rest, slope, *steps], error),
+        _fitted([*rest, slope], error),
     )
+
+
+def _fitted(shapes: list[Array], error: Array) -> Fitted:
+    """A fit in which a whole stretch does not count as wild."""
+    return fitted(shapes, error, most_wild=_MOST_WILD)
 
 
 def _after(n: int, place: int) -> Array:

@@ -22,7 +22,7 @@ def typing_error(record: Record) -> Finding | None:
     relation = record.relation
     if relation is None or not relation.follows or not _FEWEST_ROWS <= record.both.size <= _MOST_ROWS:
         return None
-    wrong, off = _wrong_rows(np.radians(record.reference_deg), relation.error_deg)
+    wrong, off = _wrong_rows(np.radians(record.reference_deg), relation.error_at_one_deg)
     if not wrong.size:
         return None
     rows = record.rows(wrong)

@@ -16,6 +16,7 @@ from tests.mutations.parts import PARTS
 from tests.mutations.periods import PERIODS
 from tests.mutations.scripts import SCRIPTS
 from tests.mutations.settings import settings
+from tests.mutations.setups import SETUPS
 from tests.mutations.signs import signs
 from tests.mutations.stages import STAGES
 from tests.mutations.studies import STUDIES
@@ -42,6 +43,7 @@ def mutations() -> tuple[Mutation, ...]:
         *SCRIPTS,
         *THERMAL,
         *WORDS,
+        *SETUPS,
         *settings(),
         *signs(),
     )

@@ -244,6 +244,9 @@ def open_turn(rng: np.random.Generator) -> Bench:
     bench = draw(rng, turns=int(rng.integers(2, 6)), points=int(rng.integers(60, 300)))
     slip = rng.uniform(1.0, 10.0) * rng.choice([-1.0, 1.0])
     first = int(rng.integers(bench.points // 2, bench.n - bench.points // 2))
+    # Where the shaft turns round a slip looks like play.
+    if abs(first - bench.n // 2) < bench.points // 6:
+        first += bench.points // 3
     bench.columns["reference_deg"][first:] += slip
     return bench
 

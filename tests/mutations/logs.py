@@ -48,7 +48,7 @@ LOGS: tuple[Mutation, ...] = (
         "tests/untidy/test_tables.py",
         (
             "logs.comments_stand_in_arrays",
-            '    text = _COMMENT.sub(" ", text)\n',
+            "    text = _without_comments(text)\n",
             "",
             "::test_a_table_is_read_to_the_angles_that_it_stores",
         ),

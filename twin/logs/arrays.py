@@ -11,17 +11,21 @@ import numpy as np
 
 from twin.angles import Array
 from twin.errors import SweepError
-from twin.logs.firmware import is_known
+from twin.logs.firmware import REGISTERS, is_known
 from twin.logs.table import Table
 
 FEWEST_ENTRIES = 8
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_COMMENT = re.compile(r"//|/\*")
 _BRACED = re.compile(r"\{([^{}]*)\}")
-_LISTED = re.compile(r"([A-Za-z_]\w*)\s*=\s*(?:\w+(?:\.\w+)*\()?\s*\[([^\[\]]*)\]")
+_LISTED = re.compile(r"\b([A-Za-z_]\w*)\s*=\s*(?:\w+(?:\.\w+)*\()?\s*\[([^\[\]]*)\]")
 _BEFORE = re.compile(r"([A-Za-z_]\w*)\s*\[[^\[\]]*\][^;{}=]*=?\s*$|([A-Za-z_]\w*)\s*=?\s*$")
+_SHIFT = re.compile(r"#define\s+(\w+_SHIFT)\s+(\d{1,2})u?\b")
+_LARGEST_BYTE = 127.0
 _NAME_IN = 200
 """Characters before an array's numbers among which its name stands."""
 _SETTING = re.compile(r"(?:conf\s+set\s+)?([A-Za-z_][\w.]*)\s+([+-]?[\d.]+(?:[eE][+-]?\d+)?)")
+_FIRST_ENTRY = re.compile(r"^[^\d\n][^\s,;]*(?: +set +[^\s,;]+)?\.0[ \t]+[-+.\d]", re.MULTILINE)
+_ANY_SECTION = re.compile(r"^(?:#\*#\s*)?\[[^\[\]\n,;]+\]\s*$", re.MULTILINE)
 _ENTRY = re.compile(r"(.+)\.(\d+)")
 _SECTION = re.compile(r"\[([^\[\]]+)\]")
 _SAVED = "#*#"
@@ -39,7 +43,7 @@ def read_arrays(text: str, *, file: str) -> Table | None:
         )
     found = _json(head) or _settings(text) or _sections(text) or _source(text)
     arrays = {name: np.asarray(values) for name, values in found.items() if len(values) >= FEWEST_ENTRIES}
-    return _table(_scaled(arrays, found), file=file) if arrays else None
+    return _table(_made(arrays, found), file=file) if arrays else None
 
 
 def _json(head: str) -> dict[str, list[float]]:
@@ -72,6 +76,8 @@ def _is_plain(value: Any) -> bool:
 def _settings(text: str) -> dict[str, list[float]]:
     """Lines of a name and a number; those whose names end in 0, 1, 2 are the entries of an array."""
     found: dict[str, list[float]] = {}
+    if not _FIRST_ENTRY.search(text):
+        return found
     for line in text.splitlines():
         said = _SETTING.fullmatch(line.strip())
         if not said:
@@ -86,6 +92,8 @@ def _settings(text: str) -> dict[str, list[float]]:
 def _sections(text: str) -> dict[str, list[float]]:
     """Lists of numbers in a configuration of sections, each list over as many lines as it takes."""
     found: dict[str, list[float]] = {}
+    if not _ANY_SECTION.search(text):
+        return found
     section, key = "", ""
     for line in text.splitlines():
         bare = line.removeprefix(_SAVED).strip()
@@ -107,8 +115,8 @@ def _source(text: str) -> dict[str, list[float]]:
     """Arrays between braces, as in C, or between brackets, as in Python, under the name that is set to them."""
     if "{" not in text and not _LISTED.search(text):
         return {}
-    text = _COMMENT.sub(" ", text)
-    found: dict[str, list[float]] = {}
+    text = _without_comments(text)
+    found = {said[1]: [float(said[2])] for said in _SHIFT.finditer(text)}
     for braced in _BRACED.finditer(text):
         said = _BEFORE.search(text[max(braced.start() - _NAME_IN, 0) : braced.start()])
         values = _numbers(braced[1])
@@ -121,6 +129,19 @@ def _source(text: str) -> dict[str, list[float]]:
     return found
 
 
+def _without_comments(text: str) -> str:
+    """A source text without what stands behind ``//``, and between ``/*`` and ``*/``."""
+    kept, at = [], 0
+    while begin := _COMMENT.search(text, at):
+        mark = "\n" if begin[0] == "//" else "*/"
+        end = text.find(mark, begin.end())
+        kept.append(text[at : begin.start()])
+        if end < 0:
+            return " ".join(kept)
+        at = end + len(mark)
+    return " ".join([*kept, text[at:]])
+
+
 def _numbers(text: str) -> list[float] | None:
     """The numbers of a list parted by commas; None where something else stands in it."""
     cells = [cell.strip() for cell in text.replace("\n", " ").split(",") if cell.strip()]
@@ -131,15 +152,23 @@ def _numbers(text: str) -> list[float] | None:
     ]
 
 
-def _scaled(arrays: Mapping[str, Array], found: Mapping[str, list[float]]) -> dict[str, tuple[Array, str]]:
-    """The arrays with what was done to them: whole numbers of moteus stand for parts of a scale beside them."""
+def _made(arrays: Mapping[str, Array], found: Mapping[str, list[float]]) -> dict[str, tuple[Array, str]]:
+    """The arrays as numbers of one unit, with what was done to them for it.
+
+    Whole numbers of moteus stand for parts of a scale beside them, those of C that halltwin writes count in a part of a
+    code, and bytes may be signed.
+    """
     made: dict[str, tuple[Array, str]] = {}
     for name, values in arrays.items():
         scale = found.get(f"{name.rpartition('.')[0]}.compensation_scale", [0.0])[0]
+        shift = found.get(f"{name.rpartition('_')[0].upper()}_SHIFT", [0.0])[0]
+        made[name] = (values, "")
         if name.endswith("compensation_table") and scale:
             made[name] = (values * scale / 127.0, f"{name} is taken times its scale, {scale:g}, over 127")
-        else:
-            made[name] = (values, "")
+        elif name.endswith(("_entry", "_y")) and shift:
+            made[name] = (values / 2.0**shift, f"{name} is taken over 2^{shift:g}, its shift")
+        elif name == "correction" and values.size == REGISTERS and np.max(values) > _LARGEST_BYTE:
+            made[name] = (np.where(values > _LARGEST_BYTE, values - 256.0, values), f"{name} is taken as signed bytes")
     return made
 
 

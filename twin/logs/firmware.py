@@ -47,6 +47,9 @@ TORQUES = re.compile(r"(?:.*\.)?(?:cogging_map|anticogging_map|cogging_dq_comp|f
 """Tables against cogging: they hold torques or currents."""
 _CODES = (("*", 360.0), ("/", 65_536.0))
 _CODES_OF_14_BIT = (("*", 360.0), ("/", 16_384.0))
+_CODES_OF_12_BIT = (("*", 360.0), ("/", 4096.0))
+REGISTERS = 32
+"""Of the MA600's table of corrections, a byte each."""
 _MIDDLE, _LARGEST_CODE = 32_768.0, 65_536.0
 _LISTED: tuple[tuple[str, Callable[[Array], bool], Rule], ...] = (
     ("calibrationLut", lambda entries: not _whole(entries), Rule("SimpleFOC", ERROR, unit="rad")),
@@ -74,6 +77,16 @@ _LISTED: tuple[tuple[str, Callable[[Array], bool], Rule], ...] = (
         r"angle\..*\.calibrate",
         lambda entries: _between(entries, 0.0, _LARGEST_CODE),
         Rule("Klipper", READING, factors=_CODES),
+    ),
+    (
+        "correction",
+        lambda entries: entries.size == REGISTERS and _whole(entries) and _between(entries, -128.0, 127.0),
+        Rule("the MA600", CORRECTION, factors=_CODES_OF_12_BIT),
+    ),
+    (
+        "halltwin_entry",
+        lambda entries: _between(np.abs(entries), 0.0, _MIDDLE),
+        Rule("C that halltwin writes", CORRECTION, factors=_CODES),
     ),
     (
         "lookup",

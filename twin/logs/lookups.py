@@ -35,6 +35,9 @@ def statements_of(table: Table) -> tuple[list[Statement], tuple[str, ...]]:
     Raises SweepError where none does, with the reason.
     """
     places = range(1, len(table.names))
+    curve = _curve(table)
+    if curve:
+        return [curve], ("taken as a curve: what is added to the reading, by the reading, both in codes of 16 bit",)
     rules = [(k, rule) for k in places if (rule := rule_of(table.names[k], table.values[k]))]
     if rules:
         return [statement(table, k, rule) for k, rule in rules], (rules[0][1].said,)
@@ -42,6 +45,15 @@ def statements_of(table: Table) -> tuple[list[Statement], tuple[str, ...]]:
     if fitting:
         return fitting, ("entries stand at even angles of one turn, the first at 0",)
     raise SweepError(f"{table.file}: {_why_none(table)}")
+
+
+def _curve(table: Table) -> Statement | None:
+    """The statement for a curve of two arrays, ``NAME_x`` and ``NAME_y``, in codes of 16 bit; None for others."""
+    own = {name.rpartition("_")[2]: k for k, name in enumerate(table.names) if name.startswith("halltwin_")}
+    if set(own) != {"x", "y"}:
+        return None
+    x, y = (Term(table.sources[own[axis]], (("*", 360.0), ("/", 65_536.0))) for axis in "xy")
+    return Column("reference_deg", x, plus=Addend("+", y)), Column("measured_deg", x)
 
 
 def _why_none(table: Table) -> str:

@@ -42,6 +42,7 @@ KINDS = {
     "speed",
     "local",
     "flanks",
+    "seam",
     "code",
     "noise",
 }

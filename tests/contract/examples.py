@@ -28,6 +28,7 @@ from tests.contract.signatures import (
     play,
     rad,
     ripple,
+    seam,
     shift,
     stepper,
     stuck,
@@ -265,6 +266,7 @@ EXAMPLES: dict[str, Example] = {
     "unnamed_bump": Example(
         strengths={"height_deg": 0.3}, shapes={"centre_deg": 77.0, "width_deg": 12.0}, signature=bump
     ),
+    "unnamed_seam": Example(strengths={"step_deg": 0.2}, shapes={"centre_deg": 77.4}, signature=seam),
     "unnamed_flanks": Example(
         strengths={"height_deg": 0.1}, shapes={"centre_deg": 77.0, "width_deg": 12.0}, signature=over_flanks
     ),

@@ -190,3 +190,9 @@ def zone(motion: Motion, p: Params) -> Array:
     width, inside = rad(p["width_deg"]), np.mod(motion.shaft_rad - rad(p["start_deg"]), TAU)
     to_edge = np.where(inside < 0.01 * p["jump_percent"] * width, -inside, width - inside)
     return np.where(inside < width, to_edge, 0.0)
+
+
+def seam(motion: Motion, p: Params) -> Array:
+    """A vector that turns from half a turn before the place to half a turn behind it, as an angle."""
+    opposite = np.angle(np.exp(1j * (motion.shaft_rad - rad(p["centre_deg"]) - np.pi)))
+    return np.asarray(-rad(p["step_deg"]) * opposite / TAU)

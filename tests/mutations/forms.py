@@ -79,9 +79,9 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "forms.no_channel_is_cut_off_by_a_third",
             "twin/adc/clipping.py",
-            "*np.arange(40.0, 84.0, 2.0), ",
-            "",
-            f"{_FORMS}::test_channels_that_are_cut_off_by_a_third_are_clipped[0.67]",
+            "*np.geomspace(3.0, 35.0, 12), *np.arange(40.0, 84.0, 2.0), ",
+            "84.0, ",
+            f"{_FORMS}::test_a_range_may_cut_off_nearly_all_or_one_end_alone[0.15-ends0]",
         ),
         (
             "forms.no_search_sets_an_s",
@@ -135,8 +135,8 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "forms.no_flanks",
             "twin/empirical/__init__.py",
-            "    UNNAMED_FLANKS,\n    UNNAMED_BURST",
-            "    UNNAMED_BURST",
+            "    UNNAMED_FLANKS,\n    UNNAMED_SEAM",
+            "    UNNAMED_SEAM",
             f"{_FORMS}::test_a_play_under_weight_is_one_thing",
         ),
         (

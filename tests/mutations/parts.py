@@ -322,8 +322,8 @@ PARTS: tuple[Mutation, ...] = (
         _T,
         (
             "selection.narrow_shapes_are_held_out_as_a_whole",
-            "    if fit.weighting.member == 0 and least_seen(fit, ordered, fold) < fit.settings.heldout_seen:\n",
-            "    if False:\n",
+            "    if narrow and (fit",
+            "    if not narrow and (fit",
             "proof/test_selection.py::test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost",
         ),
         (

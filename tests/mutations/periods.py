@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.mutations.mutation import Mutation
 
 _SEARCH = "tests/diagnosis/discovery/search/test_parts.py"
+_FORMS = "tests/diagnosis/discovery/test_forms.py"
 _STAGES = "tests/diagnosis/discovery/stages/test_one_source.py"
 
 PERIODS: tuple[Mutation, ...] = tuple(
@@ -51,6 +52,28 @@ PERIODS: tuple[Mutation, ...] = tuple(
             "return found_together(effect) or ",
             "return ",
             f"{_STAGES}::test_the_answer_names_the_motor_once_with_its_lines",
+        ),
+        (
+            "periods.both_ends_are_cut_off_or_none",
+            "twin/adc/clipping.py",
+            "return [*found, *(_shape",
+            "return [*found] or [*(_shape",
+            f"{_FORMS}::test_a_range_may_cut_off_nearly_all_or_one_end_alone[0.64-ends1]",
+        ),
+        (
+            "periods.levels_are_asked_to_first_order",
+            "diagnosis/discovery/search/forward_step.py",
+            "return [*other, *level]",
+            "return other",
+            "tests/diagnosis/discovery/search/test_forward_step.py"
+            "::test_a_level_that_explains_a_share_is_fitted_beside_those_that_come_first",
+        ),
+        (
+            "periods.a_turn_always_closes",
+            "twin/empirical/__init__.py",
+            "    UNNAMED_SEAM,\n    UNNAMED_BURST",
+            "    UNNAMED_BURST",
+            f"{_FORMS}::test_a_turn_that_drifts_has_a_seam[137.0]",
         ),
         (
             "periods.mechanics_make_no_lines",

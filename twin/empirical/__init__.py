@@ -4,7 +4,7 @@ Where nothing says otherwise they act on the computed angle. They are declared l
 simulated, fitted and searched for by the same code. Their names begin with ``unnamed``.
 """
 
-from twin.empirical.local import UNNAMED_BUMP, UNNAMED_FLANKS
+from twin.empirical.local import UNNAMED_BUMP, UNNAMED_FLANKS, UNNAMED_SEAM
 from twin.empirical.orders import (
     UNNAMED_DIRECTION,
     UNNAMED_DIRECTION_ORDER,
@@ -30,5 +30,6 @@ EFFECTS = (
     UNNAMED_CREEP,
     UNNAMED_BUMP,
     UNNAMED_FLANKS,
+    UNNAMED_SEAM,
     UNNAMED_BURST,
 )

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from twin.angles import Array, radians, wrap
+from twin.angles import TAU, Array, radians, wrap
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -46,6 +46,35 @@ UNNAMED_BUMP = Effect(
     words="a bump at {centre_deg:4} deg of the shaft, {height_deg} deg high, sigma {width_deg} deg",
     source="Gaussian bump",
     signature="an error at one place of the turn",
+)
+
+
+def _seam(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    behind = np.mod(motion.shaft_rad - radians(values["centre_deg"]), TAU)
+    return signal + radians(values["step_deg"]) * (0.5 - behind / TAU)
+
+
+def _seam_shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    return [{"centre_deg": float(centre)} for centre in np.arange(0.0, 360.0, max(360.0 / motion.points_per_turn, 4.0))]
+
+
+UNNAMED_SEAM = Effect(
+    name="unnamed_seam",
+    stage="empirical",
+    acts_on="angle",
+    params={
+        "centre_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=720.0, doc="place", role="shape", typical=5.0),
+        "step_deg": Param(unit="deg", null=0.0, lower=-90.0, upper=90.0, doc="step, made up for over the turn"),
+    },
+    forward=_seam,
+    shapes=_seam_shapes,
+    zoomed=("centre_deg",),
+    needs=frozenset({"one turn"}),
+    kind="seam",
+    words="a turn that does not close: a step of {step_deg} deg at {centre_deg:4} deg of the shaft, made up for evenly "
+    "over the rest of the turn, as where a turn that drifted began and ended",
+    source="sawtooth: a linear drift over one turn, told over the angle",
+    signature="a step at one place of the turn, and orders that fall as 1/n",
 )
 
 

@@ -38,7 +38,8 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
-    return [{"periods": float(p)} for p in range(2, MOST_PERIODS + 1) if 6 * p < motion.points_per_turn]
+    # Of two periods the line of the offset is that of gain and phase of a single one.
+    return [{"periods": float(p)} for p in range(3, MOST_PERIODS + 1) if 6 * p < motion.points_per_turn]
 
 
 def orders(values: Parameters) -> tuple[float, ...]:

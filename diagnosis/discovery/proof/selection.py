@@ -97,8 +97,10 @@ def prove(
     causes = sorted((_judged(views, key, others, keys) for key in keys), key=lambda cause: -cause.gain)
     ordered = [cause.key for cause in causes]
     fold = folds(fit, ordered)
-    if fit.weighting.member == 0 and least_seen(fit, ordered, fold) < fit.settings.heldout_seen:
-        # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere.
+    narrow = [cause for cause in causes if least_seen(fit, [cause.key], fold) < fit.settings.heldout_seen]
+    if narrow and (fit.weighting.member == 0 or all(one.log_p < fit.settings.beyond_doubt_log_p for one in narrow)):
+        # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere. Single
+        # readings of coloured noise tell of their neighbours: there it has to stand beyond doubt already.
         fold = scattered(fit, ordered)
     held, weighed = _held_out(fit, ordered, fold, at_once=at_once)
     visible = tuple(effect for effect in effects if effect.visible_in(fit.observations.motion.provides))

@@ -104,6 +104,7 @@ def best_addition(
     settings = fit.settings
     reach = max(settings.contender_nats, -settings.contender_share * top)
     near = [c for c in ranked if c.log_p + handicap(c.effect, base.fit) < top + reach][: settings.most_contenders]
+    near += _asked_as_well(ranked, near, fit.settings.fair_share)
     trials = [Trial.of(fit, c) for c in near]
     trials += _in_the_place_of_a_shape(fit, ranked, near, threshold)
     # All are judged by the same noises: those that any of them leaves.
@@ -124,6 +125,18 @@ def best_addition(
         degrees(chosen.effect, chosen.terms),
         float(np.log(chosen.looks)) + handicap(chosen.effect, fit),
     )
+
+
+def _asked_as_well(ranked: Sequence[Candidate], near: Sequence[Candidate], share: float) -> list[Candidate]:
+    """Candidates that first order may undervalue, beside those that it puts first.
+
+    Where a cause that joins several parts is first, for its many coefficients promise much, the best other one; and the
+    best level that explains a fair share, as its change is the farther from what it is in the end the larger it is.
+    """
+    rest = ranked[len(near) :]
+    other = [c for c in rest if not of_parts(c.effect)][: 1 if of_parts(near[0].effect) else 0]
+    level = [c for c in rest if c.effect.whole and c not in other and c.gain > share * near[0].gain][:1]
+    return [*other, *level]
 
 
 def _in_the_place_of_a_shape(

@@ -126,12 +126,19 @@ def test_as_many_sweeps_are_simulated_as_there_is_room_for(
 
 
 @pytest.mark.parametrize(
-    ("share", "member", "scatters"), [(0.11, 0, False), (0.09, 0, True), (0.09, 1, False), (0.5, 0, False)]
+    ("share", "member", "log_p", "scatters"),
+    [
+        (0.21, 0, -9.0, False),
+        (0.19, 0, -9.0, True),
+        (0.19, 1, -24.0, False),
+        (0.19, 1, -26.0, True),
+        (0.5, 0, -9.0, False),
+    ],
 )
 def test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost(
-    share: float, member: int, scatters: bool, monkeypatch: pytest.MonkeyPatch
+    share: float, member: int, log_p: float, scatters: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What a cause does outside of one fold, on either side of what is too little; never in coloured noise."""
+    """What a cause does outside of one fold, on either side of what is too little; in coloured noise beyond doubt."""
     fit = handed().fit
     fold = folds(fit)
     column = np.where(fold == 1, np.sqrt((1.0 - share) / np.sum(fold == 1)), np.sqrt(share / np.sum(fold != 1)))
@@ -141,6 +148,7 @@ def test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost(
     assert selection.least_seen(fit, [SATURATION], fold) == pytest.approx(share)
     monkeypatch.setattr(selection, "_held_out", lambda *_, **__: ([], [0.02, 0.01]))
     monkeypatch.setattr(selection, "_calibrated", lambda *_: None)
+    monkeypatch.setattr(selection, "_judged", lambda *_: Judged(SATURATION, 90.0, log_p))
     proof = prove(fit, handed().searched[:EFFECTS], [SATURATION], rng=np.random.default_rng(0))
     assert np.array_equal(proof.fold, scattered(fit) if scatters else fold)
 

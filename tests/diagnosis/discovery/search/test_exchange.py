@@ -141,13 +141,13 @@ def test_no_more_rivals_are_tried_than_may_be_but_zeros_of_the_turns_are(monkeyp
     assert rivals == [*names[:3], "reference_rezero"]
 
 
-@pytest.mark.parametrize(("coarse", "threshold"), [(False, np.log(0.01 / 4.0 / 10.0)), (True, -20.0)])
+@pytest.mark.parametrize(("coarse", "threshold"), [(False, np.log(0.01 / 4.0 / 12.0)), (True, -20.0)])
 def test_beside_coarse_stairs_only_what_is_beyond_doubt_counts(coarse: bool, threshold: float) -> None:
     fit = plain(Made(points=180, bits=30, left_out=("time_s", "turn", "direction"))).fit
     fit = replace(fit, weighting=replace(fit.weighting, coarse=coarse))
     search = Search.among([effect for effect in fit.chain.effects if effect.footprint == "mean"], fit)
     visible = [effect for effect in search.effects if not effect.baseline]
-    assert len(visible) == 10
+    assert len(visible) == 12
     assert Search.among(visible, fit).threshold == pytest.approx(threshold)
 
 

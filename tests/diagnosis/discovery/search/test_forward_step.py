@@ -245,3 +245,16 @@ def test_a_stuck_bit_is_found_afresh_once_the_rest_is_known(off: float) -> None:
 def test_other_causes_are_left_as_they_are() -> None:
     state = with_cause(fifth(), HARMONIC, order=5.0, amplitude_deg=0.05)
     assert retuned(state.fit, state.keys) is state.fit
+
+
+def test_a_level_that_explains_a_share_is_fitted_beside_those_that_come_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So is the best of the others where the first joins several parts; no level of a small share."""
+    fit = before(stepwise, FOUR_TURNS).fit
+    named = ["multipole", SATURATION, "unnamed_bump", HARMONIC, "clipping"]
+    asked = forward_step._asked_as_well
+    ranked = [candidate(name, fit, log_p=-90.0 + place, gain=100.0 - place) for place, name in enumerate(named)]
+    assert [c.effect.name for c in asked(ranked, ranked[:1], 0.15)] == [SATURATION, "clipping"]
+    assert [c.effect.name for c in asked(ranked[1:], ranked[1:2], 0.15)] == ["clipping"]
+    assert asked(ranked[1:], ranked[1:], 0.15) == []
+    weak = [*ranked[1:4], candidate("clipping", fit, log_p=-9.0, gain=14.0)]
+    assert asked(weak, weak[:1], 0.15) == []

@@ -96,7 +96,7 @@ def test_what_stands_out_is_found(case: Case) -> None:
 
 @pytest.mark.parametrize(
     ("made", "looked_at"),
-    [(FINE, 14), (replace(FINE, back=True), 19), (replace(FINE, left_out=("time_s", "turn", "direction")), 11)],
+    [(FINE, 15), (replace(FINE, back=True), 20), (replace(FINE, left_out=("time_s", "turn", "direction")), 12)],
 )
 def test_only_effects_that_the_recording_can_show_are_looked_at(made: Made, looked_at: int) -> None:
     """One turn shows those of the angle; both ways show what turns with the direction, time stamps what drifts."""

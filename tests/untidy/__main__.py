@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
+from tests.untidy.drawn_tables import drawn_table
 from tests.untidy.mixed import Mixed, drawn, drawn_geared
 from twin.errors import UserError
 from twin.logs.guess import OpenGuess
@@ -34,11 +35,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--draws", type=int, default=400)
     parser.add_argument("--seed", type=int, default=7)
+    parser.add_argument("--tables", action="store_true", help="tables of entries, not logs")
     parser.add_argument("--geared", action="store_true", help="one angle turns several times in a turn of the other")
     asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         seeds = range(1000 * asked.seed, 1000 * asked.seed + asked.draws)
-        counted = Counter(outcome(seed, Path(folder), drawn_geared if asked.geared else drawn) for seed in seeds)
+        draw = drawn_table if asked.tables else drawn_geared if asked.geared else drawn
+        counted = Counter(outcome(seed, Path(folder), draw) for seed in seeds)
     print(", ".join(f"{counted[word]} {word}" for word in ("right", "asked back", "refused", "wrong")))
 
 

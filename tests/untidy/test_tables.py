@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from tests.command_line import halltwin
+from tests.untidy.__main__ import outcome
+from tests.untidy.drawn_tables import drawn_table
 from tests.untidy.generator import Array, table
 from tests.untidy.tables import Stored, reading_of, stored, true_of
 from twin.errors import SweepError
@@ -136,6 +138,13 @@ def test_errors_listed_beside_an_angle_are_read(name: str, tmp_path: Path) -> No
         log = read_log(path)
         assert "an error is the reading less the true angle" in told(log)
         check_same(Sweep.read(path, columns=log.guess.text), one)
+
+
+def test_of_tables_drawn_at_random_none_is_misread(tmp_path: Path) -> None:
+    """Of 100; what half of them hold is open by name and values, as the sign of a table called ``lut``."""
+    found = [outcome(seed, tmp_path, drawn_table) for seed in range(100)]
+    assert found.count("wrong") == 0
+    assert found.count("right") >= 40
 
 
 def test_a_table_is_diagnosed_by_its_statement(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from twin.angles import Array
 from twin.errors import SweepError
-from twin.logs.firmware import REGISTERS, is_known
+from twin.logs.firmware import REGISTERS, SIGNED, is_known
 from twin.logs.table import Table
 
 FEWEST_ENTRIES = 8
@@ -162,13 +162,15 @@ def _made(arrays: Mapping[str, Array], found: Mapping[str, list[float]]) -> dict
     for name, values in arrays.items():
         scale = found.get(f"{name.rpartition('.')[0]}.compensation_scale", [0.0])[0]
         shift = found.get(f"{name.rpartition('_')[0].upper()}_SHIFT", [0.0])[0]
-        made[name] = (values, "")
         if name.endswith("compensation_table") and scale:
             made[name] = (values * scale / 127.0, f"{name} is taken times its scale, {scale:g}, over 127")
         elif name.endswith(("_entry", "_y")) and shift:
             made[name] = (values / 2.0**shift, f"{name} is taken over 2^{shift:g}, its shift")
         elif name == "correction" and values.size == REGISTERS and np.max(values) > _LARGEST_BYTE:
-            made[name] = (np.where(values > _LARGEST_BYTE, values - 256.0, values), f"{name} is taken as signed bytes")
+            signed = np.where(values > _LARGEST_BYTE, values - 256.0, values)
+            made[SIGNED] = (signed, f"{SIGNED} are the entries of {name}, taken as signed bytes")
+        else:
+            made[name] = (values, "")
     return made
 
 

@@ -48,8 +48,8 @@ TORQUES = re.compile(r"(?:.*\.)?(?:cogging_map|anticogging_map|cogging_dq_comp|f
 _CODES = (("*", 360.0), ("/", 65_536.0))
 _CODES_OF_14_BIT = (("*", 360.0), ("/", 16_384.0))
 _CODES_OF_12_BIT = (("*", 360.0), ("/", 4096.0))
-REGISTERS = 32
-"""Of the MA600's table of corrections, a byte each."""
+REGISTERS, SIGNED = 32, "correction_bytes"
+"""How many registers the MA600's table of corrections has, a byte each; what they are called once they are signed."""
 _MIDDLE, _LARGEST_CODE = 32_768.0, 65_536.0
 _LISTED: tuple[tuple[str, Callable[[Array], bool], Rule], ...] = (
     ("calibrationLut", lambda entries: not _whole(entries), Rule("SimpleFOC", ERROR, unit="rad")),
@@ -79,8 +79,8 @@ _LISTED: tuple[tuple[str, Callable[[Array], bool], Rule], ...] = (
         Rule("Klipper", READING, factors=_CODES),
     ),
     (
-        "correction",
-        lambda entries: entries.size == REGISTERS and _whole(entries) and _between(entries, -128.0, 127.0),
+        SIGNED,
+        lambda entries: entries.size == REGISTERS and _between(entries, -128.0, 127.0),
         Rule("the MA600", CORRECTION, factors=_CODES_OF_12_BIT),
     ),
     (

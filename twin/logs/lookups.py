@@ -26,7 +26,8 @@ _ALIKE = 0.5
 """Correlation of an entry with the next from which a table without a name is taken for one of corrections."""
 _CLOSED_SHARE = 0.25
 """A last entry that differs from the first by less than this share of a typical step repeats it."""
-_LIKE = {"angle": ANGLE, "reference": ANGLE, "sensor": READING, "error": ERROR, "correction": CORRECTION}
+_SURE = 2
+"""How much a word must speak for a side: ``true`` and ``raw`` do, ``encoder`` may be either."""
 
 
 def statements_of(table: Table) -> tuple[list[Statement], tuple[str, ...]]:
@@ -92,19 +93,19 @@ def entries_a_turn(entries: Array) -> int:
 
 def _by_values(table: Table, place: int) -> Iterator[Statement]:
     """The statements that the values and the name of a column of entries leave open, the likeliest first."""
-    said, entries = meaning_of(table.names[place]), table.values[place]
+    # Of a path it is the last word that says what the entries are.
+    said, entries = meaning_of(table.names[place].rpartition(".")[2]), table.values[place]
     grid_deg = np.arange(entries.size) * 360.0 / entries.size
     angle = Meaning("angle", unit=said.unit, counts=said.counts)
     units = [pair[1] for pair in units_of_pair(grid_deg, entries, said=(meaning_of("index_deg"), angle))]
-    sided = _LIKE.get("reference" if said.reference else "sensor" if said.sensor == 2 else said.role, "")
     if units:
-        for holds in (sided,) if sided in (READING, ANGLE) and (said.reference or said.sensor) else (ANGLE, READING):
+        for holds in (READING,) if said.sensor == _SURE else (ANGLE,) if said.reference == _SURE else (ANGLE, READING):
             yield from (statement(table, place, _rule(holds, unit)) for unit in units)
         return
     if not said.role and _unlike_next(entries):
         return
     for unit in _units_of_correction(entries, said):
-        for holds in (sided,) if sided in (ERROR, CORRECTION) else (ERROR, CORRECTION):
+        for holds in (said.role,) if said.role in (ERROR, CORRECTION) else (ERROR, CORRECTION):
             yield statement(table, place, _rule(holds, unit))
 
 

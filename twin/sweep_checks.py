@@ -105,7 +105,7 @@ def check_follows(measured: Array, reference: Array, *, name: str) -> Array:
     raise SweepError(
         f"{name}: measured_deg does not follow reference_deg (typically {distance_deg(measured, reference):.0f} deg "
         f"off, in the better counting sense; expected below {FOLLOWS_DEG:g}); "
-        "check that both columns belong to one sweep and are in degrees"
+        "check that both columns belong to one sweep and are in degrees; halltwin doctor looks for the reason"
     )
 
 

@@ -40,6 +40,7 @@ def page(found: Discovery, answer: Mapping[str, Any]) -> str:
         [
             f"<h1>What the simulation gets wrong about {name}</h1>",
             _headline(answer),
+            _setup(answer),
             _measured(answer, said, read),
             _baseline(answer, read, found),
             _changes(answer),
@@ -79,6 +80,17 @@ def _cards(cards: list[tuple[str, str, str]]) -> str:
         for name, value, unit in cards
     )
     return f'<dl class="figures">{items}</dl>'
+
+
+def _setup(answer: Mapping[str, Any]) -> str:
+    """What of the set-up has to be mended; empty where nothing has."""
+    faults = [found for found in answer["setup"] if found["level"] == "fault"]
+    items = "".join(
+        f"<li><b>{_text(found['what'])}</b>: {_text(found['evidence'])}; so {_text(found['consequence'])}. "
+        f"{_text(found['remedy'][:1].upper() + found['remedy'][1:])}.</li>"
+        for found in faults
+    )
+    return f"<h2>Set-up, to be mended first</h2><ul>{items}</ul>" if faults else ""
 
 
 def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings) -> str:

@@ -18,6 +18,8 @@ from twin.logs.names import Meaning
 
 _LARGEST_TERM = 12
 """Of pole pairs and gears: a ratio of larger whole numbers is one of counts."""
+_WHOLE_TURNS = 0.9
+"""On less of the turn an error of order 1 looks like a ratio."""
 _NEAR, _FAR = 1e-3, 0.02
 """A ratio is near a simple one within its uncertainty, but at least and at most within these shares."""
 _MOST_RADIANS = 64.0 * 2.0 * np.pi
@@ -145,7 +147,7 @@ def pole_pairs(record: Record) -> Finding | None:
     if relation is None or units(record) is not None:
         return None
     simple = _simple(relation)
-    if simple is None:
+    if simple is None or (simple.denominator > 1 and simple.numerator > 1 and relation.turns < _WHOLE_TURNS):
         return None
     p, q = simple.numerator, simple.denominator
     if q == 1:
@@ -172,7 +174,7 @@ def counts_a_turn(record: Record) -> Finding | None:
     relation = record.relation
     if relation is None or units(record) is not None or _simple(relation) is not None:
         return None
-    if relation.turns < 0.9 or relation.travel_deg.size < 24:
+    if relation.turns < _WHOLE_TURNS or relation.travel_deg.size < 24:
         return None
     opened = _open_deg(relation)
     ratio = abs(relation.ratio)

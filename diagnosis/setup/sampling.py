@@ -13,6 +13,10 @@ FEWEST_ANGLES = 12
 """Orders 0 to 4 of the error model have nine parameters, and some angles must be left to judge them by."""
 _HIGHEST_ORDER = 200
 """Teeth, slots, poles and steps of a turn make lines up to here; an alias of a higher one is not thought of."""
+_FEW_POINTS, _LOW = 100, 8
+"""Points a turn up to which any order above 4 may be another; of more, orders above the second that are near it."""
+_SHARE_OF_LINE = 0.3
+"""Share of what orders 1 to 4 leave that a line explains at least: slips and bursts have many, and no alias."""
 _SAME_DEG = 0.05
 _LEAST_LINE_DEG = 1e-3
 """Below it no sensor of angles resolves a line: the last digits of a file make such."""
@@ -22,6 +26,8 @@ _EVEN = 0.02
 _EVEN_ANGLES = 0.08
 """Share of a step by which even angles or times may scatter: so little hardly parts a line from its alias."""
 _MAINS_HZ = (50.0, 60.0, 100.0, 120.0)
+_FASTEST_HZ = 1000.0
+"""Readings a second up to which supplies, motors and vibration make lines above half of it."""
 _LEAST_GAP_DEG = 60.0
 
 
@@ -89,14 +95,9 @@ def aliased_order(record: Record) -> Finding | None:
         return None
     order, amplitude = found
     rivals = [one for one in (points - order, points + order) if one <= _HIGHEST_ORDER]
-    # Low orders are the field's own; of a fine grid the rival is far above whatever else there is.
     # A coarse word read at even angles makes lines, each below its step.
-    if (
-        not rivals
-        or order <= 8
-        or 4 * order < points
-        or amplitude < max(step_of_word(record.measured_deg), _LEAST_LINE_DEG)
-    ):
+    least = max(*map(step_of_word, record.angles), _LEAST_LINE_DEG)
+    if not rivals or amplitude < least or not _may_be_another(order, points):
         return None
     return Finding(
         kind="aliased_order",
@@ -106,6 +107,14 @@ def aliased_order(record: Record) -> Finding | None:
         consequence="a line above half the points a turn is named by the wrong order, and its cause with it",
         remedy=f"record at least {2 * max(rivals) + 8} points a turn, or at uneven angles",
     )
+
+
+def _may_be_another(order: int, points: int) -> bool:
+    """Whether a line is thought to stand for a faster one: low orders are the field's own, multiples of 4 clipping's.
+
+    Of fine grids the rival is far above whatever else there is, unless the line is near it.
+    """
+    return order % 4 != 0 if points <= _FEW_POINTS else order > _LOW and 4 * order >= points
 
 
 def step_of_word(measured_deg: Array) -> float:
@@ -138,36 +147,46 @@ def _strongest_order(shaft_rad: Array, error_deg: Array, points: int) -> tuple[i
     free = left.size - len(low) - 2
     gained = (float(np.sum(left**2)) - float(np.sum(fit.left**2))) / 2.0
     p = float(f.sf(gained / max(float(np.sum(fit.left**2)) / free, 1e-300), 2, free)) * orders.size
-    return (best, float(np.hypot(*fit.values[-2:]))) if p < FALSE_ALARM else None
+    strong = 2.0 * gained > _SHARE_OF_LINE * float(np.sum(left**2))
+    return (best, float(np.hypot(*fit.values[-2:]))) if strong and p < FALSE_ALARM else None
 
 
 def aliased_frequency(record: Record) -> Finding | None:
-    """A line in time below the mains' frequency whose alias is the mains."""
+    """A line in time that may be another above half of the sampling rate: the mains, or one near the rate."""
     relation, time = record.relation, record.column("time_s")
     if relation is None or not relation.follows or time is None or time.size < 64 or not np.isfinite(time).all():
         return None
     step = np.diff(time)
     usual = float(np.median(step))
-    if usual <= 0.0 or np.max(np.abs(step - usual)) > _EVEN * usual or 1.0 / usual > 2.0 * max(_MAINS_HZ):
+    if usual <= 0.0 or np.max(np.abs(step - usual)) > _EVEN * usual or 1.0 / usual > _FASTEST_HZ:
         return None
     rate = 1.0 / usual
     seen = _strongest_frequency(record, time - time[0], relation.error_deg, rate)
     if seen is None:
         return None
     frequency, amplitude, width = seen
+    rival = _rival(frequency, rate, width, turns_a_second=relation.turns / max(float(np.ptp(time)), 1e-12))
+    if not rival:
+        return None
+    return Finding(
+        kind="aliased_frequency",
+        level="note",
+        what=f"the line at {frequency:.3g} Hz may be {rival}",
+        evidence=f"{rate:.4g} readings a second show both alike; its amplitude is {amplitude:.3g} deg",
+        consequence="what is above half the sampling rate shows at a lower frequency, and is named by it",
+        remedy="read several times as often, or at another rate: an alias then moves",
+    )
+
+
+def _rival(frequency: float, rate: float, width: float, *, turns_a_second: float) -> str:
+    """What a line may stand for in words: the mains, or its mirror image at the sampling rate; empty for neither."""
     for mains in _MAINS_HZ:
         apparent = abs(mains - rate * round(mains / rate))
         if mains > 0.5 * rate and abs(apparent - frequency) <= 0.25 * width:
-            return Finding(
-                kind="aliased_frequency",
-                level="note",
-                what=f"the line at {frequency:.3g} Hz may be {mains:g} Hz, the mains",
-                evidence=f"{rate:.4g} readings a second show {frequency:.3g} and {mains:g} Hz alike; its amplitude is "
-                f"{amplitude:.3g} deg",
-                consequence="what is above half the sampling rate shows at a lower frequency, and is named by it",
-                remedy=f"read more than {2.2 * mains:.0f} times a second, or at another rate: an alias then moves",
-            )
-    return None
+            return f"{mains:g} Hz, the mains"
+    order = frequency / turns_a_second if turns_a_second > 0.0 else 0.5
+    of_the_turn = abs(order - round(order)) * turns_a_second <= 0.3 * width
+    return f"{rate - frequency:.3g} Hz" if frequency > 0.25 * rate and not of_the_turn else ""
 
 
 def _strongest_frequency(record: Record, time: Array, error: Array, rate: float) -> tuple[float, float, float] | None:

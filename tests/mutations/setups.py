@@ -111,8 +111,8 @@ SETUPS: tuple[Mutation, ...] = (
         _CHECKS,
         (
             "setup.every_line_is_an_alias",
-            "        or 4 * order < points\n",
-            "",
+            "return order % 4 != 0 if",
+            "return True if",
             "::test_an_alias_is_thought_of_where_there_is_one_near",
         ),
     ),

@@ -184,7 +184,9 @@ def few_points(rng: np.random.Generator) -> Bench:
 
 def alias_of_an_order(rng: np.random.Generator) -> Bench:
     points = int(rng.integers(40, 130))
-    true = int(rng.integers(int(0.55 * points), int(0.74 * points)))
+    true = int(rng.integers(int(0.55 * points), int(0.74 * points) if points > 100 else points - 5))
+    # Multiples of 4 are clipping's.
+    true += int((points - true) % 4 == 0)
     bench = draw(rng, points=points, moving=True)
     line = rng.uniform(8.0, 20.0) * bench.noise_deg * np.sin(np.radians(true * bench.shaft_deg))
     return _at(bench, bench.columns["measured_deg"] + line, rng)

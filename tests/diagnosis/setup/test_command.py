@@ -66,9 +66,10 @@ def test_explain_begins_with_what_has_to_be_mended(tmp_path: Path) -> None:
     reading[12] += 9.0
     path = tmp_path / "log.csv"
     path.write_text(csv_text({"reference_deg": shaft, "measured_deg": reading}))
-    ended = halltwin("explain", path, "--json", tmp_path / "found.json")
+    ended = halltwin("explain", path, "--json", tmp_path / "found.json", "--report", tmp_path / "report.html")
     block = ended.out.split("\n\n")[1]
     assert block.startswith("Set-up, to be mended first")
     assert "typing_error" in block
     found = json.loads((tmp_path / "found.json").read_text())["setup"]
     assert [(one["kind"], one["rows"]) for one in found] == [("typing_error", [13])]
+    assert "Set-up, to be mended first" in (tmp_path / "report.html").read_text(encoding="utf-8")

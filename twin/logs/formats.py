@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import zipfile
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -30,8 +31,8 @@ def read_format(raw: bytes, path: Path) -> Table | None:
         (raw.startswith(_HDF5) or raw[512:520] == _HDF5, "HDF5", "formats", partial(_hdf5, file=file)),
         (raw.startswith(_MATLAB), "MAT", "formats", partial(_matlab, file=file)),
         (raw.startswith(_PARQUET), "Parquet", "formats", partial(_parquet, file=file)),
-        (raw.startswith(_ZIP) and b"xl/" in raw, "XLSX", "formats", partial(_workbook, file=file)),
-        (raw.startswith(_ZIP) and b".npy" in raw, "NPZ", "formats", partial(_numpy, file=file)),
+        (_packs(raw, "xl/"), "XLSX", "formats", partial(_workbook, file=file)),
+        (_packs(raw, ".npy"), "NPZ", "formats", partial(_numpy, file=file)),
         (raw.startswith(_MDF), "MDF", "mdf", partial(read_mdf, file=file)),
         (raw.startswith(_TDMS), "TDMS", "formats", partial(read_tdms, file=file)),
         (raw.startswith(_BLF), "BLF", "bench", partial(read_blf, path=path)),
@@ -40,6 +41,18 @@ def read_format(raw: bytes, path: Path) -> Table | None:
         if fits:
             return by_library(partial(reader, io.BytesIO(raw)), word, extra=extra, file=file)
     return None
+
+
+def _packs(raw: bytes, part: str) -> bool:
+    """Whether a file is an archive of files in whose names this stands; in packed numbers any three bytes may."""
+    if not raw.startswith(_ZIP):
+        return False
+    try:
+        with zipfile.ZipFile(io.BytesIO(raw)) as archive:
+            return any(part in name for name in archive.namelist())
+    except zipfile.BadZipFile:
+        # Cut short: what is left says what it was to be, and its library why it cannot be read.
+        return part.encode() in raw
 
 
 def _workbook(raw: io.BytesIO, *, file: str) -> Table:

@@ -105,7 +105,7 @@ def test_a_wild_reading_or_two_are_no_weak_magnet() -> None:
 
 @pytest.mark.parametrize(("order", "found"), [(30, ["aliased_order"]), (12, [])])
 def test_an_alias_is_thought_of_where_there_is_one_near(order: int, found: list[str]) -> None:
-    """Of 90 points a turn order 30 may be 60 or 120, and both are within what teeth and slots make; 12 is clipping's."""
+    """Of 90 points a turn order 30 may be 60 or 120, both within what teeth and slots make; 12 is clipping's."""
     line = 0.3 * np.sin(np.radians(order * TURN_DEG))
     assert kinds(reference_deg=TURN_DEG, measured_deg=reading() + line) == found
 

@@ -151,11 +151,15 @@ def diagnose_many(
     >>> [round(one.factors["gain_ratio"].value, 3) for one in found]
     [1.01, 1.01, 1.01]
     """
+    from dataclasses import replace
+
     import numpy as np
 
     from diagnosis.blas_threads import one_blas_thread
     from diagnosis.factors.findings import placed, quantify_many
     from diagnosis.report.provenance import Provenance
+    from twin.catalogue import CATALOGUE
+    from twin.decoded import decoded
     from twin.errors import UserError
     from twin.limits import require_within
     from twin.sweep import Sweep
@@ -170,14 +174,15 @@ def diagnose_many(
     told, place = _told(output_sense, known), mounting or _mounting(known)
     wanted = list(sweeps)
     count = Count(len(wanted), progress)
-    read = [count.of("reading", done, as_sweep(sweep)) for done, sweep in enumerate(wanted, 1)]
+    each = [count.of("reading", done, decoded(as_sweep(sweep), CATALOGUE)) for done, sweep in enumerate(wanted, 1)]
+    read = [one.usable for one in each]
     if not read:
         raise UserError("found no sweep; give at least one")
     with one_blas_thread():
         band_rad = None if band_deg is None else float(np.radians(band_deg))
         place.for_sweeps(len(read))
         found = quantify_many(read, rng=rng, robust=robust, band_rad=band_rad, count=count, told=told)
-        found = placed(found, place)
+        found = [replace(one, words=told.lines) for one, told in zip(placed(found, place), each, strict=True)]
     return Diagnoses(tuple(Diagnosis(one, made) for one in found), made)
 
 

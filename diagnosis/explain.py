@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from diagnosis.discovery.watch import Watch
     from diagnosis.factors.mounting import Mounting
     from twin.chain import Chain
-    from twin.effect import Effect
+    from twin.effect import BoolArray, Effect, Parameters
     from twin.sweep import Sweep
 
 OwnEffects: TypeAlias = "str | os.PathLike[str] | Effect | Sequence[str | os.PathLike[str] | Effect]"
@@ -180,14 +180,10 @@ def _begun(
     """Where the search sets out from: the fitted error model, or a given twin."""
     from dataclasses import replace
 
-    import numpy as np
-
-    from diagnosis.discovery.fitting.initial_fit import senses_of_channels
     from diagnosis.discovery.fitting.subsample import searched_part
     from diagnosis.discovery.marks.words import read_words
     from diagnosis.discovery.settings import DiscoverySettings
     from diagnosis.discovery.state import State
-    from diagnosis.error_model.fit import fit_baseline
     from diagnosis.joining import joined
 
     parts = sweeps if len(sweeps) > 1 else [searched_part(sweeps[0])]
@@ -205,17 +201,42 @@ def _begun(
         state = State.of(sweep, given, given=given, settings=settings, rng=rng)
         return state.with_(suspects=read.lost, **in_words)
     watch.told("error_model", ())
+    model, suspects, begun = _error_model(sweep, read.lost, start, rng)
+    state = State.of(sweep, model, settings=settings, rng=rng)
+    return state.with_(suspects=suspects | read.lost, begun=begun, **in_words)
+
+
+def _error_model(
+    sweep: Sweep, lost: BoolArray, start: Chain, rng: np.random.Generator
+) -> tuple[Chain, BoolArray, dict[str, Parameters]]:
+    """The fitted error model, the rows (n,) that its robust fit left out, and the effects that the words tell beside.
+
+    ``lost`` (n,) masks readings that say nothing of the angle.
+    """
+    from dataclasses import replace
+
+    import numpy as np
+
+    from diagnosis.discovery.fitting.initial_fit import senses_of_channels
+    from diagnosis.error_model.fit import fit_baseline
+    from twin.decoded import begun_by_words
+
+    told = begun_by_words(sweep, lost, start.effects)
+    plain = [np.radians(sweep.measured_deg), *(fault.decoded for _, fault in told)][-1]
     fit = fit_baseline(
         np.radians(sweep.reference_deg),
-        np.radians(sweep.measured_deg),
+        plain,
         rng=rng,
-        weights=(~read.lost).astype(np.float64) if read.lost.any() else None,
+        weights=(~lost).astype(np.float64) if lost.any() else None,
         senses=senses_of_channels(sweep),
         robust=True,
     )
-    model = replace(fit.chain(), effects=start.effects, magnet=start.magnet)
-    state = State.of(sweep, model, settings=settings, rng=rng)
-    return state.with_(suspects=fit.outliers | read.lost, **in_words)
+    begun = {
+        name if not number else f"{name}#{number + 1}": values
+        for name, fault in told
+        for number, values in enumerate((fault.values, *fault.also))
+    }
+    return replace(fit.chain(), effects=start.effects, magnet=start.magnet), fit.outliers, begun
 
 
 def _start(effects: tuple[Effect, ...], mounting: Mounting | None, given: Chain | None) -> Chain:

@@ -10,7 +10,7 @@ import numpy as np
 from twin.angles import TAU, Array, radians, wrap
 from twin.effect import BoolArray, Effect
 from twin.sweep import Sweep
-from twin.words import LIMIT_LOG_P, WordFault, Words, faults_of
+from twin.words import LIMIT_LOG_P, InWords, WordFault, Words, faults_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,13 +19,36 @@ class Decoded:
 
     ``sweep`` holds the readings told back, and where nothing is left of one what is expected there; ``lost`` (n,) masks
     the latter. ``faults`` are those that were found, each with the key of its instance; ``off_rad`` is the RMS of what
-    each did to the readings that it touched.
+    each did to the readings that it touched, and ``said`` tells it in words.
     """
 
     sweep: Sweep
     lost: BoolArray
-    faults: tuple[tuple[str, WordFault], ...]
-    off_rad: tuple[float, ...]
+    faults: tuple[tuple[str, WordFault], ...] = ()
+    off_rad: tuple[float, ...] = ()
+    said: tuple[str, ...] = ()
+
+    @property
+    def usable(self) -> Sweep:
+        """The recording without the rows of which nothing is left: these are rejected, with the reason."""
+        if not self.lost.any():
+            return self.sweep
+        reasons: dict[int, str] = {}
+        for (_, fault), words in zip(self.faults, self.said, strict=True):
+            reasons.update(dict.fromkeys(self.sweep.numbers[fault.lost].tolist(), words))
+        part = self.sweep.part(np.flatnonzero(~self.lost))
+        rejected = dict(sorted({**self.sweep.rejected, **reasons}.items()))
+        return replace(part, rejected=rejected, set_aside=self.sweep.set_aside)
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """A sentence for each fault whose readings are told back, as no rejected row tells of it."""
+        told = zip(self.faults, self.said, strict=True)
+        return tuple(
+            f"{self.sweep.name}: {words}; {np.count_nonzero(fault.touched)} readings are told back"
+            for (_, fault), words in told
+            if not fault.lost.any()
+        )
 
 
 def decoded(sweep: Sweep, effects: Iterable[Effect], *, limit_log_p: float = LIMIT_LOG_P) -> Decoded:
@@ -45,13 +68,13 @@ def decoded(sweep: Sweep, effects: Iterable[Effect], *, limit_log_p: float = LIM
     Decoded
         The very same sweep where no fault is found.
     """
-    finders = {effect.name: effect.in_words for effect in effects if effect.in_words is not None}
+    finders = finders_of(effects)
     lost = np.zeros(len(sweep), dtype=bool)
     measured = radians(sweep.measured_deg)
     words = Words(radians(sweep.reference_deg), measured, ~lost)
     found = faults_of(words, finders, limit_log_p) if finders else ()
     if not found:
-        return Decoded(sweep, lost, (), ())
+        return Decoded(sweep, lost)
     for _, fault in found:
         words, lost = words.without(fault), lost | fault.lost
     expected = np.round(words.expected.angle / words.step) * words.step
@@ -60,7 +83,32 @@ def decoded(sweep: Sweep, effects: Iterable[Effect], *, limit_log_p: float = LIM
     # Readings that no fault touched keep the digits of the file.
     changed = np.abs(wrap(told - measured)) > 1e-9
     read = np.where(changed, np.degrees(told % TAU), sweep.measured_deg)
-    return Decoded(replace(sweep, measured_deg=read), lost, _numbered(found), off)
+    said = tuple(f"{name}: {finders[name].said(fault.values)}" for name, fault in found)
+    return Decoded(replace(sweep, measured_deg=read), lost, _numbered(found), off, said)
+
+
+def begun_by_words(sweep: Sweep, lost: BoolArray, effects: Iterable[Effect]) -> tuple[tuple[str, WordFault], ...]:
+    """What the words tell of effects on every reading, by name: where a fit sets out from.
+
+    ``lost`` (n,) masks readings that say nothing.
+    """
+    motion = sweep.motion()
+    words = Words(radians(sweep.reference_deg), radians(sweep.measured_deg), ~lost, motion)
+    told = []
+    for effect in effects:
+        if effect.in_words is None or effect.footprint != "mean" or not effect.visible_in(motion.provides):
+            continue
+        fault = effect.in_words.find(words)
+        if fault is not None:
+            told.append((effect.name, fault))
+            words = words.without(fault)
+    return tuple(told)
+
+
+def finders_of(effects: Iterable[Effect]) -> dict[str, InWords]:
+    """The effects whose faults are taken off the words, by name, with how these tell them."""
+    found = ((effect.name, effect.in_words) for effect in effects if effect.footprint == "sequence")
+    return {name: way for name, way in found if way is not None}
 
 
 def _numbered(found: Iterable[tuple[str, WordFault]]) -> tuple[tuple[str, WordFault], ...]:

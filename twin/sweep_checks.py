@@ -143,7 +143,7 @@ def _without_faults_of_words(measured: Array, reference: Array) -> Array | None:
     from twin.words import LIMIT_LOG_P, Words, faults_of
 
     words = Words(radians(reference), radians(measured), np.ones(measured.size, dtype=bool))
-    finders = {effect.name: effect.in_words for effect in CATALOGUE if effect.in_words is not None}
+    finders = {e.name: e.in_words for e in CATALOGUE if e.in_words is not None and e.footprint == "sequence"}
     found = faults_of(words, finders, LIMIT_LOG_P)
     for _, fault in found:
         words = words.without(fault)

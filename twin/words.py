@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Protocol
@@ -11,6 +11,7 @@ import numpy as np
 
 from twin.angles import TAU, Array, IntArray, wrap
 from twin.found_by import BoolArray
+from twin.motion import Motion
 
 ORDERS = 2
 """Orders of the error that are expected of any sensor: offset and gain, see the paper's error model."""
@@ -38,13 +39,14 @@ class Expected:
     """What a smooth error leads one to expect: the angle (n,) [rad], its robust standard deviation [rad].
 
     ``chosen`` (n,) [rad] is of each reading's candidates the one nearest to it; ``residual`` (n,) what that is off by.
-    ``zero`` [rad] is what the reference's zero reads.
+    ``zero`` [rad] is what the reference's zero reads, ``sense`` in which of the two senses they count together.
     """
 
     angle: Array
     chosen: Array
     sigma: float
     zero: float
+    sense: float
 
     @property
     def residual(self) -> Array:
@@ -59,11 +61,15 @@ class Expected:
 
 @dataclass(frozen=True, eq=False)
 class Words:
-    """Readings (n,) [rad] with the reference's (n,) [rad]; ``usable`` masks those that a fault has claimed already."""
+    """Readings (n,) [rad] with the reference's (n,) [rad]; ``usable`` masks those that a fault has claimed already.
+
+    ``motion``, where it is known: the conditions of each reading.
+    """
 
     reference: Array
     measured: Array
     usable: BoolArray
+    motion: Motion | None = None
 
     def __len__(self) -> int:
         return int(self.measured.size)
@@ -107,7 +113,7 @@ class Words:
         """
         sense, zero = _sense_and_zero(self.reference, candidates[:, self.usable], self.usable)
         turn = sense * self.reference + zero
-        columns = _columns(self.reference, ORDERS if self.usable.sum() >= 12 else 1)
+        columns = of_orders(self.reference, ORDERS if self.usable.sum() >= 12 else 1)
         curve, limit = np.zeros(len(self)), float(_NEAR_RAD)
         sigma, chosen = limit, candidates[0]
         for _ in range(_PASSES):
@@ -123,7 +129,7 @@ class Words:
             sigma = float(_MAD * np.median(left[kept]) * np.sqrt(freedom))
             sigma = max(sigma, self.step / np.sqrt(12.0))
             limit = min(float(_NEAR_RAD), _TRIMMED * sigma)
-        return Expected(wrap(turn + curve), _nearest(candidates, turn + curve), sigma, zero)
+        return Expected(wrap(turn + curve), _nearest(candidates, turn + curve), sigma, zero, sense)
 
     @property
     def follow(self) -> bool:
@@ -150,6 +156,8 @@ class WordFault:
         Readings (n,) that it changed, and those of them that say nothing of the angle any more.
     decoded : ndarray
         The readings (n,) [rad] as they would be without it, where that can be told.
+    also : tuple
+        Parameters of further instances that were told together with the first.
     """
 
     values: Mapping[str, float]
@@ -158,6 +166,7 @@ class WordFault:
     lost: BoolArray
     decoded: Array
     intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    also: tuple[Mapping[str, float], ...] = ()
 
 
 class FindInWords(Protocol):
@@ -170,11 +179,12 @@ class FindInWords(Protocol):
 class InWords:
     """How a fault of the link is told by the words themselves.
 
-    ``rows_listed``: whether the answer names each reading that it touched. ``several``: whether there may be more of
-    them in one sweep.
+    ``said`` puts a fault's parameters into words. ``rows_listed``: whether the answer names each reading that it
+    touched. ``several``: whether there may be more of them in one sweep.
     """
 
     find: FindInWords
+    said: Callable[[Mapping[str, float]], str]
     rows_listed: bool = False
     several: bool = False
 
@@ -210,7 +220,12 @@ def _nearest(candidates: Array, angle: Array) -> Array:
     return np.asarray(candidates[np.argmin(off, axis=0), np.arange(candidates.shape[1])])
 
 
-def _columns(reference: Array, orders: int) -> Array:
+def noise_of(left: Array) -> float:
+    """RMS of the noise in what is left (n,) in the order of the readings, by its second differences."""
+    return float(_MAD * np.median(np.abs(np.diff(left, 2)))) / float(np.sqrt(6.0)) if left.size > 2 else 0.0
+
+
+def of_orders(reference: Array, orders: int) -> Array:
     """Constant, cosines and sines (n, 1 + 2 orders) of the shaft angle."""
     turns = np.multiply.outer(reference, np.arange(1, orders + 1))
     return np.concatenate([np.ones((reference.size, 1)), np.cos(turns), np.sin(turns)], axis=1)

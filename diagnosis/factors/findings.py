@@ -48,6 +48,8 @@ class Findings:
     """Air gap of this sweep; None: the one of the mounting."""
     band: BandCheck | None = None
     """What the discard rule did, where a band was given."""
+    words: tuple[str, ...] = ()
+    """Faults of the link that were taken off the readings, in words."""
 
     def __repr__(self) -> str:
         return f"Findings({self.sweep.name!r}, {self.fit!r})"
@@ -67,7 +69,13 @@ class Findings:
         """What can and cannot be known, and what the channels added."""
         channels_say = () if self.added is None else self.added.sentences
         repeated = () if self.repeated is None else (self.repeated,)
-        return self.identifiability.sentences + said_of_the_mirror_solution(self.mirror) + channels_say + repeated
+        return (
+            self.words
+            + self.identifiability.sentences
+            + said_of_the_mirror_solution(self.mirror)
+            + channels_say
+            + repeated
+        )
 
     @property
     def glitch_rows(self) -> tuple[int, ...]:

@@ -14,7 +14,7 @@ from scenarios.commands.compensate_judge import Judged, held_out, on_others, row
 from scenarios.commands.compensate_source import Readings, readings_of
 from scenarios.commands.compensate_table import table, temperatures_c
 from scenarios.commands.compensate_text import made_of, show
-from scenarios.commands.correction_sources import files_of, is_one_twin, read_files, rejected_lines
+from scenarios.commands.correction_sources import files_of, is_one_twin, read_files, rejected_lines, sound
 from scenarios.commands.fail_on import COMPENSATE, asked
 from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels
 from scenarios.commands.intervals import interval
@@ -85,7 +85,8 @@ def run(
     checked_on, paths = check.paths(), [Path(sources[0])] if of_twin else files_of(sources)
     files = _files(outputs, inputs=[*paths, *checked_on, *effect_files])
     others = check.read(checked_on)
-    given = SweepsRead(()) if of_twin else read_files(paths, check)
+    given, faults = sound(SweepsRead(()) if of_twin else read_files(paths, check), effects)
+    others, _ = sound(others, effects)
     check_panels(outputs.plot, len(others.sweeps) if checked_on or of_twin else 1)
     readings = None if of_twin else readings_of(given.sweeps, tolerance_deg=tolerance_deg, seed=seed)
     correction = _of_twin(twin, low_c, high_c, tolerance_deg) if readings is None else readings.correction
@@ -93,7 +94,7 @@ def run(
     source = shown_name(paths[0]) if len(paths) == 1 else f"{len(given.sweeps)} sweeps"
     rows = rows_of(judged, other=bool(checked_on))
     show(made_of(readings, source, tolerance_deg), correction, [(one.name, one.found) for one in rows])
-    for line in (*rejected_lines(others), *given.lines, *others.lines):
+    for line in (*faults, *rejected_lines(others), *given.lines, *others.lines):
         print(line)
     shown = [one.without_zeros() for one in judged] if checked_on else judged
     _write(files, outputs, correction, source=source, judged=shown, readings=readings, tolerance_deg=tolerance_deg)

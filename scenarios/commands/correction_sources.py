@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from diagnosis.report.row_counts import counts_of, rejected_words
 from scenarios.commands.inputs import SweepFiles, SweepsRead, sweep_paths
+from twin.decoded import decoded
+from twin.effect import Effect
 from twin.errors import UserError
 from twin.presets import is_twin
 from twin.shown_name import shown_name
@@ -33,6 +36,12 @@ def files_of(sources: Sequence[str | Path]) -> list[Path]:
 def read_files(paths: Sequence[Path], how: SweepFiles) -> SweepsRead:
     """The sweeps, read as those that the correction is checked on."""
     return SweepsRead((how.read_one(paths[0]),)) if len(paths) == 1 else how.read(paths)
+
+
+def sound(read: SweepsRead, effects: Sequence[Effect]) -> tuple[SweepsRead, list[str]]:
+    """The sweeps without the faults of their words, and what is said of readings that were told back."""
+    each = [decoded(sweep, effects) for sweep in read.sweeps]
+    return replace(read, sweeps=tuple(one.usable for one in each)), [line for one in each for line in one.lines]
 
 
 def rejected_lines(others: SweepsRead) -> list[str]:

@@ -11,7 +11,7 @@ from diagnosis.report.provenance import Provenance
 from scenarios.commands.compensate_judge import Judged, rows_of, say_where_worse
 from scenarios.commands.compensate_source import readings_of
 from scenarios.commands.compensate_text import made_of
-from scenarios.commands.correction_sources import files_of, is_one_twin, read_files, rejected_lines
+from scenarios.commands.correction_sources import files_of, is_one_twin, read_files, rejected_lines, sound
 from scenarios.commands.export_made import TOLERANCE_DEG, Asked, Source, exported
 from scenarios.commands.export_text import about, show, to_dict
 from scenarios.commands.fail_on import EXPORT, asked
@@ -60,13 +60,14 @@ def run(
     files = OutputFiles.checked(given_files, inputs=inputs, force=outputs.force)
     others = check.read(checked_on)
     check_panels(outputs.plot, len(others.sweeps) if checked_on else 1)
-    given = SweepsRead(()) if of_a_twin else read_files(paths, check)
+    given, faults = sound(SweepsRead(()) if of_a_twin else read_files(paths, check), effects)
+    others, _ = sound(others, effects)
     source = _source(sources, given, paths, effects=effects, temperature_c=wish.temperature_c, seed=seed)
     made = exported(wish, source, others, seed=seed)
     provenance = Provenance.today(seed=seed, command=command)
     rows = rows_of(made.judged, other=bool(checked_on))
     show(made, made_of(source.readings, source.name, TOLERANCE_DEG), [(one.name, one.found) for one in rows])
-    for line in (*rejected_lines(others), *given.lines, *others.lines):
+    for line in (*faults, *rejected_lines(others), *given.lines, *others.lines):
         print(line)
     files.write(
         {

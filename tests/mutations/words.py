@@ -85,4 +85,32 @@ WORDS = (
         "word = np.mod(signal + 1.0, TAU)",
         ("tests/contract/test_effects.py::test_leading_signature",),
     ),
+    Mutation(
+        "scale_error.the_search_sets_out_without_it",
+        "diagnosis/discovery/stages/initial_fit.py",
+        "if not state.begun:",
+        "if True:",
+        (f"{_ANSWERS}::test_a_scale_is_told_with_its_interval",),
+    ),
+    Mutation(
+        "index_slip.jumps_stay_where_each_was_best_alone",
+        "twin/reference/index_slip.py",
+        "for place in range(len(jumps)) if len(jumps) > 1 else ():",
+        "for place in ():",
+        (f"{_ANSWERS}::test_two_slips_are_told_with_their_instants",),
+    ),
+    Mutation(
+        "quantisation.any_grid_is_rounding",
+        "diagnosis/discovery/stages/quantisation.py",
+        "if state.bits is not None and not rounded(state.fit, state.sweep, state.step):",
+        "if False:",
+        (f"{_ANSWERS}::test_the_index_of_a_table_is_no_quantiser",),
+    ),
+    Mutation(
+        "row_masks.gross_errors_of_few_come_back",
+        "diagnosis/discovery/marks/row_masks.py",
+        "mask |= gross_of_few(fit)",
+        "pass",
+        (f"{_ANSWERS}::test_a_typing_error_of_a_small_table_is_named_as_its_row",),
+    ),
 )

@@ -86,6 +86,12 @@ def _fault(
     return WordFault(values, log_p, low | high, near, words.measured, within)
 
 
+def said(values: Mapping[str, float]) -> str:
+    """Which angles are never read."""
+    start, width = values["start_deg"], values["width_deg"]
+    return f"no angle from {start:.2f} to {(start + width) % 360.0:.2f} deg is ever read, its edges stand for it"
+
+
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
     """A few degrees anywhere: the error is half of that, whatever the strength."""
     return {
@@ -118,7 +124,7 @@ DEAD_ZONE = Effect(
     },
     forward=forward,
     footprint="sequence",
-    in_words=InWords(find=find),
+    in_words=InWords(find=find, said=said),
     drawing=drawing,
     needs=frozenset({"one turn"}),
     source="dead band about the end of the range, as of an analogue or PWM output that clamps at its ends: e.g. "

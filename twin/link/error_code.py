@@ -93,6 +93,13 @@ def _fault(words: Words, log_p: float, touched: BoolArray) -> WordFault:
     return WordFault(values, log_p, touched, touched, words.measured, within)
 
 
+def said(values: Mapping[str, float]) -> str:
+    """What stands in the place of the readings."""
+    word, reading = derived(values).get("word"), f"{values['reading_deg']:.6g} deg"
+    fixed = f"the word {word[0]:.0f} ({reading})" if word is not None else reading
+    return f"{fixed} stands in the place of the angle"
+
+
 def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
     """The word as a number, where its length is known."""
     bits = int(np.ravel(values.get("word_bits", 0))[0])
@@ -135,7 +142,7 @@ ERROR_CODE = Effect(
     },
     forward=forward,
     footprint="sequence",
-    in_words=InWords(find=find, rows_listed=True, several=True),
+    in_words=InWords(find=find, said=said, rows_listed=True, several=True),
     repeatable=True,
     drawing=drawing,
     derived=derived,

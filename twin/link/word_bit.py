@@ -168,6 +168,13 @@ def _fault(words: Words, fault: Fault, bit: int, expected: Expected, log_p: floa
     return WordFault(values, log_p, touched & words.usable, np.zeros(len(words), dtype=bool), decoded)
 
 
+def said(values: Mapping[str, float]) -> str:
+    """What the bit does."""
+    bit, into = int(values["bit"]), int(values["into"])
+    does = f"counts as bit {bit + into}" if into else f"is stuck at {values['level']:.0f}"
+    return f"bit {bit} of the {values['word_bits']:.0f}-bit word {does}"
+
+
 def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
     """What the bit is worth."""
     bit, length = (float(np.ravel(values[name])[0]) for name in ("bit", "word_bits"))
@@ -201,7 +208,7 @@ WORD_BIT = Effect(
     },
     forward=forward,
     footprint="sequence",
-    in_words=InWords(find=find),
+    in_words=InWords(find=find, said=said),
     drawing=drawing,
     derived=derived,
     source="stuck-at fault of a line or register bit: M. Abramovici, M. Breuer, A. Friedman, Digital Systems Testing "

@@ -12,6 +12,7 @@ from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.noise.rounding import coarsest_stair
 from diagnosis.discovery.marks.outliers import local_rms
+from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.marks.stairs import reblurred, without_stairs
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import TAU, Array
@@ -37,6 +38,23 @@ def grid_bits(measured: Array, settings: DiscoverySettings) -> int | None:
         if any(off < digits < step / 12.0 for digits in (np.radians(1.2e-6), np.radians(6e-4))):
             return bits
     return None
+
+
+def rounded(fit: Fit, sweep: Sweep, step: float) -> bool:
+    """Whether the readings may have come to lie on their grid of ``step`` [rad] by rounding.
+
+    Rounding leaves each off by anything up to half a step; that all lie much nearer to a smooth error has the
+    probability of that share, to the power of the independent readings. Then they were chosen, as the index of a table
+    is, or the bench stood at the middle of the codes: neither says anything of a word's length.
+    """
+    if sweep.reading_grid_deg is not None:
+        return False
+    off = np.abs(raw_residual(fit, sweep))[fit.observations.usable[fit.observations.group]]
+    freedom = min(off.size, fit.rows) - len(fit.free)
+    if freedom <= 0:
+        return True
+    share = 2.0 * float(np.max(off)) / step
+    return bool(freedom * np.log(max(share, 1e-12)) > fit.settings.footprint_log_p)
 
 
 def finite_set(

@@ -27,6 +27,7 @@ def mask_spikes(fit: Fit, step: float, also: BoolArray) -> Fit:
     settings, motion = fit.settings, fit.observations.motion
     for _ in range(_PASSES):
         mask = spikes(fit.residual[0] / fit.observations.level, motion, max(step, coarsest_stair(fit.chain)), settings)
+        mask |= gross_of_few(fit)
         usable = ~mask & fit.observations.sure & ~rows_of(fit.observations, also)
         if fit.observations.observables == 2:
             # Channels that fall out say nothing true about the radius: alone for a reading, or by more than any cause
@@ -40,6 +41,30 @@ def mask_spikes(fit: Fit, step: float, also: BoolArray) -> Fit:
             break
         fit = solve(evaluate(fit.chain, fit.free, fit.observations.masked(usable), fit.weighting))
     return fit
+
+
+def gross_of_few(fit: Fit) -> BoolArray:
+    """Which rows (n,) that a short record's fit was made without are no readings of the same noise.
+
+    So few rows do not tell their scatter robustly, but the fit without a row tells what that should read: the deleted
+    residual follows Student's t (R. D. Cook, S. Weisberg, Residuals and Influence in Regression, 1982, section 2.2).
+    The row may be any of all (Bonferroni).
+    """
+    from scipy.special import stdtrit
+
+    observations = fit.observations
+    out = np.asarray(~observations.usable & observations.sure)
+    n = len(observations)
+    if n >= fit.settings.spike_few or not out.any() or fit.rows <= len(fit.free):
+        return np.zeros(n, dtype=bool)
+    row_slopes = fit.jacobian[:, 0, out]
+    variance = fit.variance + np.einsum("pn,pq,qn->n", row_slopes, fit.covariance(), row_slopes)
+    chance = float(np.exp(fit.settings.footprint_log_p)) / n
+    limit = float(stdtrit(fit.rows - len(fit.free), 1.0 - 0.5 * chance))
+    far = np.zeros(n, dtype=bool)
+    # Where the other rows do not tell what this one should read, its variance is infinite.
+    far[out] = np.abs(fit.residual[0][out]) > limit * np.sqrt(np.nan_to_num(variance, nan=np.inf))
+    return far
 
 
 def rows_of(observations: Observations, raw: BoolArray) -> BoolArray:

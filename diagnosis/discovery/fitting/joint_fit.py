@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -112,11 +113,6 @@ class Fit:
         return cost_of(self) / self.freedom
 
     @property
-    def squares_of_readings(self) -> float:
-        """Sum of the readings' whitened squared residuals, without what the priors add."""
-        return cost_of(self) - float(np.sum(self.prior_residual**2))
-
-    @property
     def squares_to_first_order(self) -> float:
         """Sum of the whitened squares that would be left were the chain linear in the free parameters."""
         left = projected(*self.whitened())
@@ -214,9 +210,7 @@ def evaluate(
         basis = np.linalg.qr(np.stack(nuisance).T)[0].T
         residual[1] -= (residual[1] @ basis.T) @ basis
         jacobian[:, 1] -= (jacobian[:, 1] @ basis.T) @ basis
-    if strengths is None:
-        strengths = _prior_strengths(chain, free, _noise_rms(residual[0], observations, weighting))
-    return Fit(
+    fit = Fit(
         chain=chain,
         free=free,
         observations=observations,
@@ -226,8 +220,9 @@ def evaluate(
         jacobian=jacobian,
         cosine_residual=observables_to_cosine(observations, residual),
         cosine_jacobian=observables_to_cosine(observations, jacobian),
-        strengths=strengths,
+        strengths=np.zeros(len(free)) if strengths is None else strengths,
     )
+    return fit if strengths is not None else replace(fit, strengths=_prior_strengths(fit))
 
 
 def radius_nuisance(observations: Observations) -> list[Array]:
@@ -241,12 +236,7 @@ def radius_nuisance(observations: Observations) -> list[Array]:
     return columns
 
 
-def _noise_rms(residual: Array, observations: Observations, weighting: Weighting) -> float:
-    """RMS [rad] of the noise: of what the readings are off by, and of what planned ones will be off by beside that."""
-    return float(np.hypot(np.sqrt(np.mean(residual[observations.usable] ** 2)), weighting.to_come_rad))
-
-
-def _prior_strengths(chain: Chain, free: tuple[Free, ...], unit: float) -> Array:
+def _prior_strengths(fit: Fit) -> Array:
     """How firmly each free parameter (P,) is held by what is known before the sweep, in units of the residual's RMS.
 
     Per-turn zeros scatter: each is held by the scatter of all. This makes them a random effect, so that an effect
@@ -255,13 +245,31 @@ def _prior_strengths(chain: Chain, free: tuple[Free, ...], unit: float) -> Array
     where nothing is, about where it stands: then it goes where the readings send it, and what they do not tell has a
     finite interval. 0: anything goes.
     """
+    chain, free, observations = fit.chain, fit.free, fit.observations
     params = [find(f.key, chain.effects).params[f.name] for f in free]
-    turns = [k for k, f in enumerate(free) if f.turn is not None]
-    # Whitened residuals are in radians: a prior of one sigma counts as one RMS of the noise, the unit.
+    # Whitened residuals are in radians: a prior of one sigma counts as one RMS of the noise, the unit. Noise is what
+    # the readings are off by, and what planned ones will be off by beside that.
+    rms = np.sqrt(np.mean(fit.residual[0][observations.usable] ** 2))
+    unit = float(np.hypot(rms, fit.weighting.to_come_rad))
     strengths = np.array([unit / param.prior_sd if param.prior_sd > 0.0 else 0.0 for param in params])
-    zeros = from_centre(chain, free)[turns]
-    strengths[turns] = unit / max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
+    turns = [place for place, f in enumerate(free) if f.turn is not None]
+    if turns:
+        strengths[turns] = unit / _scatter(fit, turns, unit)
     return strengths
+
+
+def _scatter(fit: Fit, turns: Sequence[int], unit: float) -> float:
+    """Standard deviation of the turns' zeros: that of their estimates, and what these are uncertain by.
+
+    A step of expectation maximisation. Without the second part, estimates drawn towards zero would draw themselves
+    ever closer.
+    """
+    zeros = from_centre(fit.chain, fit.free)[turns]
+    spread = max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
+    root = root_weights(fit.weighting, fit.observations.observables)
+    told = np.sum((fit.cosine_jacobian[turns] * root) ** 2, axis=(1, 2))
+    held = np.where(fit.strengths[turns] > 0.0, fit.strengths[turns], unit / spread)
+    return float(np.hypot(spread, np.sqrt(np.mean(unit**2 / (told + held**2)))))
 
 
 def from_centre(chain: Chain, free: tuple[Free, ...]) -> Array:
@@ -319,8 +327,7 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
         gained = cost - new_cost
         share = gained / max(float(step @ (2.0 * gradient - normal @ step)), 1e-300)
         damping *= eased(share)
-        noise_rms = _noise_rms(trial.residual[0], fit.observations, fit.weighting)
-        fit = replace(trial, strengths=_prior_strengths(trial.chain, fit.free, noise_rms))
+        fit = replace(trial, strengths=_prior_strengths(trial))
         cost = cost_of(fit)
         if moved < tolerance * sigma or gained < SMALL_GAIN * sigma**2:
             break

@@ -9,20 +9,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.discovery.finding import Finding
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.proof.bootstrap import noise_of
 from diagnosis.discovery.proof.cross_validation import folds, held_out_residuals, rms_deg, scattered
 from diagnosis.discovery.proof.family_wise import FamilyWise, family_wise
+from diagnosis.discovery.proof.order import by_turn, is_strength
 from diagnosis.discovery.search.likelihood_ratio import drop, settle, take_out
+from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.rivals import Judged, judge
 from twin.angles import Array, IntArray
-from twin.catalogue import base_name, find, output_grid
+from twin.catalogue import base_name, output_grid
 from twin.effect import Effect
 
 
 @dataclass(frozen=True, eq=False)
 class Proof:
-    """The causes of a fit, strongest first, and what each gains on held-out readings.
+    """The causes of a fit, the most telling first, and what each gains on held-out readings.
 
     ``fold`` (n,) is that of each row, ``held`` the held-out residuals (n,) [rad] of the baseline and after each cause,
     ``weighed_deg`` their RMS with the rows weighed by their noise; ``family`` calibrates the probabilities, where any
@@ -40,14 +42,31 @@ class Proof:
 
     @property
     def ordered(self) -> tuple[str, ...]:
-        """Keys of the causes, strongest first."""
+        """Keys of the causes, the most telling first."""
         return tuple(cause.key for cause in self.causes)
 
     def by_chance(self, cause: Judged) -> float:
-        """Log of the family-wise probability of a cause: calibrated, or the F test's where that leaves no doubt."""
+        """Log of the family-wise probability of a cause: calibrated, or the F test's where that leaves no doubt.
+
+        What could not be told from it has been searched for too: the least likely of them by chance tells for all.
+        """
+        own = self._family_log_p(cause.key, cause.log_p)
+        if own <= self.fit.settings.footprint_log_p:
+            return own
+        searched = {effect.name for effect in self.effects}
+        rivals = {name: fit for name, fit in cause.rivals.items() if name in searched}
+        return min((own, *(self._rivals_log_p(name, fit) for name, fit in rivals.items())))
+
+    def _rivals_log_p(self, name: str, fit: Fit) -> float:
+        """That of a rival, in the fit with it in the place of a cause."""
+        key = next(key for key in fit.chain.values if base_name(key) == name and key not in self.fit.chain.values)
+        return self._family_log_p(name, Removal.of(fit, key).log_p)
+
+    def _family_log_p(self, name: str, log_p: float) -> float:
+        """Log probability that any of the effects reaches what has the log probability ``log_p`` by itself."""
         if self.family is None:
-            return cause.log_p + float(np.log(max(len(self.effects), 1)))
-        return self.family.log_p(base_name(cause.key), cause.log_p)
+            return log_p + float(np.log(max(len(self.effects), 1)))
+        return self.family.log_p(base_name(name), log_p)
 
     def entries(self) -> tuple[Finding, ...]:
         """The causes as entries of the answer, with their held-out figures over all rows in use."""
@@ -94,7 +113,8 @@ def prove(
     """
     views = _views(fit, effects) if keys else []
     others = () if at_once else effects
-    causes = sorted((_judged(views, key, others, keys) for key in keys), key=lambda cause: -cause.gain)
+    judged = [_judged(views, key, others, keys) for key in keys]
+    causes = [judged[place] for place in by_turn(fit, [(cause.key,) for cause in judged])]
     ordered = [cause.key for cause in causes]
     fold = folds(fit, ordered)
     narrow = [cause for cause in causes if least_seen(fit, [cause.key], fold) < fit.settings.heldout_seen]
@@ -135,15 +155,11 @@ def least_seen(fit: Fit, keys: Sequence[str], fold: IntArray) -> float:
 
     A shape that the rows left do not tell, as a memory after the only reversal, leaves the strength to be proven.
     """
-    columns = fit.jacobian[[free.key in keys and _strength(fit, free) for free in fit.free]]
+    columns = fit.jacobian[[free.key in keys and is_strength(fit, free) for free in fit.free]]
     squares = np.sum(np.where(fit.observations.usable, columns, 0.0) ** 2, axis=1)
     squares = squares[np.any(squares > 0.0, axis=1)]
     inside = np.stack([squares[:, fold == number].sum(axis=1) for number in np.unique(fold)])
     return float(np.min(1.0 - inside / squares.sum(axis=1), initial=1.0))
-
-
-def _strength(fit: Fit, free: Free) -> bool:
-    return find(free.key, fit.chain.effects).params[free.name].role in ("strength", "level", "per turn")
 
 
 def _calibrated(

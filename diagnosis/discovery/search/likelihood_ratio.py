@@ -34,7 +34,12 @@ def likelihood(fit: Fit, members: tuple[int, ...] | None = None) -> float:
     return max(_likelihoods(fit, members or fit.weighting.plausible).values())
 
 
-def _likelihoods(fit: Fit, members: Sequence[int]) -> dict[int, float]:
+def likelihood_of_readings(fit: Fit) -> float:
+    """The same without what is known of the parameters before the sweep, but for the scatter of draws."""
+    return max(_likelihoods(fit, fit.weighting.plausible, of_readings=True).values())
+
+
+def _likelihoods(fit: Fit, members: Sequence[int], *, of_readings: bool = False) -> dict[int, float]:
     """The same by family member."""
     family = fit.weighting.family
     effects = [find(free.key, fit.chain.effects) for free in fit.free]
@@ -44,11 +49,13 @@ def _likelihoods(fit: Fit, members: Sequence[int]) -> dict[int, float]:
     dof = fit.rows * fit.observations.observables - len(base)
     prior = float(np.sum(np.log(fit.strengths[drawn]))) if drawn else 0.0
     cost = family.cost(fit.rows)
+    known = np.flatnonzero(fit.strengths > 0.0)
+    before = float(np.sum(fit.prior_residual[~np.isin(known, drawn)] ** 2)) if of_readings else 0.0
     found = {}
     for member in members:
         r, j = fit.whitened(member)
         _, log_det = np.linalg.slogdet(j[integrated] @ j[integrated].T + 1e-300 * np.eye(len(integrated)))
-        found[member] = prior - 0.5 * float(dof * np.log(max(float(r @ r), 1e-300)) + cost[member] + log_det)
+        found[member] = prior - 0.5 * float(dof * np.log(max(float(r @ r) - before, 1e-300)) + cost[member] + log_det)
     return found
 
 

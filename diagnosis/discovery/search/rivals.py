@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.usual_factors import with_usual_factors
 from diagnosis.discovery.search.forward_step import may_come_again, one_more
-from diagnosis.discovery.search.likelihood_ratio import TO_THE_END, add, likelihood
+from diagnosis.discovery.search.likelihood_ratio import TO_THE_END, add, likelihood, likelihood_of_readings
 from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import screen_one
 from twin.catalogue import base_name, find, unnamed
@@ -61,7 +61,7 @@ def _as_good(fit: Fit, removal: Removal, others: Sequence[Effect]) -> dict[str, 
 def _reads_as_well(rival: Fit, fit: Fit) -> bool:
     """Whether a rival fits the readings themselves as well, and not only makes the factors more usual."""
     same = fit.settings.same_fit(coarse=fit.weighting.coarse)
-    return (rival.squares_of_readings - fit.squares_of_readings) / fit.variance < same
+    return 2.0 * (likelihood_of_readings(fit) - likelihood_of_readings(rival)) < same
 
 
 def forms(effect: Effect) -> Iterator[Effect]:

@@ -11,6 +11,7 @@ from diagnosis.discovery.fitting.observations import of_readings
 from diagnosis.discovery.fitting.own_parameters import set_back
 from diagnosis.discovery.proof.changes import Change
 from diagnosis.discovery.proof.cross_validation import held_out_residual, rms_deg
+from diagnosis.discovery.proof.order import by_turn
 from diagnosis.discovery.state import State
 from twin.angles import Array
 from twin.catalogue import find
@@ -23,7 +24,8 @@ def answer(state: State) -> State:
     rows and of single readings: what is before an entry is after the one above it. Causes of single readings and of the
     scatter change nothing there.
     """
-    entries = merge(state.findings, state.fit.chain.effects)
+    merged = merge(state.findings, state.fit.chain.effects)
+    entries = [merged[place] for place in by_turn(state.fit, [entry.keys for entry in merged])]
     causes, changed, held = _with_figures(state, entries)
     # The turn of some comes only with what stands below them.
     early = [entry for entry, cause in zip(entries, causes, strict=True) if cause.after_deg > cause.before_deg]

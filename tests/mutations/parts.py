@@ -206,7 +206,7 @@ PARTS: tuple[Mutation, ...] = (
         ),
         (
             "rivals.more_usual_factors_are_enough",
-            "if _reads_as_well(rival, usual)",
+            "if _reads_as_well(rival, fit)",
             "if True",
             "stages/test_rival_fits.py::test_a_displaced_magnet_is_in_the_class_of_the_order_that_it_makes",
         ),

@@ -259,17 +259,18 @@ def _prior_strengths(fit: Fit) -> Array:
 
 
 def _scatter(fit: Fit, turns: Sequence[int], unit: float) -> float:
-    """Standard deviation of the turns' zeros: that of their estimates, and what these are uncertain by.
+    """Standard deviation of the turns' zeros, in their own unit, by how many of them the readings tell.
 
-    A step of expectation maximisation. Without the second part, estimates drawn towards zero would draw themselves
-    ever closer.
+    As they are drawn towards one another by it, their own scatter is less, and would draw itself to nothing. Their
+    squares are shared among the zeros that are told, each by what its readings weigh against what holds it, until
+    this is what is most likely (MacKay, Neural Computation 4, 415, 1992).
     """
     zeros = from_centre(fit.chain, fit.free)[turns]
     spread = max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
     root = root_weights(fit.weighting, fit.observations.observables)
-    told = np.sum((fit.cosine_jacobian[turns] * root) ** 2, axis=(1, 2))
+    weight = np.sum((fit.cosine_jacobian[turns] * root) ** 2, axis=(1, 2))
     held = np.where(fit.strengths[turns] > 0.0, fit.strengths[turns], unit / spread)
-    return float(np.hypot(spread, np.sqrt(np.mean(unit**2 / (told + held**2)))))
+    return spread / float(np.sqrt(np.mean(weight / (weight + held**2))))
 
 
 def from_centre(chain: Chain, free: tuple[Free, ...]) -> Array:

@@ -44,7 +44,7 @@ def judge(fit: Fit, key: str, effects: Sequence[Effect], keys: Sequence[str]) ->
             # Beside the factors that do the same they fit anything, at sizes of these that no device has.
             usual = with_usual_factors(fit)
             found = _as_good(usual, Removal.of(usual, key), hidden)
-            rivals |= {name: rival for name, rival in found.items() if _reads_as_well(rival, usual)}
+            rivals |= {name: rival for name, rival in found.items() if _reads_as_well(rival, fit)}
     return Judged(key, removal.gain, removal.log_p, rivals)
 
 

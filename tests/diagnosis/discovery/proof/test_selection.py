@@ -17,11 +17,15 @@ from diagnosis.discovery.proof.bootstrap import noise_of
 from diagnosis.discovery.proof.cross_validation import folds, scattered
 from diagnosis.discovery.proof.family_wise import FamilyWise, Tail
 from diagnosis.discovery.proof.selection import Proof, prove
+from diagnosis.discovery.search.likelihood_ratio import add, take_out
+from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.rivals import Judged
+from diagnosis.discovery.search.screening import Base, screen_one
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.sweeps import Made, before
+from twin.catalogue import find
 
 LIMITS = DiscoverySettings()
 SATURATION, HARMONIC = "saturation", "magnet_harmonic"
@@ -173,3 +177,20 @@ def test_the_least_favourable_view_judges(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(selection, "judge", lambda view, *_: judged[id(view)])
     assert selection._judged([fit, other], SATURATION, (), (SATURATION,)) is judged[id(other)]
     assert selection._judged([other, fit], SATURATION, (), (SATURATION,)) is judged[id(other)]
+
+
+def test_a_class_is_as_unlikely_by_chance_as_its_least_likely_member() -> None:
+    """What cannot be told from a cause has been searched for as well."""
+    fit, harmonic = handed().fit, find(HARMONIC)
+    candidate = screen_one(Base.of(take_out(fit, SATURATION)), harmonic)
+    assert candidate is not None
+    rival, _ = add(take_out(fit, SATURATION), candidate)
+    weak = Judged(SATURATION, 2.0, -1.0, {HARMONIC: rival})
+    searched = tuple(effect for effect in handed().searched if effect.name in (SATURATION, HARMONIC))
+    proof = Proof(fit, searched, (weak,), folds(fit), (), (0.03, 0.02), None)
+    assert proof.by_chance(weak) == pytest.approx(Removal.of(rival, HARMONIC).log_p + np.log(2))
+    assert selection._proven(proof, 0)
+    # One that was not searched for has not been looked for in chance either.
+    proof = replace(proof, effects=(find(SATURATION),))
+    assert proof.by_chance(weak) == -1.0
+    assert not selection._proven(proof, 0)

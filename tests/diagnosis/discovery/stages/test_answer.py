@@ -65,7 +65,7 @@ def test_what_makes_readings_scatter_gains_nothing_in_their_mean() -> None:
 CHAINS = {
     "single readings": MADE,
     "stairs": ROUNDED,
-    "a second line of one effect": Made(causes=(("drive_ripple", 0.1), (SATURATION, 0.2)), points=180, turns=2),
+    "a second line of one effect": Made(causes=(("drive_ripple", 0.2), (SATURATION, 0.2)), points=180, turns=2),
 }
 
 

@@ -7,7 +7,42 @@ import itertools
 import numpy as np
 
 from twin.angles import Array
+from twin.effect import Parameters
 from twin.motion import NOMINAL_C, Motion
+from twin.param import Param
+
+BODY = {
+    # Packages follow in seconds, sockets and boards in minutes: an hour is more than a record waits for.
+    "lag_s": Param(
+        unit="s",
+        null=0.0,
+        lower=0.0,
+        upper=3600.0,
+        doc="time constant by which the sensor is behind the recorded temperature",
+        role="shape",
+        typical=30.0,
+        aside=True,
+        detail=True,
+    ),
+    # At the bounds what is 50 K warmer has drifted by twice as much, or by nothing: what bends more is another law.
+    "bend_per_K": Param(
+        unit="1/K",
+        null=0.0,
+        lower=-0.02,
+        upper=0.02,
+        doc="by which share of itself the drift grows with each kelvin above 25 C",
+        role="shape",
+        typical=0.001,
+        aside=True,
+        detail=True,
+    ),
+}
+"""What a drift with the temperature of the sensor's body has beside its slope."""
+
+
+def drifted(motion: Motion, values: Parameters) -> Array:
+    """:func:`warmth` with the lag and the bend that ``values`` give, or without."""
+    return warmth(motion, np.asarray(values.get("lag_s", 0.0)), np.asarray(values.get("bend_per_K", 0.0)))
 
 
 def warmth(motion: Motion, lag_s: Array, bend_per_K: Array) -> Array:

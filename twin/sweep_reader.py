@@ -68,7 +68,8 @@ def _read_parquet(path: Path, *, max_bytes: int) -> dict[str, Array]:
     try:
         import pyarrow.parquet as parquet  # type: ignore[import-not-found,import-untyped,unused-ignore]
     except ImportError:
-        raise SweepError(f"{path.name}: reading Parquet needs pyarrow; pip install pyarrow, or save as CSV") from None
+        needs = "needs pyarrow; pip install '.[formats]' in the checkout, or save as CSV"
+        raise SweepError(f"{path.name}: reading Parquet {needs}") from None
     try:
         file = parquet.ParquetFile(path)
         known = [name for name in COLUMNS if name in file.schema_arrow.names]

@@ -6,9 +6,7 @@ Lines are taken in blocks, so that beside the columns themselves no more than a 
 from __future__ import annotations
 
 import codecs
-import csv
 import itertools
-import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -17,11 +15,11 @@ import numpy as np
 from twin.angles import Array
 from twin.errors import SweepError
 from twin.sweep_columns import COLUMNS, REQUIRED, TOLD_BY_SENSOR
+from twin.text_input import MISSING, cells_of, no_text, utf8_or_latin1
 
 LONGEST_LINE_BYTES = 1_000_000
 """A line that is longer belongs to no sweep: a row of all columns takes some two hundred bytes."""
 _WIDE = (b"\xff\xfe", b"\xfe\xff")
-_MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "-", "inf", "+inf", "-inf", "infinity", "-infinity"})
 
 
 @dataclass(frozen=True)
@@ -101,29 +99,22 @@ def _narrow(content: Iterable[bytes]) -> Iterator[bytes]:
 
 
 def _decoded(raw: bytes, before: int, *, name: str) -> str:
-    """Whole lines as text: UTF-8, else Latin-1. Only comments and names can tell the two."""
-    try:
-        text = raw.decode()
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
+    """Whole lines as text."""
+    text, _ = utf8_or_latin1(raw)
     _refuse_binary(text, before, name=name)
     return text
 
 
 def _refuse_binary(text: str, before: int, *, name: str) -> None:
     """Raise SweepError for bytes that no text holds; ``before`` lines stand before this text."""
-    binary = re.search("[\x00-\x08\x0e-\x1a]", text)
-    if binary:
-        line = before + text.count("\n", 0, binary.start()) + 1
-        raise SweepError(
-            f"{name}: line {line} holds the byte {ord(binary[0])}, so this is no text file; "
-            "expected CSV: export the sweep as text"
-        )
+    said = no_text(text, before)
+    if said:
+        raise SweepError(f"{name}: {said}; expected CSV: export the sweep as text")
 
 
 def _header_of(text: str, line: int, *, name: str) -> _Header:
     delimiter = ";" if ";" in text else "\t" if "\t" in text else ","
-    names = tuple(cell.strip() for cell in _cells(text, delimiter))
+    names = tuple(cell.strip() for cell in cells_of(text, delimiter))
     _check_header(names, where=f"{name}: line {line}")
     return _Header(line, delimiter, names)
 
@@ -141,16 +132,6 @@ def _check_header(header: tuple[str, ...], *, where: str) -> None:
     for needed in REQUIRED:
         if needed not in header:
             raise SweepError(f"{where}: column {needed} is missing; found {found}; rename the column or add it")
-
-
-def _cells(line: str, delimiter: str) -> list[str]:
-    """The cells of a line; the csv module is asked only where there are quotes for it to undo."""
-    if '"' not in line:
-        return line.split(delimiter)
-    try:
-        return next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
-    except csv.Error:
-        return [line]
 
 
 def _shown(text: str, most: int = 40) -> str:
@@ -180,7 +161,7 @@ def _careful_table(rows: list[tuple[int, str]], header: _Header, *, name: str) -
     """Cell by cell, so that the first fault is named by line and column."""
     table = np.full((len(rows), len(header.names)), np.nan)
     for row, (number, line) in enumerate(rows):
-        cells = _cells(line, header.delimiter)
+        cells = cells_of(line, header.delimiter)
         if len(cells) != len(header.names):
             raise SweepError(
                 f"{name}: line {number} has {len(cells)} cells; expected {len(header.names)} as in the header "
@@ -188,7 +169,7 @@ def _careful_table(rows: list[tuple[int, str]], header: _Header, *, name: str) -
             )
         for key, place in header.wanted.items():
             text = cells[place].strip()
-            if text.lower() in _MISSING:
+            if text.lower() in MISSING:
                 continue
             # Where cells are not parted by commas, a comma is a decimal point.
             value = _number(text if header.delimiter == "," else text.replace(",", "."))
@@ -213,4 +194,4 @@ def _number(text: str) -> float | None:
 
 
 def _is_number(text: str) -> bool:
-    return text.strip().lower() in _MISSING or _number(text.strip().replace(",", ".")) is not None
+    return text.strip().lower() in MISSING or _number(text.strip().replace(",", ".")) is not None

@@ -198,6 +198,25 @@ def test_diagnose_reads_a_log_by_columns(tmp_path: Path) -> None:
     assert asked.out.split()[1:] == halltwin("diagnose", tmp_path / "log2.csv").out.split()[1:]
 
 
+@pytest.mark.parametrize("name", ["NPZ", "workbook", "Parquet"])
+def test_a_file_that_grows_beyond_the_limit_is_refused_before_it_is_unpacked(name: str, tmp_path: Path) -> None:
+    """A hundred thousand times the same number take a few bytes in the file, and 800 kB a column once they are read."""
+    pytest.importorskip(LIBRARIES.get(name, "numpy"))
+    path, same = tmp_path / "log", np.full(100_000, 7.0)
+    if name == "NPZ":
+        np.savez_compressed(path.with_suffix(".npz"), ref_deg=same, sensor_deg=same)
+        path = path.with_suffix(".npz")
+    elif name == "Parquet":
+        from pyarrow import parquet
+        from pyarrow import table as columns
+
+        parquet.write_table(columns({"ref_deg": same, "sensor_deg": same}), path)
+    else:
+        path.write_bytes(files(name).content)
+    with pytest.raises(SweepError, match=r"MB after decompression; expected at most 0\.02[0-9]* MB; --max-size"):
+        read_log(path, max_bytes=max(path.stat().st_size, 20_000))
+
+
 # ---- what --columns says --------------------------------------------------------------------------------------------
 
 

@@ -14,8 +14,9 @@ from twin.errors import SweepError
 from twin.logs.table import Table
 from twin.logs.units import COUNTS, unit_of
 from twin.shown import shown
+from twin.text_input import MISSING
 
-_MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "inf", "+inf", "-inf", "infinity"})
+_MISSING = MISSING | {"#n/a", "--"}
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
 _HEX = re.compile(r"0[xX][0-9a-fA-F]{1,13}")
 _WORDS_SHARE = 0.5

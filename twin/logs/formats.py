@@ -23,16 +23,19 @@ _ZIP, _HDF5, _PARQUET, _MATLAB = b"PK\x03\x04", b"\x89HDF\r\n\x1a\n", b"PAR1", b
 _MDF, _TDMS, _BLF = b"MDF     ", b"TDSm", b"LOGG"
 
 
-def read_format(raw: bytes, path: Path) -> Table | None:
-    """The table in a file of a known format, told by its first bytes; None for another. Raises SweepError."""
+def read_format(raw: bytes, path: Path, *, most: int) -> Table | None:
+    """The table in a file of a known format, told by its first bytes; None for another.
+
+    ``most``: bytes beyond which it is refused, after decompression. Raises SweepError.
+    """
     file = path.name
     readers: tuple[tuple[bool, str, str, Callable[[io.BytesIO], Table]], ...] = (
         # MATLAB's newer files are HDF5 behind a header of 512 bytes.
         (raw.startswith(_HDF5) or raw[512:520] == _HDF5, "HDF5", "formats", partial(_hdf5, file=file)),
         (raw.startswith(_MATLAB), "MAT", "formats", partial(_matlab, file=file)),
-        (raw.startswith(_PARQUET), "Parquet", "formats", partial(_parquet, file=file)),
-        (_packs(raw, "xl/"), "XLSX", "formats", partial(_workbook, file=file)),
-        (_packs(raw, ".npy"), "NPZ", "formats", partial(_numpy, file=file)),
+        (raw.startswith(_PARQUET), "Parquet", "formats", partial(_parquet, file=file, most=most)),
+        (_packs(raw, "xl/"), "XLSX", "formats", partial(_workbook, file=file, most=most)),
+        (_packs(raw, ".npy"), "NPZ", "formats", partial(_numpy, file=file, most=most)),
         (raw.startswith(_MDF), "MDF", "mdf", partial(read_mdf, file=file)),
         (raw.startswith(_TDMS), "TDMS", "formats", partial(read_tdms, file=file)),
         (raw.startswith(_BLF), "BLF", "bench", partial(read_blf, path=path)),
@@ -55,10 +58,25 @@ def _packs(raw: bytes, part: str) -> bool:
         return part.encode() in raw
 
 
-def _workbook(raw: io.BytesIO, *, file: str) -> Table:
+def _check_zip(raw: io.BytesIO, *, file: str, most: int) -> None:
+    with zipfile.ZipFile(raw) as store:
+        _check_size(sum(one.file_size for one in store.infolist()), file=file, most=most)
+    raw.seek(0)
+
+
+def _check_size(size: int, *, file: str, most: int) -> None:
+    if size > most:
+        raise SweepError(
+            f"{file}: holds {size / 1e6:g} MB after decompression; expected at most {most / 1e6:g} MB; "
+            "--max-size (max_bytes of Sweep.read) raises the limit"
+        )
+
+
+def _workbook(raw: io.BytesIO, *, file: str, most: int) -> Table:
     """The first sheet of a workbook with two columns of numbers."""
     from openpyxl import load_workbook  # type: ignore[import-untyped,unused-ignore]
 
+    _check_zip(raw, file=file, most=most)
     book = load_workbook(raw, read_only=True, data_only=True)
     first: SweepError | None = None
     for sheet in book.worksheets:
@@ -105,7 +123,8 @@ def _matlab(raw: io.BytesIO, *, file: str) -> Table:
     return of_arrays({name: value for name, value in found.items() if not name.startswith("__")}, file=file)
 
 
-def _numpy(raw: io.BytesIO, *, file: str) -> Table:
+def _numpy(raw: io.BytesIO, *, file: str, most: int) -> Table:
+    _check_zip(raw, file=file, most=most)
     with np.load(raw, allow_pickle=False) as found:
         return of_arrays(dict(found), file=file)
 
@@ -126,8 +145,11 @@ def _hdf5(raw: io.BytesIO, *, file: str) -> Table:
     return of_arrays({name: np.squeeze(value) for name, value in arrays.items()}, file=file)
 
 
-def _parquet(raw: io.BytesIO, *, file: str) -> Table:
+def _parquet(raw: io.BytesIO, *, file: str, most: int) -> Table:
     import pyarrow.parquet as parquet  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
-    table = parquet.read_table(raw)
+    held = parquet.ParquetFile(raw)
+    # A column of one repeated value takes a few bytes in the file, and eight a row once it is read.
+    _check_size(8 * held.metadata.num_rows * held.metadata.num_columns, file=file, most=most)
+    table = held.read()
     return of_arrays({name: table.column(name).to_numpy() for name in table.column_names}, file=file)

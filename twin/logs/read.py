@@ -36,7 +36,7 @@ def read_table(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> Table:
         raw = whole(path, most=checked_bytes(max_bytes), expected=EXPECTED)
     except UserError as error:
         raise SweepError(str(error)) from None
-    found = read_format(raw, path)
+    found = read_format(raw, path, most=max_bytes)
     if found is not None:
         return found
     text, encoding = decoded(raw, path.name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import codecs
-import csv
 import math
 import re
 from collections import Counter
@@ -15,6 +14,7 @@ from twin.errors import SweepError
 from twin.logs.cells import Row, is_number, number_of, table_of
 from twin.logs.table import Table
 from twin.shown import shown
+from twin.text_input import cells_of, no_text, utf8_or_latin1
 
 _SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", "": "blanks"}
 """What may part cells, with the word for it; an empty one stands for any run of blanks."""
@@ -86,16 +86,14 @@ def decoded(raw: bytes, file: str) -> tuple[str, str]:
         encoding = "UTF-16-LE"
     elif head[::2].count(0) > _WIDE_SHARE * len(head[::2]) and not head[1::2].count(0):
         encoding = "UTF-16-BE"
-    try:
-        text = raw.decode("utf-8-sig" if encoding == "UTF-8" else encoding)
-    except UnicodeDecodeError:
-        text, encoding = raw.decode("latin-1"), "Latin-1"
-    binary = re.search("[\x00-\x08\x0e-\x1a]", text)
-    if binary:
-        line = text.count("\n", 0, binary.start()) + 1
+    if encoding == "UTF-8":
+        text, encoding = utf8_or_latin1(raw.removeprefix(codecs.BOM_UTF8))
+    else:
+        text = raw.decode(encoding, "replace")
+    said = no_text(text)
+    if said:
         raise SweepError(
-            f"{file}: line {line} holds the byte {ord(binary[0])}, so this is no text file; expected CSV, XLSX, MAT, "
-            "NPZ, HDF5 or Parquet: export the log as one of them"
+            f"{file}: {said}; expected CSV, XLSX, MAT, NPZ, HDF5, Parquet, MDF or TDMS: export the log as one of them"
         )
     return text, encoding
 
@@ -119,12 +117,7 @@ def _cells(line: str, separator: str) -> list[str]:
     """The cells of a line without blanks and quotes; the unit in brackets stays with its name."""
     if not separator:
         return _by_blanks(line) if "[" in line or "(" in line else line.split()
-    if '"' not in line:
-        return [cell.strip() for cell in line.split(separator)]
-    try:
-        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True))]
-    except csv.Error:
-        return [cell.strip() for cell in line.split(separator)]
+    return [cell.strip() for cell in cells_of(line, separator)]
 
 
 def _by_blanks(line: str) -> list[str]:

@@ -82,7 +82,13 @@ def _by_speed(record: Record, time: Array, travel: Array) -> tuple[str, str] | N
     if moving.sum() < FEWEST:
         return None
     by_stamps = np.abs(np.diff(travel))[moving] / step[moving] / 6.0
-    ratio = float(np.sum(np.abs(rpm[1:])[moving] * step[moving]) / max(np.sum(by_stamps * step[moving]), 1e-300))
+    way = float(np.sum(by_stamps * step[moving]))
+    if way <= 0.0:
+        return None
+    with np.errstate(over="ignore"):
+        ratio = float(np.sum(np.abs(rpm[1:])[moving] * step[moving])) / way
+    if not 0.0 < ratio < np.inf:
+        return None
     for unit, many in _UNITS.items():
         if abs(np.log(ratio / many)) < np.log(1.5):
             return unit, (

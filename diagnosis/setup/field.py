@@ -122,7 +122,7 @@ def _clipped(record: Record) -> str | None:
     found = []
     for name in ("vx", "vy"):
         values = record.column(name)
-        if values is None or not np.isfinite(values).all() or np.ptp(values) == 0.0:
+        if values is None or values.size < FEWEST or not np.isfinite(values).all() or np.ptp(values) == 0.0:
             return None
         step = float(np.min(np.diff(np.unique(values))))
         share = float(np.arccos(1.0 - min(2.0 * step / float(np.ptp(values)), 2.0)) / np.pi)

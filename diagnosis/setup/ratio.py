@@ -29,8 +29,8 @@ _FEWEST_BY_ORDERS = 20
 _MOST_WRONG_RAD = 1.5
 _PARTED_TURNS, _FEWEST_PARTED = 1.2, 48
 """Turns and readings from which steps of the zero are told from a slope."""
-_LEAST_OPEN_DEG = 0.25
-"""A turn that stays open by less may be a zero that drifts."""
+_LEAST_OPEN_DEG, _MOST_OPEN_DEG = 0.25, 90.0
+"""A turn that stays open by less may be a zero that drifts; by more no number of counts opens a word's turn."""
 _COUNTS = (
     *(200, 256, 360, 400, 500, 512, 600, 720, 800, 1000, 1023, 1024, 1200, 1600, 2000, 2048, 2400, 2500, 3200, 3600),
     *(4000, 4095, 4096, 5000, 6400, 8000, 8192, 10000, 12000, 14400, 16000, 16383, 16384, 20000, 32768, 36000, 40000),
@@ -221,7 +221,7 @@ def _within_a_turn(record: Record) -> tuple[float, float] | None:
         before = fitted(plain, relation.error_deg)
         opened = float(fit.values[-1])
         sure = abs(opened) > times_sure() * float(fit.errors[-1])
-        if sure and abs(opened) > _LEAST_OPEN_DEG and fit.sigma < 0.5 * before.sigma:
+        if sure and _LEAST_OPEN_DEG < abs(opened) < _MOST_OPEN_DEG and fit.sigma < 0.5 * before.sigma:
             factor = 1.0 / (1.0 - opened / 360.0) if side > 0 else 1.0 + opened / 360.0
             return factor, opened
     return None

@@ -99,6 +99,8 @@ def _searched(travel: Array, measured: Array) -> float | None:
     step = float(np.median(np.abs(np.diff(at)))) if part.size > 1 else 360.0
     most = min(_MOST_RATIO, 180.0 / step if step > 0.0 else _MOST_RATIO)
     ratios = np.arange(0.2 / turns, most, 0.2 / turns)
+    if not ratios.size:
+        return None
     ratios = np.concatenate([ratios, -ratios])
     turning = np.exp(1j * np.radians(reading))
     close = [abs(np.mean(turning * np.exp(-1j * np.radians(ratio * at)))) for ratio in ratios]
@@ -106,6 +108,8 @@ def _searched(travel: Array, measured: Array) -> float | None:
     finer = best + np.linspace(-0.2, 0.2, 41) / turns
     best = float(min(finer, key=lambda ratio: spread_deg(reading - ratio * at)))
     off = spread_deg(reading - best * at)
+    if abs(best) < 0.1 / turns:
+        return None
     return best if off <= min(FOLLOWS_DEG, _SHARE * spread_deg(best * at)) else None
 
 

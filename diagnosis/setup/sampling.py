@@ -165,6 +165,8 @@ def aliased_frequency(record: Record) -> Finding | None:
     if seen is None:
         return None
     frequency, amplitude, width = seen
+    if amplitude < max(*map(step_of_word, record.angles), _LEAST_LINE_DEG):
+        return None
     rival = _rival(frequency, rate, width, turns_a_second=relation.turns / max(float(np.ptp(time)), 1e-12))
     if not rival:
         return None

@@ -129,3 +129,22 @@ def test_rows_that_were_rejected_are_no_lost_frames() -> None:
     assert checked(Record("r", columns, kept + 1)).findings == ()
     found = checked(Record("r", columns, np.arange(1, kept.size + 1))).findings
     assert [one.kind for one in found] == ["lost_frames"]
+
+
+def test_no_record_ends_in_a_fault_of_the_program() -> None:
+    """Columns of anything, of any length, in any company."""
+    rng = np.random.default_rng(8)
+    names = ("reference_deg", "measured_deg", "time_s", "speed_rpm", "turn", "vx", "vy", "agc", "magnitude", "status")
+    for _ in range(300):
+        n = int(rng.choice([0, 1, 3, 8, 16, 60, 200]))
+        kinds_of_column = (
+            np.zeros(n),
+            np.full(n, np.nan),
+            1e12 * rng.standard_normal(n),
+            np.round(rng.uniform(0.0, 5.0, n)),
+            np.where(rng.random(n) < 0.3, np.nan, rng.uniform(0.0, 360.0, n)),
+            rng.uniform(-60.0, 60.0) * np.arange(n),
+        )
+        columns = {name: kinds_of_column[rng.integers(0, 6)] for name in (*names, "frame") if rng.random() < 0.8}
+        found = checked(Record("record", columns, np.arange(1, n + 1)))
+        assert all(one.what and one.remedy for one in found.findings)

@@ -104,6 +104,20 @@ def test_where_an_angle_begins_anew_the_cell_is_missing() -> None:
     assert list(np.flatnonzero(np.isnan(found))) == [0, 12]
 
 
+def test_frames_that_cannot_be_read_are_told(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """In the line of what is not used, and not by the library on standard error."""
+    path = written("TRC", tmp_path)
+    lines = path.read_text().splitlines()
+    broken = [k for k, line in enumerate(lines) if " 0101 " in line][40:43]
+    for k in broken:
+        lines[k] = lines[k].partition(" 0101 ")[0]
+    path.write_text("\n".join(lines))
+    capfd.readouterr()
+    left = read_log(path).table.left
+    assert any(one.startswith("3 places of the file (") for one in left)
+    assert capfd.readouterr().err == ""
+
+
 @pytest.mark.parametrize("number", [0, 2])
 def test_a_bus_log_without_its_dbc_says_what_is_missing(number: int, tmp_path: Path) -> None:
     path = written("ASC", tmp_path)

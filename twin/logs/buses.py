@@ -39,7 +39,7 @@ def read_bus_text(text: str, path: Path) -> Table | None:
     )
     for fits, word, reader in formats:
         if fits:
-            return by_library(partial(_of_text, text, reader, path), word, extra="bench", file=path.name)
+            return by_library(partial(_of_text, text, reader, path), word, library="can", extra="bench", file=path.name)
     return None
 
 

@@ -29,20 +29,20 @@ def read_format(raw: bytes, path: Path, *, most: int) -> Table | None:
     ``most``: bytes beyond which it is refused, after decompression. Raises SweepError.
     """
     file = path.name
-    readers: tuple[tuple[bool, str, str, Callable[[io.BytesIO], Table]], ...] = (
+    readers: tuple[tuple[bool, str, str, str, Callable[[io.BytesIO], Table]], ...] = (
         # MATLAB's newer files are HDF5 behind a header of 512 bytes.
-        (raw.startswith(_HDF5) or raw[512:520] == _HDF5, "HDF5", "formats", partial(_hdf5, file=file)),
-        (raw.startswith(_MATLAB), "MAT", "formats", partial(_matlab, file=file)),
-        (raw.startswith(_PARQUET), "Parquet", "formats", partial(_parquet, file=file, most=most)),
-        (_packs(raw, "xl/"), "XLSX", "formats", partial(_workbook, file=file, most=most)),
-        (_packs(raw, ".npy"), "NPZ", "formats", partial(_numpy, file=file, most=most)),
-        (raw.startswith(_MDF), "MDF", "mdf", partial(read_mdf, file=file)),
-        (raw.startswith(_TDMS), "TDMS", "formats", partial(read_tdms, file=file)),
-        (raw.startswith(_BLF), "BLF", "bench", partial(read_blf, path=path)),
+        (raw.startswith(_HDF5) or raw[512:520] == _HDF5, "HDF5", "h5py", "formats", partial(_hdf5, file=file)),
+        (raw.startswith(_MATLAB), "MAT", "scipy", "formats", partial(_matlab, file=file)),
+        (raw.startswith(_PARQUET), "Parquet", "pyarrow", "formats", partial(_parquet, file=file, most=most)),
+        (_packs(raw, "xl/"), "XLSX", "openpyxl", "formats", partial(_workbook, file=file, most=most)),
+        (_packs(raw, ".npy"), "NPZ", "numpy", "formats", partial(_numpy, file=file, most=most)),
+        (raw.startswith(_MDF), "MDF", "asammdf", "mdf", partial(read_mdf, file=file)),
+        (raw.startswith(_TDMS), "TDMS", "nptdms", "formats", partial(read_tdms, file=file)),
+        (raw.startswith(_BLF), "BLF", "can", "bench", partial(read_blf, path=path)),
     )
-    for fits, word, extra, reader in readers:
+    for fits, word, library, extra, reader in readers:
         if fits:
-            return by_library(partial(reader, io.BytesIO(raw)), word, extra=extra, file=file)
+            return by_library(partial(reader, io.BytesIO(raw)), word, library=library, extra=extra, file=file)
     return None
 
 

@@ -63,6 +63,7 @@ def full_motion(points: int = 120) -> Motion:
                     "speed_rad_s": way * pace,
                     "turn": 2 * leg + steps // points,
                     "temperature_c": np.full(steps.size, temperature),
+                    "current_a": np.full(steps.size, 1.0 + leg % 3),
                 }
                 for name, values in one.items():
                     rows.setdefault(name, []).append(values)

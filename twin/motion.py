@@ -25,6 +25,8 @@ RPM = TAU / 60.0
 """One revolution a minute [rad/s]."""
 LEAST_SPAN_K = 5.0
 """Span of temperatures, or difference between two recordings, from which on drifts may show."""
+LEAST_CURRENTS = 0.2
+"""Span of the motor's currents, as a share of the largest, from which on what follows them may show."""
 NOMINAL_C = 25.0
 """Temperature [C] at which figures are stated, from which drifts count, and of readings that record none."""
 
@@ -263,11 +265,18 @@ class Motion:
             found.add("one turn")
         if np.ptp(self.shaft_rad) > 1.8 * TAU:
             found.add("several turns")
-        if np.ptp(self.temperature_c) > LEAST_SPAN_K:
-            found.add("two temperatures")
+        found |= self._levels()
         if self.turn.max(initial=0) > 0:
             found.add("two turns")
         return frozenset(found)
+
+    def _levels(self) -> set[str]:
+        """Conditions that were recorded at more than one level."""
+        shown = {
+            "two temperatures": np.ptp(self.temperature_c) > LEAST_SPAN_K,
+            "two currents": np.ptp(self.current_a) > LEAST_CURRENTS * np.max(np.abs(self.current_a)),
+        }
+        return {name for name, has in shown.items() if has}
 
     def _by_recordings(self) -> set[str]:
         """What the recordings provide together, and none of them alone."""

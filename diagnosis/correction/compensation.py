@@ -32,7 +32,16 @@ _GRID = 8192
 _HIGHEST_POWER = 4
 """Products of laws, each of up to the second power, that a correction holds."""
 _BEYOND_ONE_READING = frozenset(
-    {"time_s", "moving shaft", "several turns", "two turns", "two speeds", "varying speed", "turn"}
+    {
+        "time_s",
+        "moving shaft",
+        "several turns",
+        "two turns",
+        "two speeds",
+        "varying speed|two currents",
+        "two currents",
+        "turn",
+    }
 )
 _BEYOND_MEAN = frozenset({"spread", "values", "sequence"})
 

@@ -18,6 +18,7 @@ _KINDS = {
     "speed": {"moving shaft", "two speeds", "varying speed", "speed_rpm"},
     "direction": {"both directions"},
     "temperature": {"temperature_c", "two temperatures"},
+    "current": {"two currents"},
     "turn": {"turn", "several turns", "two turns"},
     "time": {"time_s"},
 }

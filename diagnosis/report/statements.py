@@ -32,15 +32,15 @@ _LACKS = {
     "one turn": ("less than a turn", "cover a whole turn"),
     "several turns": ("less than two turns one way", "record several turns one way"),
     "temperature_c": ("no temperature_c", "record temperature_c"),
-    "current_a": ("no current_a", "record current_a"),
     "time_s": ("no time_s", "record time_s"),
     "turn": ("no turn column", "number the sweeps in a turn column"),
+    "two currents": ("no current_a that changes", "record current_a at several currents"),
     "two air gaps": ("one air gap", "measure at a second air gap"),
     "two speeds": ("one speed", "measure at a second speed"),
     "two speeds|both directions": ("one speed, one direction", "measure at a second speed or in both directions"),
     "two temperatures": ("one temperature", "measure at a second temperature"),
     "two turns": ("one turn in the turn column", "record several turns"),
-    "varying speed": ("steady speeds", "record speed_rpm and time_s while the shaft speeds up and slows down"),
+    "varying speed|two currents": ("no change of speed or current", "record current_a, or speed_rpm as it changes"),
     "vx": ("no vx, vy", "record vx and vy"),
     "two mountings": ("one mounting", "turn the sensor about the shaft and explain both recordings together"),
     "vx|two air gaps": ("no vx, vy", "record vx and vy, or explain recordings at two air gaps together"),
@@ -59,7 +59,6 @@ _ALSO_SAYS = {
     "two temperatures": "temperature_c",
     "two turns": "turn",
     "two speeds|both directions": "moving shaft",
-    "varying speed": "moving shaft",
 }
 """A want that goes without saying where the second one is wanted too."""
 

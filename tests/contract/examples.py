@@ -34,6 +34,7 @@ from tests.contract.signatures import (
     stuck,
     tone,
     turned,
+    twist,
     warm,
     zone,
 )
@@ -68,10 +69,10 @@ EXAMPLES: dict[str, Example] = {
         strengths=_LINE, shapes={**_PHASE, "order": 0.41}, signature=lambda m, p: line(m, p, p["order"])
     ),
     "load_torsion": Example(
-        strengths={"deg_per_krpm_per_s": 0.2},
+        strengths={"deg_per_krpm_per_s": 0.2, "deg_per_A": 0.03},
         shapes={},
         memory=True,
-        signature=lambda m, p: -rad(p["deg_per_krpm_per_s"]) * m.acceleration_rad_s2 * 30.0 / (1000.0 * np.pi),
+        signature=twist,
     ),
     "thermal_zero_shift": Example(
         strengths={"deg_per_K": 0.004}, shapes={}, signature=lambda m, p: rad(p["deg_per_K"]) * warm(m)
@@ -85,6 +86,13 @@ EXAMPLES: dict[str, Example] = {
         strengths=_LINE,
         shapes={**_PHASE, "slots": 12.0, "poles": 14.0, "order": 28.0},
         signature=lambda m, p: line(m, p, p["order"]),
+    ),
+    "motor_field": Example(
+        strengths={"bx_mT_per_A": 0.1, "by_mT_per_A": -0.06},
+        shapes={"field_mT": 60.0},
+        signature=lambda m, p: shift(
+            m, p["bx_mT_per_A"] * m.current_a / p["field_mT"], p["by_mT_per_A"] * m.current_a / p["field_mT"]
+        ),
     ),
     "magnet_misalignment": Example(
         strengths={"off_axis_mm": 0.4}, shapes={"direction_deg": 20.0}, signature=misaligned, power=2

@@ -196,3 +196,9 @@ def seam(motion: Motion, p: Params) -> Array:
     """A vector that turns from half a turn before the place to half a turn behind it, as an angle."""
     opposite = np.angle(np.exp(1j * (motion.shaft_rad - rad(p["centre_deg"]) - np.pi)))
     return np.asarray(-rad(p["step_deg"]) * opposite / TAU)
+
+
+def twist(motion: Motion, p: Params) -> Array:
+    """Of a shaft behind a motor: against what it accelerates, and with the torque of its current."""
+    krpm_s = motion.acceleration_rad_s2 * 30.0 / (1000.0 * np.pi)
+    return np.asarray(rad(p["deg_per_A"]) * motion.current_a - rad(p["deg_per_krpm_per_s"]) * krpm_s)

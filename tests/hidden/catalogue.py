@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import channel_causes as channel
+from . import current_causes as current
 from . import period_causes as periods
 from . import shaft_causes as shaft
 from . import word_causes as word
@@ -41,6 +42,8 @@ CAUSES: dict[str, Cause] = {
     "clipping": Cause(channel.plan_clipping, ONE_TURN, Demands(points=100)),
     "magnet_harmonic": Cause(shaft.plan_magnet_harmonic, ONE_TURN),
     "multipole": Cause(periods.plan_multipole, ONE_TURN),
+    "motor_field": Cause(current.plan_motor_field, ONE_TURN, Demands(single_readings=True)),
+    "load_torsion": Cause(current.plan_load_torsion, ONE_TURN, Demands(single_readings=True)),
     "motor_poles": Cause(periods.plan_motor_poles, LONG, Demands(points=96, single_readings=True)),
     "cardan_coupling": Cause(shaft.plan_cardan_coupling, STOPPED, Demands(channels=True)),
     "reference_eccentricity": Cause(shaft.plan_reference_eccentricity, STOPPED, Demands(channels=True)),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import channel_causes as channel
+from . import current_causes as current
 from . import period_causes as periods
 from . import shaft_causes as shaft
 from . import structures
@@ -22,6 +23,7 @@ SHAFT: dict[str, Callable[[Array, Motion, Injected], Array]] = {
     "drive_ripple": shaft.drive_ripple,
     "motor_poles": periods.motor_poles,
     "cardan_coupling": shaft.cardan_coupling,
+    "load_torsion": current.load_torsion,
     "backlash": shaft.backlash,
     "bearing_wobble": shaft.bearing_wobble,
     "zero_drift": shaft.zero_drift,
@@ -110,7 +112,7 @@ def field_channels(bench: Bench, causes: Sequence[Injected]) -> channel.Channels
         if name in by_name:
             extra_deg = extra_deg + ahead(motion, own, by_name[name])
     angle = _told(np.radians(own.sense * turned + own.zero_deg), by_name)
-    cosine, sine = np.cos(angle), np.sin(angle + np.radians(extra_deg))
+    cosine, sine = current.motor_field((np.cos(angle), np.sin(angle + np.radians(extra_deg))), by_name)
     if "saturation" in by_name:
         cosine = channel.saturation(cosine, by_name["saturation"])
         sine = channel.saturation(sine, by_name["saturation"])

@@ -123,6 +123,7 @@ def draw(
     readings = sample(setup, injected, asked.stream("noise"))
     if remeasured is None:
         columns = written_columns(setup, readings, demands, bench, asked.stream("columns"))
+        columns |= {name: one.hidden[name] for one in injected for name in ("current_a",) if name in one.hidden}
     else:
         columns = all_columns(setup, readings)
     truth = _truth(asked, setup, injected, protocol=chosen, readings=readings, reference_deg=columns["reference_deg"])

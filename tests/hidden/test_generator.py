@@ -32,6 +32,8 @@ PEAK = {
     "hysteresis",
     "backlash",
     "latency",
+    "motor_field",
+    "load_torsion",
     "xy_skew",
     "phase_drift",
     "offset_drift",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.mutations.mutation import Mutation
 
 _SEARCH = "tests/diagnosis/discovery/search/test_parts.py"
+_SEAM = "tests/diagnosis/discovery/test_seam_and_current.py"
 _FORMS = "tests/diagnosis/discovery/test_forms.py"
 _STAGES = "tests/diagnosis/discovery/stages/test_one_source.py"
 
@@ -73,7 +74,14 @@ PERIODS: tuple[Mutation, ...] = tuple(
             "twin/empirical/__init__.py",
             "    UNNAMED_SEAM,\n    UNNAMED_BURST",
             "    UNNAMED_BURST",
-            f"{_FORMS}::test_a_turn_that_drifts_has_a_seam[137.0]",
+            f"{_SEAM}::test_a_turn_that_drifts_has_a_seam[137.0]",
+        ),
+        (
+            "periods.no_current_changes",
+            "twin/motion.py",
+            "> LEAST_CURRENTS * np.max(np.abs(self.current_a))",
+            "> 1e9",
+            f"{_SEAM}::test_what_follows_the_motors_current_is_named[motor_field]",
         ),
         (
             "periods.mechanics_make_no_lines",

@@ -40,6 +40,7 @@ VOLTS, STAYS, SQUARE = -1, 0, 1
 """Powers of the field of what is constant in volts (or millitesla), of a share, of a term of second order."""
 FOLLOWS: Mapping[str, Mapping[str, int]] = {
     "stray_field": {"field_mT": 1},
+    "motor_field": {"field_mT": 1},
     "hysteresis": {"lag_deg": VOLTS},  # a coercive field against the one that turns
     "saturation": {"k_percent": 2},  # a loss of third order, against the first
     "quadratic_nonlinearity": {"q_percent": SQUARE},

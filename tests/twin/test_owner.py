@@ -10,7 +10,7 @@ from twin.effect import Owner
 from twin.param import OWNER_OF_STAGE
 
 OTHERS = {
-    "mounting": {"stray_field": {"field_mT"}},
+    "mounting": {"stray_field": {"field_mT"}, "motor_field": {"field_mT"}},
     "bench": {"mains_pickup": {"x_percent", "y_percent"}},
     "recording": {
         **{"mains_pickup": {"frequency_Hz", "phase_deg"}, "reference_ripple": {"phase_deg"}},
@@ -28,6 +28,7 @@ WHOLE = {
             "load_torsion",
             "drive_ripple",
             "motor_poles",
+            "motor_field",
             "reference_eccentricity",
         ),
         *("stray_field", "mains_pickup", "thermal_zero_shift", "unnamed_speed_zero", "unnamed_flanks"),

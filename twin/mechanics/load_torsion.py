@@ -13,7 +13,8 @@ KRPM_RAD_S = 1000.0 * RPM
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    return signal - radians(values["deg_per_krpm_per_s"]) * motion.acceleration_rad_s2 / KRPM_RAD_S
+    twisted = signal - radians(values["deg_per_krpm_per_s"]) * motion.acceleration_rad_s2 / KRPM_RAD_S
+    return twisted + radians(values["deg_per_A"]) * motion.current_a
 
 
 LOAD_TORSION = Effect(
@@ -28,11 +29,25 @@ LOAD_TORSION = Effect(
             upper=1e3,
             doc="inertia over stiffness: twist at an acceleration of 1000 rpm a second; negative: the magnet is at "
             "the driven end",
+            aside=True,
+        ),
+        # The motor's torque goes with its current: where that is recorded it tells of drag and load too.
+        "deg_per_A": Param(
+            unit="deg/A",
+            null=0.0,
+            lower=-90.0,
+            upper=90.0,
+            doc="twist by the torque of an ampere",
+            role="level",
+            typical=0.05,
+            aside=True,
+            sought=(-90.0, 90.0),
         ),
     },
     forward=forward,
-    needs=frozenset({"moving shaft", "varying speed"}),
+    needs=frozenset({"varying speed|two currents"}),
     record_wide=True,
-    source="torsion of a shaft of stiffness c under the torque J dw/dt of the inertia J beyond it: J/c dw/dt",
-    signature="order 0, minus the angular acceleration",
+    source="torsion of a shaft of stiffness c under the torque J dw/dt of the inertia J beyond it: J/c dw/dt; "
+    "a motor's torque in proportion to its current",
+    signature="order 0, minus the angular acceleration, or times the current",
 )

@@ -112,21 +112,6 @@ def test_a_range_may_cut_off_nearly_all_or_one_end_alone(level: float, ends: tup
     assert sides == ({} if len(ends) == 2 else {"x_side": 1.0, "y_side": 1.0})
 
 
-@pytest.mark.parametrize("place_deg", [0.0, 137.0])
-def test_a_turn_that_drifts_has_a_seam(place_deg: float) -> None:
-    """In order of the rows it lies between the last and the first; in a table by angle anywhere."""
-    shaft = turns(200, 1)
-    drift = np.radians(0.3) * (np.mod(shaft - np.radians(place_deg), 2.0 * np.pi) / (2.0 * np.pi))
-    found = explain(sweep(shaft, channels(shaft + drift), 17)).to_dict()
-    assert [cause["name"] for cause in found["causes"]] == ["unnamed"]
-    (seam,) = found["unexplained"]["structure"]
-    assert seam["kind"] == "seam"
-    # Five times the noise of 0.02 deg over the root of 200 readings, of which orders 0 to 3 take most; the place to the
-    # spacing of 1.8 deg.
-    assert seam["step_deg"] == pytest.approx(-0.3, abs=0.03)
-    assert abs((seam["centre_deg"] - place_deg + 180.0) % 360.0 - 180.0) < 3.6
-
-
 def follower(shaft_rad: Array, radius: float) -> Array:
     """A vector that is dragged by the unit vector at these angles on a leash of this length, as complex (n,)."""
     path = np.concatenate([np.linspace(a, b, 30) for a, b in itertools.pairwise(shaft_rad)])

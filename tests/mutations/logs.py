@@ -34,13 +34,13 @@ LOGS: tuple[Mutation, ...] = (
             "logs.a_missing_row_ends_an_unwrapped_angle",
             "    known = np.isfinite(angle_deg)\n",
             "    known = np.full(angle_deg.shape, True)\n",
-            "test_untidy.py::test_a_missing_cell_of_an_electrical_angle_stays_one",
+            "test_guess.py::test_a_missing_cell_of_an_electrical_angle_stays_one",
         ),
         (
             "logs.an_electrical_angle_is_not_divided",
             "unwrapped_deg(values) / self.per",
             "unwrapped_deg(values)",
-            "test_untidy.py::test_electrical_degrees_are_read_and_said",
+            "test_guess.py::test_electrical_degrees_are_read_and_said",
         ),
     ),
     *of_one_file(
@@ -133,18 +133,18 @@ LOGS: tuple[Mutation, ...] = (
     ),
     *of_one_file(
         "twin/logs/ratios.py",
-        "tests/untidy/test_untidy.py",
+        "tests/untidy",
         (
             "logs.what_leaps_farther_than_a_turn_is_followed",
             " and float(np.max(steps)) <= _TURN_DEG",
             "",
-            "::test_what_is_not_certain_is_refused_with_the_reason_and_what_mends_it[counts under _deg]",
+            "test_untidy.py::test_what_is_not_certain_is_refused_with_the_reason_and_what_mends_it[counts under _deg]",
         ),
         (
             "logs.of_counts_any_may_make_the_turn",
             "if one.off_deg <= _CLEARLY * least + _ALIKE_DEG]",
             "]",
-            "::test_of_geared_logs_drawn_at_random_none_is_misread",
+            "test_guess.py::test_of_geared_logs_drawn_at_random_none_is_misread",
         ),
     ),
     *of_one_file(
@@ -181,7 +181,7 @@ LOGS: tuple[Mutation, ...] = (
     ),
     *of_one_file(
         "twin/logs/angles.py",
-        "tests/untidy/test_untidy.py",
+        "tests/untidy/test_guess.py",
         (
             "logs.a_wrong_number_of_counts_drifts",
             "any(one.counts for one in pair) and drifts(reference, measured)",

@@ -13,6 +13,7 @@ from diagnosis.setup.closure import turn_not_closed
 from diagnosis.setup.field import off_centre, too_strong, too_weak
 from diagnosis.setup.finding import Finding
 from diagnosis.setup.frozen import frozen
+from diagnosis.setup.instant import read_late
 from diagnosis.setup.link import lost_frames, other_status
 from diagnosis.setup.magnet_presence import axial_magnet, missing_magnet
 from diagnosis.setup.missing_reference import missing_reference
@@ -52,6 +53,7 @@ CHECKS: tuple[Check, ...] = (
     Check(("swapped_channels",), swapped_channels, _CHANNELS),
     Check(("swapped_roles",), swapped_roles),
     Check(("coarse_reference",), coarse_reference),
+    Check(("read_late",), read_late, ("reference_deg", "measured_deg", "speed_rpm")),
     Check(("weak_field",), too_weak),
     Check(("strong_field",), too_strong),
     Check(("off_centre",), off_centre),

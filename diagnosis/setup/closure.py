@@ -6,6 +6,7 @@ import numpy as np
 
 from diagnosis.setup.finding import Finding
 from diagnosis.setup.harmonics import FALSE_ALARM
+from diagnosis.setup.instant import read_late
 from diagnosis.setup.ratio import counts_a_turn
 from diagnosis.setup.record import Record
 from diagnosis.setup.step_change import steps_of
@@ -21,7 +22,7 @@ def turn_not_closed(record: Record) -> Finding | None:
     relation = record.relation
     if relation is None or not relation.follows or relation.turns < 1.2 or record.both.size < 48:
         return None
-    if counts_a_turn(record) is not None:
+    if counts_a_turn(record) is not None or read_late(record) is not None:
         return None
     travel = relation.travel_deg
     found = steps_of(relation.error_at_one_deg, travel, turn_of=record.measured_deg)

@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.setup.finding import Finding
 from diagnosis.setup.harmonics import fitted, times_sure, waves
+from diagnosis.setup.instant import read_late
 from diagnosis.setup.record import Record
 from diagnosis.setup.relation import Relation
 from diagnosis.setup.step_change import steps_of
@@ -174,7 +175,7 @@ def counts_a_turn(record: Record) -> Finding | None:
     relation = record.relation
     if relation is None or units(record) is not None or _simple(relation) is not None:
         return None
-    if relation.turns < _WHOLE_TURNS or relation.travel_deg.size < 24:
+    if relation.turns < _WHOLE_TURNS or relation.travel_deg.size < 24 or read_late(record) is not None:
         return None
     opened = _open_deg(relation)
     ratio = abs(relation.ratio)

@@ -45,6 +45,16 @@ SETUPS: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
+        "diagnosis/setup/instant.py",
+        _CHECKS,
+        (
+            "setup.no_two_speeds_differ",
+            "_TWO_SPEEDS = 0.2",
+            "_TWO_SPEEDS = 2.0",
+            "::test_a_late_reading_is_told_from_play_by_its_speeds",
+        ),
+    ),
+    *of_one_file(
         "diagnosis/setup/step_change.py",
         _CHECKS,
         (

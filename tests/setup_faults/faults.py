@@ -242,6 +242,18 @@ def coarse_reference(rng: np.random.Generator) -> Bench:
     return bench
 
 
+def read_late(rng: np.random.Generator) -> Bench:
+    """A sensor whose word is old when it is read, on a shaft that speeds up."""
+    bench = draw(rng, moving=True, turns=int(rng.integers(3, 6)), points=int(rng.integers(80, 300)))
+    late_s = float(rng.uniform(0.5e-3, 5e-3))
+    fastest = float(rng.uniform(1.0, 4.0)) / 6.0 / late_s
+    slowest = rng.uniform(0.1, 0.4)
+    speed = fastest * (slowest + (1.0 - slowest) * np.sin(np.linspace(0.0, np.pi, bench.n)))
+    bench.columns["time_s"] = np.cumsum(360.0 / bench.points / (6.0 * speed))
+    bench.columns["speed_rpm"] = speed
+    return _at(bench, bench.columns["measured_deg"] - 6.0 * late_s * speed, rng)
+
+
 def open_turn(rng: np.random.Generator) -> Bench:
     bench = draw(rng, turns=int(rng.integers(2, 6)), points=int(rng.integers(60, 300)))
     slip = rng.uniform(1.0, 10.0) * rng.choice([-1.0, 1.0])
@@ -315,6 +327,7 @@ FAULTS: dict[str, Fault] = {
     "swapped channels": Fault(swapped_channels, ("swapped_channels",)),
     "swapped roles": Fault(swapped_roles, ("swapped_roles",), DEGREES),
     "coarse reference": Fault(coarse_reference, ("coarse_reference",)),
+    "read late": Fault(read_late, ("read_late",)),
     "open turn": Fault(open_turn, ("turn_not_closed",)),
     "part of a turn": Fault(part_of_a_turn, ("part_of_a_turn",), ("own", "radians", "semicolon", "npz")),
     "mistyped": Fault(mistyped, ("typing_error",), DEGREES),

@@ -131,6 +131,22 @@ def test_rows_that_were_rejected_are_no_lost_frames() -> None:
     assert [one.kind for one in found] == ["lost_frames"]
 
 
+def test_a_late_reading_is_told_from_play_by_its_speeds() -> None:
+    """1.5 ms of a sensor at 100 to 300 rpm are 0.9 to 2.7 deg; at one speed they are a part of the zero."""
+    speed = 100.0 + 200.0 * np.sin(np.linspace(0.0, np.pi, TURN_DEG.size))
+    late = (reading() - 6.0 * 1.5e-3 * speed) % 360.0
+    record = Record(
+        "r",
+        {"reference_deg": TURN_DEG, "measured_deg": late, "speed_rpm": speed},
+        np.arange(1, TURN_DEG.size + 1),
+    )
+    found = [one for one in checked(record).findings if one.kind == "read_late"]
+    assert [one.what for one in found] == ["the sensor is read later than the other"]
+    assert "1.5 ms" in found[0].evidence
+    steady = (reading() - 6.0 * 1.5e-3 * 200.0) % 360.0
+    assert kinds(reference_deg=TURN_DEG, measured_deg=steady, speed_rpm=0.0 * TURN_DEG + 200.0) == []
+
+
 def test_no_record_ends_in_a_fault_of_the_program() -> None:
     """Columns of anything, of any length, in any company."""
     rng = np.random.default_rng(8)

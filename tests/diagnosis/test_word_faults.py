@@ -93,7 +93,7 @@ def test_diagnose_says_that_readings_were_told_back() -> None:
     assert any("word_bit: bit" in line and "told back" in line for line in found.sentences)
 
 
-@pytest.mark.parametrize("seed", [27, 31])
+@pytest.mark.parametrize("seed", [2, 31])
 def test_two_slips_are_told_with_their_instants(seed: int) -> None:
     """Two jumps of one sign look like a drift, unless both are placed together."""
     drawn = draw("index_slip", seed=seed)
@@ -119,3 +119,14 @@ def test_a_typing_error_of_a_small_table_is_named_as_its_row(seed: int) -> None:
     found = explain(drawn.columns)
     assert found.to_dict()["sweep"]["wild_rows"] == [drawn.truth["row"]]
     assert (found.verdict, found.causes) == ("adequate", ())
+
+
+def test_a_typing_error_is_told_among_readings_that_rise_and_fall() -> None:
+    """A six-step table: two readings a step, before and behind it; the row is off by twelve of their scatters."""
+    row = np.arange(22)
+    shaft = 360.0 / 11 * (row // 2) + 7.0 * (row % 2)
+    error = 1.9 * np.sin(2.0 * np.radians(shaft)) + 0.28 * np.random.default_rng(4).choice([-1.0, 1.0], 22)
+    error[16] += 3.5
+    found = explain({"reference_deg": shaft, "measured_deg": np.mod(shaft + error, 360.0)})
+    assert found.to_dict()["sweep"]["wild_rows"] == [17]
+    assert found.causes == ()

@@ -93,10 +93,10 @@ WORDS = (
         (f"{_ANSWERS}::test_a_scale_is_told_with_its_interval",),
     ),
     Mutation(
-        "index_slip.jumps_stay_where_each_was_best_alone",
+        "index_slip.the_search_sets_out_without_them",
         "twin/reference/index_slip.py",
-        "for place in range(len(jumps)) if len(jumps) > 1 else ():",
-        "for place in ():",
+        "if len(jumps) < 2 or",
+        "if True or",
         (f"{_ANSWERS}::test_two_slips_are_told_with_their_instants",),
     ),
     Mutation(
@@ -111,6 +111,6 @@ WORDS = (
         "diagnosis/discovery/marks/row_masks.py",
         "mask |= gross_of_few(fit)",
         "pass",
-        (f"{_ANSWERS}::test_a_typing_error_of_a_small_table_is_named_as_its_row",),
+        (f"{_ANSWERS}::test_a_typing_error_is_told_among_readings_that_rise_and_fall",),
     ),
 )

@@ -20,7 +20,8 @@ def sense_check(state: State) -> State:
     Angles alone tell who counts which way by the quadratic term only, and a cause may have stood in for it: in the
     other sense it has nothing to do, and is left out there. Each sense is judged by its likelihood, less what each of
     its causes had to gain to be added. Where the other one keeps all causes, they are forgotten and looked for anew. So
-    they are where one cause that no mirror leaves as it is, such as a stuck bit, is better there by itself.
+    they are where one cause that no mirror leaves as it is, such as a stuck bit, is better there by itself. Those that
+    the words have told stay in either sense.
     """
     fit, baseline = state.fit, state.baseline
     if state.given is not None or baseline is None or fit.observations.observables == 2:
@@ -28,7 +29,7 @@ def sense_check(state: State) -> State:
     other = solve(evaluate(fit.chain.mirrored(), fit.free, fit.observations, fit.weighting))
     here = likelihood(fit) + state.settings.swap_log_odds
     turned = _mirrored(state, baseline, other, here)
-    if turned is None and state.keys:
+    if turned is None and state.keys and not state.begun:
         fresh = solve(evaluate(other.chain.without(*state.keys), baseline.free, fit.observations, fit.weighting))
         if _one_cause_beats(here, fresh, state.searched):
             turned = state.with_(fresh, keys=())
@@ -46,7 +47,7 @@ def _mirrored(state: State, baseline: Fit, other: Fit, here: float) -> State | N
     if likelihood(pruned) - plan.threshold * spared <= here:
         return None
     fresh = solve(evaluate(pruned.chain.without(*keys), baseline.free, fit.observations, fit.weighting))
-    if not spared:
+    if not spared and not state.begun:
         return state.with_(fresh, keys=())
     return state.with_(pruned, keys=keys, baseline=fresh)
 

@@ -140,7 +140,7 @@ def _stands_still(motion: Motion) -> BoolArray:
     one that is not short, or to more than twice what steps to and fro of their size would.
     """
     step = np.diff(motion.shaft_rad)
-    longest = 0.2 * np.quantile(np.abs(step), 0.95)
+    longest = 0.1 * np.quantile(np.abs(step), 0.95)
     short = np.abs(step) < longest
     together = short & _same_way(motion)
     run = np.cumsum(~together)

@@ -130,3 +130,11 @@ def test_a_play_sampled_finely_after_reversals_is_told_from_a_hysteresis(seed: i
     assert "backlash" in {cause["name"], *cause["indistinguishable_from"]}
     # A standard deviation of n readings is known to 1 / sqrt(2 n); five times that, and what few causes take up.
     assert abs(answer["extended"]["heldout_rms_deg"] / NOISE_DEG - 1.0) < 5.0 / np.sqrt(2.0 * shaft.size)
+
+
+def test_two_readings_a_step_are_two_angles() -> None:
+    """A six-step table: each step is read 5 deg apart, a fifth or a seventh of the way to the next."""
+    for steps in (9, 11):
+        row = np.arange(2 * steps)
+        reference = 360.0 / steps * (row // 2) + 5.0 * (row % 2)
+        assert len(collect(_read({"reference_deg": reference, "measured_deg": reference + 1.0}))) == row.size

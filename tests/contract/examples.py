@@ -111,7 +111,7 @@ EXAMPLES: dict[str, Example] = {
     ),
     # hall
     "multipole": Example(
-        strengths={"x_percent": 0.6, "y_percent": -0.4, "ratio": 1.008, "beta_deg": 0.5, "q_percent": 0.3},
+        strengths={"x_percent": 0.6, "y_percent": -0.4, "ratio": 1.008, "beta_deg": 0.5},
         shapes={"periods": 4.0},
         signature=of_periods,
         origin={"ratio": 1.0},

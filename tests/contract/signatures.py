@@ -89,11 +89,10 @@ def stepper(motion: Motion, p: Params) -> Array:
 
 
 def of_periods(motion: Motion, p: Params) -> Array:
-    """The error model as of a sensor of one period, at p times the angle and over p."""
+    """Offset, gain and phase as in a sensor of one period, at p times the angle and over p."""
     a = p["periods"] * motion.shaft_rad
     turned = 0.01 * (np.cos(a) * p["y_percent"] - np.sin(a) * p["x_percent"])
     turned = turned + 0.5 * (p["ratio"] - 1.0) * np.sin(2.0 * a) + rad(p["beta_deg"]) * np.cos(a) ** 2
-    turned = turned + 0.01 * p["q_percent"] * np.sin(a) * np.cos(a) * (np.sin(a) - np.cos(a))
     return np.asarray(turned / p["periods"])
 
 

@@ -45,7 +45,7 @@ FOLLOWS: Mapping[str, Mapping[str, int]] = {
     "saturation": {"k_percent": 2},  # a loss of third order, against the first
     "quadratic_nonlinearity": {"q_percent": SQUARE},
     "offset": {"x_percent": VOLTS, "y_percent": VOLTS},
-    "multipole": {"x_percent": VOLTS, "y_percent": VOLTS, "q_percent": SQUARE},
+    "multipole": {"x_percent": VOLTS, "y_percent": VOLTS},
     "offset_drift": {"x_percent_per_K": VOLTS, "y_percent_per_K": VOLTS},
     "mains_pickup": {"x_percent": VOLTS, "y_percent": VOLTS},
     "noise": {"rms_deg": VOLTS},

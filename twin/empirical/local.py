@@ -54,7 +54,13 @@ def _seam(signal: Array, motion: Motion, values: Parameters, rng: np.random.Gene
     return signal + radians(values["step_deg"]) * (0.5 - behind / TAU)
 
 
+_ONE_TURN = 1.5
+"""Turns of travel from which on a drift shows over the turns, and no seam is looked for."""
+
+
 def _seam_shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
+    if motion.turns > _ONE_TURN:
+        return ()
     return [{"centre_deg": float(centre)} for centre in np.arange(0.0, 360.0, max(360.0 / motion.points_per_turn, 4.0))]
 
 

@@ -15,7 +15,6 @@ from twin.found_by import Comb
 from twin.hall.gain_mismatch import GAIN_MISMATCH
 from twin.hall.offset import OFFSET
 from twin.hall.phase import PHASE
-from twin.hall.quadratic_nonlinearity import QUADRATIC_NONLINEARITY
 from twin.motion import Motion
 
 MOST_PERIODS = 19
@@ -30,8 +29,6 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     periods = np.asarray(values["periods"])
     along_x, along_y = periods * signal[..., :1, :], periods * signal[..., 1:, :]
     x, y = np.cos(along_x), np.sin(along_y + radians(values["beta_deg"]))
-    bent = 0.01 * np.asarray(values["q_percent"])
-    x, y = x + bent * x**2, y + bent * y**2
     x, y = x + 0.01 * np.asarray(values["x_percent"]), y + 0.01 * np.asarray(values["y_percent"])
     away = np.arctan2(y * np.asarray(values["ratio"]), x) - np.arctan2(np.sin(along_y), np.cos(along_x))
     return np.asarray(signal + wrap(away) / periods)
@@ -61,7 +58,7 @@ def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str,
     }
 
 
-def _own(effect: Effect, name: str, *, mirror: Literal[-1, 0, 1]) -> Param:
+def _own(effect: Effect, name: str, *, mirror: Literal[-1, 1]) -> Param:
     """A factor of the error model as a factor within a period."""
     known = effect.params[name]
     return replace(known, doc=f"{known.doc}, within a period", typical=4.0 * known.typical, scatter=0.0, mirror=mirror)
@@ -79,13 +76,12 @@ MULTIPOLE = Effect(
         "y_percent": _own(OFFSET, "y_percent", mirror=-1),
         "ratio": _own(GAIN_MISMATCH, "ratio", mirror=1),
         "beta_deg": _own(PHASE, "beta_deg", mirror=-1),
-        "q_percent": _own(QUADRATIC_NONLINEARITY, "q_percent", mirror=0),
     },
     forward=forward,
     needs=frozenset({"one turn"}),
     shapes=shapes,
     comb=Comb(orders=orders, parts=(("x_percent", "y_percent"), ("ratio", "beta_deg"))),
     drawing=drawing,
-    source="the paper's Eq. 1, 2 and 5 with p times the angle: a sensor over p pole pairs, a resolver of p speeds",
-    signature="orders p, 2p and 3p, phases as of the error model within a period",
+    source="the paper's Eq. 1 with p times the angle: a sensor over p pole pairs, a resolver of p speeds",
+    signature="orders p and 2p, phases as of offset, gain and phase within a period; 3p where these are large",
 )

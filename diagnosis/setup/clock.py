@@ -14,6 +14,8 @@ _UNITS = {"ms": 1e3, "us": 1e6, "ns": 1e9, "min": 1.0 / 60.0}
 """How many of each a second holds."""
 _LONGEST_STEP_S = 1000.0
 """Between two readings of a recording; whole numbers beyond it are smaller units."""
+_SHORTEST_STEP_S = 1e-5
+"""The loops of the fastest drives read their sensor at 100 kHz."""
 _DENSE_S = 0.02
 """Stamps that are closer than this are those of a moving shaft, farther ones may be of stops."""
 _LEAST_SCATTER = 0.05
@@ -60,20 +62,23 @@ def unit_of_time(record: Record) -> Finding | None:
     if found is None:
         return None
     time, travel = found
-    unit, evidence = _by_speed(record, time, travel) or _by_length(time) or ("", "")
-    if not unit:
+    found_units, evidence = _by_speed(record, time, travel) or _by_length(time) or ((), "")
+    if not found_units:
         return None
+    lines = {unit: record.stated(time_s=1.0 / _UNITS[unit]) for unit in found_units}
+    alone = len(lines) == 1
     return Finding(
         kind="time_unit",
-        what=f"the time is in {unit}, not in s",
+        what=f"the time is in {' or '.join(lines)}, not in s",
         evidence=evidence,
         consequence="speeds are wrong by that factor: what goes with speed or frequency is missed or misjudged",
-        remedy="say the unit",
-        columns=record.stated(time_s=1.0 / _UNITS[unit]),
+        remedy="say the unit"
+        + ("" if alone else ": " + "; or ".join(f'for {unit} --columns "{line}"' for unit, line in lines.items())),
+        columns=next(iter(lines.values())) if alone else "",
     )
 
 
-def _by_speed(record: Record, time: Array, travel: Array) -> tuple[str, str] | None:
+def _by_speed(record: Record, time: Array, travel: Array) -> tuple[tuple[str, ...], str] | None:
     rpm = record.column("speed_rpm")
     if rpm is None:
         return None
@@ -91,20 +96,23 @@ def _by_speed(record: Record, time: Array, travel: Array) -> tuple[str, str] | N
         return None
     for unit, many in _UNITS.items():
         if abs(np.log(ratio / many)) < np.log(1.5):
-            return unit, (
+            return (unit,), (
                 f"by the stamps the shaft turns at {np.median(by_stamps):.4g} rpm, by speed_rpm at "
                 f"{np.median(np.abs(rpm[1:])[moving]):.4g} rpm, {ratio:.4g} times as fast"
             )
     return None
 
 
-def _by_length(time: Array) -> tuple[str, str] | None:
+def _by_length(time: Array) -> tuple[tuple[str, ...], str] | None:
     step = float(np.median(np.diff(time)))
     if abs(step) < _LONGEST_STEP_S or np.any(time % 1.0 != 0.0):
         return None
-    # Thousands between two readings are microseconds; milliseconds would be seconds each.
-    unit = "us" if abs(step) < 5e5 else "ns"
-    return unit, f"whole numbers, {step:.4g} from one reading to the next"
+    seconds = {unit: abs(step) / _UNITS[unit] for unit in ("ms", "us", "ns")}
+    may_be = {unit: one for unit, one in seconds.items() if _SHORTEST_STEP_S <= one < _LONGEST_STEP_S} or {
+        "ns": seconds["ns"]
+    }
+    said = " or ".join(f"{one:.4g} s if in {unit}" for unit, one in may_be.items())
+    return tuple(may_be), f"whole numbers, {step:.4g} from one reading to the next: {said}"
 
 
 def jitter_of_time(record: Record) -> Finding | None:

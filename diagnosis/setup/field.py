@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from diagnosis.setup.finding import Finding
-from diagnosis.setup.harmonics import amplitudes, fitted, noise_floor, times_sure, waves
+from diagnosis.setup.harmonics import FALSE_ALARM, amplitudes, fitted, noise_floor, times_sure, waves, white_noise
 from diagnosis.setup.magnet_presence import axial_magnet
 from diagnosis.setup.record import FEWEST, Record
 from twin.angles import Array
@@ -22,19 +22,36 @@ _FAR_OFF_DEG = 8.0
 between the gains."""
 _WEAK_BITS, _STRONG_BITS, _PRESENT = 16, 8, 32
 """Of the status word of AS5600 and its kin: magnet too weak, too strong, detected."""
+_END_ON_3V3 = 128.0
+"""Where the gain of an AS5600 on 3.3 V ends by its data sheet (AGC register): the middle of its range on 5 V."""
 
 
 def too_weak(record: Record) -> Finding | None:
     """A field that is too weak: the gain at its end, a reading that scatters, the sensor's own word."""
     said = _gain_at_end(record) or _status_says(record, _WEAK_BITS) or _scatters(record)
     if said is None:
-        return None
+        return _may_be_at_end(record)
     return Finding(
         kind="weak_field",
         what="the magnet is too weak or too far away",
         evidence=said,
         consequence="the reading scatters, and offsets and stray fields weigh more than they need to",
         remedy="bring the magnet nearer, or take a stronger one",
+    )
+
+
+def _may_be_at_end(record: Record) -> Finding | None:
+    """A gain that stands at the end of one supply's range, which is the middle of the other's."""
+    if _constant(record.column("agc")) != _END_ON_3V3 or _status_says(record, _PRESENT) is not None:
+        return None
+    return Finding(
+        kind="weak_field",
+        level="note",
+        what="the magnet is too weak or too far away, if the sensor is an AS5600 on 3.3 V",
+        evidence="agc is 128 in every row: the end of its range on 3.3 V, the middle of it on 5 V",
+        consequence="at its end the gain no longer makes up for the field: it scatters, and stray fields weigh more",
+        remedy=f"read the status: bit {_WEAK_BITS.bit_length() - 1} says whether the field is too weak; on 3.3 V bring "
+        "the magnet nearer until agc is about 64",
     )
 
 
@@ -124,14 +141,16 @@ def _clipped(record: Record) -> str | None:
         values = record.column(name)
         if values is None or values.size < FEWEST or not np.isfinite(values).all() or np.ptp(values) == 0.0:
             return None
-        step = float(np.min(np.diff(np.unique(values))))
-        share = float(np.arccos(1.0 - min(2.0 * step / float(np.ptp(values)), 2.0)) / np.pi)
+        # A sine is within one step of its end for this share of the turn. Noise brings no more readings to the end
+        # than lie within its mean positive part, 0.4 sigma, of it: a sine is the rarer the farther from its end.
+        near = float(np.min(np.diff(np.unique(values)))) + 0.4 * white_noise(values)
+        share = float(np.arccos(1.0 - min(2.0 * near / float(np.ptp(values)), 2.0)) / np.pi)
         for end in (values.max(), values.min()):
             # One row after the other: at angles that come again a sine meets its largest value again, too.
             count = int(np.sum((values[1:] == end) & (values[:-1] == end)))
-            chance = float(binom.sf(count - 1, values.size, min(3.0 * share, 1.0)))
+            chance = float(binom.sf(count - 1, values.size, share))
             found.append((count, chance))
-    if max(chance for _, chance in found) > 1e-5 or min(count for count, _ in found) < FEWEST:
+    if max(chance for _, chance in found) > FALSE_ALARM or min(count for count, _ in found) < FEWEST:
         return None
     return f"vx and vy stay at their largest and smallest value in {sum(count for count, _ in found)} rows"
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from diagnosis.setup.finding import Finding, rows_shown
 from diagnosis.setup.record import FEWEST, Record
+from twin.angles import Array, IntArray
 
 _MOST_STATES = 8
 _MOST_LOST = 0.5
@@ -20,12 +21,14 @@ def lost_frames(record: Record) -> Finding | None:
     values = frame[known]
     if known.size < FEWEST or np.any(values % 1.0 != 0.0):
         return None
-    modulus = 2.0 ** max(int(np.ceil(np.log2(max(float(np.max(np.abs(values))), 1.0) + 1.0))), 1)
-    step = np.mod(np.diff(values), modulus)
     apart = np.diff(record.numbers[known])
-    usual = float(np.median(step / apart))
-    if usual <= 0.0:
+    usual = _commonest(np.diff(values) / apart)
+    if usual < 0.0:
+        # One that counts down counts up in its mirror image.
+        values, usual = np.max(values) + np.min(values) - values, -usual
+    if usual == 0.0:
         return None
+    step = np.mod(np.diff(values), _modulus(values, apart, usual))
     wrong = step != usual * apart
     if not wrong.any() or wrong.mean() > _MOST_LOST:
         return None
@@ -40,6 +43,30 @@ def lost_frames(record: Record) -> Finding | None:
         remedy="read the bus without gaps (buffer, priority, rate); pair reference and reading by their own stamps",
         rows=rows,
     )
+
+
+def _commonest(values: Array) -> float:
+    """The value that comes most often in (n,); of two that come alike the larger."""
+    each, counts = np.unique(values, return_counts=True)
+    return float(each[each.size - 1 - int(np.argmax(counts[::-1]))])
+
+
+def _modulus(values: Array, apart: IntArray, usual: float) -> float:
+    """After how much a counter (n,) that goes on by ``usual`` in a row begins anew: 15, 100 or 256, as its wraps say.
+
+    ``apart`` (n - 1,) is how many rows each value is behind the one before it.
+    """
+    change = np.diff(values)
+    wraps = usual * apart[change < 0.0] - change[change < 0.0]
+    # A smaller step back is a frame out of order, or a counter that was set to zero.
+    wraps = wraps[wraps > np.ptp(values)]
+    if wraps.size:
+        wrap = _commonest(wraps)
+        # One wrap alone is that of a counter if that begins anew at 0 or at its first step; else frames are lost there.
+        if np.sum(wraps == wrap) > 1 or np.min(values) <= usual:
+            return wrap
+    most = max(float(np.max(np.abs(values))), 1.0)
+    return float(2.0 ** max(int(np.ceil(np.log2(most + 1.0))), 1))
 
 
 def other_status(record: Record) -> Finding | None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from diagnosis.setup.finding import Finding
 from diagnosis.setup.harmonics import FALSE_ALARM, fitted, waves
+from diagnosis.setup.ratio_search import p_of_any_ratio
 from diagnosis.setup.record import FEWEST, Record
 from diagnosis.setup.relation import travel_deg
 from twin.following import swing_deg
@@ -43,11 +44,14 @@ def missing_magnet(record: Record) -> Finding | None:
         return None
     if _p_of_orders(np.radians(travel), np.radians(record.measured_deg)) < FALSE_ALARM:
         return None
+    chance, highest = p_of_any_ratio(travel, record.measured_deg)
+    if chance < FALSE_ALARM:
+        return None
     return Finding(
         kind="no_magnet",
         what="the reading has nothing to do with the shaft: no magnet over the sensor, or another shaft's sensor",
-        evidence=f"no ratio of speeds up to 64 and no order up to {_ORDERS[-1]} of the turn makes it follow the "
-        f"reference over {np.ptp(travel) / 360.0:.1f} turns",
+        evidence=f"no ratio of speeds up to {highest:.0f} and no order up to {_ORDERS[-1]} of the turn makes it follow "
+        f"the reference over {np.ptp(travel) / 360.0:.1f} turns",
         consequence="there is no error to explain: the reading is noise, or another quantity",
         remedy="check that the magnet is there and within the sensor's air gap, and that both columns belong to one "
         "shaft and one recording",

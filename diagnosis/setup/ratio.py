@@ -12,13 +12,19 @@ from diagnosis.setup.harmonics import fitted, times_sure, waves
 from diagnosis.setup.instant import read_late
 from diagnosis.setup.record import Record
 from diagnosis.setup.relation import Relation
+from diagnosis.setup.sampling import even_points
 from diagnosis.setup.step_change import steps_of
 from twin.angles import Array
+from twin.following import spread_deg
 from twin.logs.angles import AngleUnit, Pair, units_of_pair
 from twin.logs.names import Meaning
 
 _LARGEST_TERM = 12
 """Of pole pairs and gears: a ratio of larger whole numbers is one of counts."""
+_MOST_PAIRS = 128
+"""Pole pairs of 2 mm on a ring 80 mm across: an alias of more is not thought of."""
+_ALIKE = 1.5
+"""An alias that leaves so many times as much is told from the ratio by the points' own unevenness."""
 _WHOLE_TURNS = 0.9
 """On less of the turn an error of order 1 looks like a ratio."""
 _NEAR, _FAR = 1e-3, 0.02
@@ -151,6 +157,8 @@ def pole_pairs(record: Record) -> Finding | None:
     if simple is None or (simple.denominator > 1 and simple.numerator > 1 and relation.turns < _WHOLE_TURNS):
         return None
     p, q = simple.numerator, simple.denominator
+    rivals = _aliases(record, relation, p) if q == 1 else ()
+    named = " or ".join(map(str, rivals))
     if q == 1:
         what = f"the reading turns {p} times as fast: an electrical angle of {p} pole pairs, or a {p}:1 gear before it"
     elif p == 1:
@@ -161,13 +169,34 @@ def pole_pairs(record: Record) -> Finding | None:
         what = f"the reading turns {p}/{q} times as fast: {p} pole pairs where {q} are assumed, or a {p}:{q} gear"
     return Finding(
         kind="pole_pairs",
-        what=what,
+        what=what + (f"; or {named} pole pairs" if rivals else ""),
         evidence=f"{abs(relation.ratio):.4f} turns of the reading in one of the reference, over {relation.turns:.2g} "
-        "of the latter",
+        "of the latter" + (f"; {even_points(record)} even points a turn show {p} and {named} alike" if rivals else ""),
         consequence="the two columns do not tell the same angle, and no sweep can be made of them as they are",
-        remedy="set the number of pole pairs or the gear ratio, or say it",
+        remedy="set the number of pole pairs or the gear ratio, or say it"
+        + (
+            f"; a dozen readings within one step tell {p} from {named}, or {2 * max(rivals) + 8} points a turn; until "
+            f"then the statement holds for {p} alone"
+            if rivals
+            else ""
+        ),
         columns=record.turned(measured_deg=p / q) if p > q else record.turned(reference_deg=q / p),
     )
+
+
+def _aliases(record: Record, relation: Relation, times: int) -> tuple[int, ...]:
+    """Other numbers of pole pairs that the points of the turn show like ``times``, in either sense of counting."""
+    points = even_points(record)
+    if points is None:
+        return ()
+    sense = float(np.sign(relation.ratio))
+    left = spread_deg(record.measured_deg - sense * times * relation.travel_deg)
+    found = []
+    for rival in (times - points, times + points):
+        other = spread_deg(record.measured_deg - sense * rival * relation.travel_deg)
+        if times < abs(rival) <= _MOST_PAIRS and other < _ALIKE * left:
+            found.append(abs(rival))
+    return tuple(found)
 
 
 def counts_a_turn(record: Record) -> Finding | None:

@@ -7,15 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.setup.harmonics import Fitted, fitted, waves
+from diagnosis.setup.ratio_search import closeness, part_to_search
 from twin.angles import Array, wrap_deg
 from twin.following import FOLLOWS_DEG, follows, spread_deg
 
-_MOST_RATIO = 64.0
-_SEARCHED_TURNS, _SEARCHED_ROWS = 3.0, 1500
 _SMALL_STEP_DEG = 90.0
 """Rows of the reference that are typically closer than this follow one another round the turn."""
 _WHOLE = 0.9
 """Turns from which orders are told from a slope."""
+_AS_CLOSE = 0.95
+"""Share of the closest: a fifth of a line's width beside its middle it is sinc(0.2) = 0.94."""
 _SHARE = 0.6
 """A reading that follows is off by less than this share of what it follows, see :mod:`twin.following`."""
 
@@ -91,24 +92,18 @@ def relation_of(reference_deg: Array, measured_deg: Array) -> Relation | None:
 
 def _searched(travel: Array, measured: Array) -> float | None:
     """The ratio at which a reading (n,) goes most closely with the reference (n,); None where it does with none."""
-    inside = np.flatnonzero(np.abs(travel - travel[0]) <= 360.0 * _SEARCHED_TURNS)
-    inside = inside[: int(np.argmax(np.diff(inside, append=inside[-1] + 2) > 1)) + 1]
-    part = inside[:: max(-(-inside.size // _SEARCHED_ROWS), 1)]
-    at, reading = travel[part], measured[part]
-    turns = max(float(np.ptp(at)) / 360.0, 0.1)
-    step = float(np.median(np.abs(np.diff(at)))) if part.size > 1 else 360.0
-    most = min(_MOST_RATIO, 180.0 / step if step > 0.0 else _MOST_RATIO)
-    ratios = np.arange(0.2 / turns, most, 0.2 / turns)
-    if not ratios.size:
+    part = part_to_search(travel)
+    if not part.ratios.size:
         return None
-    ratios = np.concatenate([ratios, -ratios])
-    turning = np.exp(1j * np.radians(reading))
-    close = [abs(np.mean(turning * np.exp(-1j * np.radians(ratio * at)))) for ratio in ratios]
-    best = float(ratios[int(np.argmax(close))])
-    finer = best + np.linspace(-0.2, 0.2, 41) / turns
+    at, reading = travel[part.rows], measured[part.rows]
+    close = closeness(at, np.exp(1j * np.radians(reading)), part.ratios)
+    # Of ratios that go as closely, as those that even points show alike, the smallest.
+    place = int(np.argmax(np.max(close, axis=0) >= _AS_CLOSE * np.max(close)))
+    best = float(part.ratios[place]) * (1.0 if close[0, place] >= close[1, place] else -1.0)
+    finer = best + np.linspace(-1.0, 1.0, 41) * part.finest
     best = float(min(finer, key=lambda ratio: spread_deg(reading - ratio * at)))
     off = spread_deg(reading - best * at)
-    if abs(best) < 0.1 / turns:
+    if abs(best) < 0.5 * part.finest:
         return None
     return best if off <= min(FOLLOWS_DEG, _SHARE * spread_deg(best * at)) else None
 

@@ -43,6 +43,13 @@ def _angles(record: Record) -> Array:
     return np.asarray(at[np.concatenate([[closed or apart.sum() == 0], apart])])
 
 
+def even_points(record: Record) -> int | None:
+    """How many even points make the turn; None where they are not even."""
+    angles = _angles(record)
+    gaps = np.diff(angles, append=angles[0] + 360.0) if angles.size > 1 else np.zeros(0)
+    return angles.size if gaps.size and np.ptp(gaps) <= _EVEN_ANGLES * 360.0 / angles.size else None
+
+
 def few_points(record: Record) -> Finding | None:
     """Fewer angles in the turn than the error model's orders need."""
     if record.both.size < 2:
@@ -85,10 +92,8 @@ def aliased_order(record: Record) -> Finding | None:
     relation = record.relation
     if relation is None or not relation.follows or relation.turns < 0.9:
         return None
-    angles = _angles(record)
-    points = angles.size
-    gaps = np.diff(angles, append=angles[0] + 360.0)
-    if not 2 * FEWEST <= points <= 2 * _HIGHEST_ORDER or np.ptp(gaps) > _EVEN_ANGLES * 360.0 / points:
+    points = even_points(record)
+    if points is None or not 2 * FEWEST <= points <= 2 * _HIGHEST_ORDER:
         return None
     found = _strongest_order(np.radians(relation.travel_deg), relation.error_deg, points)
     if found is None:

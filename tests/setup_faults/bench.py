@@ -103,9 +103,9 @@ def _beside(bench: Bench, rng: np.random.Generator) -> None:
     if rng.random() < 0.3:
         bench.columns["status"] = np.full(bench.n, float(rng.choice([0.0, 1.0, 32.0])))
     if rng.random() < 0.3:
-        bench.columns["frame"] = np.mod(
-            np.arange(bench.n) + float(rng.integers(0, 200)), float(rng.choice([16, 256, 65536]))
-        )
+        # A nibble, the 0 to 14 of AUTOSAR's end-to-end protection, a byte, decimal digits, a stamp in steps of 10.
+        step, modulus = rng.choice([[1, 16], [1, 15], [1, 256], [1, 100], [10, 1000], [3, 256], [1, 65536]])
+        bench.columns["frame"] = np.mod(step * (np.arange(bench.n) + float(rng.integers(0, 200))), float(modulus))
     if rng.random() < 0.3:
         bench.columns["temperature_c"] = 24.0 + 0.01 * np.cumsum(rng.standard_normal(bench.n))
 

@@ -284,7 +284,7 @@ def mistyped(rng: np.random.Generator) -> Bench:
 
 def lost_frames(rng: np.random.Generator) -> Bench:
     bench = draw(rng, points=int(rng.integers(80, 400)))
-    bench.columns["frame"] = np.mod(np.arange(bench.n) * 1.0, 256.0)
+    bench.columns["frame"] = np.mod(np.arange(bench.n) * 1.0, float(rng.choice([15, 100, 256])))
     lost = rng.choice(np.arange(2, bench.n - 2), int(rng.integers(1, 12)), replace=False)
     kept = np.setdiff1d(np.arange(bench.n), lost)
     bench.columns = {name: values[kept] for name, values in bench.columns.items()}

@@ -189,7 +189,8 @@ def _begun(
     parts = sweeps if len(sweeps) > 1 else [searched_part(sweeps[0])]
     read = read_words(parts, (given or start).effects, settings or DiscoverySettings())
     read, given = read.beside(given)
-    in_words: dict[str, Any] = {"touched": read.lost, "findings": read.findings, "words": read.words, "watch": watch}
+    told = {"findings": read.findings, "words": read.words, "told_back": read.told_back}
+    in_words: dict[str, Any] = {"touched": read.lost, **told, "watch": watch}
     if len(sweeps) > 1:
         watch.told("error_model", ())
         together = joined(read.sweeps, (given or start).effects, mounting=mounting, given=given, rng=rng)

@@ -18,12 +18,14 @@ class Decoded:
     """A recording without the faults of its words.
 
     ``sweep`` holds the readings told back, and where nothing is left of one what is expected there; ``lost`` (n,) masks
-    the latter. ``faults`` are those that were found, each with the key of its instance; ``off_rad`` is the RMS of what
-    each did to the readings that it touched, and ``said`` tells it in words.
+    the latter, ``told_back_rad`` (n,) is what the others had been off by. ``faults`` are those that were found, each
+    with the key of its instance; ``off_rad`` is the RMS of what each did to the readings that it touched, and ``said``
+    tells it in words.
     """
 
     sweep: Sweep
     lost: BoolArray
+    told_back_rad: Array
     faults: tuple[tuple[str, WordFault], ...] = ()
     off_rad: tuple[float, ...] = ()
     said: tuple[str, ...] = ()
@@ -74,7 +76,7 @@ def decoded(sweep: Sweep, effects: Iterable[Effect], *, limit_log_p: float = LIM
     words = Words(radians(sweep.reference_deg), measured, ~lost)
     found = faults_of(words, finders, limit_log_p) if finders else ()
     if not found:
-        return Decoded(sweep, lost)
+        return Decoded(sweep, lost, np.zeros(len(sweep)))
     for _, fault in found:
         words, lost = words.without(fault), lost | fault.lost
     expected = np.round(words.expected.angle / words.step) * words.step
@@ -84,7 +86,8 @@ def decoded(sweep: Sweep, effects: Iterable[Effect], *, limit_log_p: float = LIM
     changed = np.abs(wrap(told - measured)) > 1e-9
     read = np.where(changed, np.degrees(told % TAU), sweep.measured_deg)
     said = tuple(f"{name}: {finders[name].said(fault.values)}" for name, fault in found)
-    return Decoded(replace(sweep, measured_deg=read), lost, _numbered(found), off, said)
+    back = np.where(lost | ~changed, 0.0, _half_turn_down(measured - told))
+    return Decoded(replace(sweep, measured_deg=read), lost, back, _numbered(found), off, said)
 
 
 def begun_by_words(sweep: Sweep, lost: BoolArray, effects: Iterable[Effect]) -> tuple[tuple[str, WordFault], ...]:
@@ -119,6 +122,12 @@ def _numbered(found: Iterable[tuple[str, WordFault]]) -> tuple[tuple[str, WordFa
         count[name] = count.get(name, 0) + 1
         told.append((name if count[name] == 1 else f"{name}#{count[name]}", fault))
     return tuple(told)
+
+
+def _half_turn_down(away: Array) -> Array:
+    """Differences (n,) [rad] within half a turn; half a turn itself, whatever its rounding, counts downwards."""
+    edge = TAU / 2.0 + 1e-6
+    return np.asarray(np.mod(away + edge, TAU) - edge)
 
 
 def _rms(values: Array) -> float:

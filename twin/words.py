@@ -142,6 +142,17 @@ class Words:
         return replace(self, measured=fault.decoded, usable=self.usable & ~fault.lost)
 
 
+@dataclass(frozen=True)
+class Alike:
+    """Another fault that sends the very same words: ``said`` puts it into words.
+
+    ``zero_rad`` is what it adds to each reading that is told back, and so to what the reference's zero reads.
+    """
+
+    said: str
+    zero_rad: float
+
+
 @dataclass(frozen=True, eq=False)
 class WordFault:
     """What a fault of the link did to the words of a sweep.
@@ -158,6 +169,8 @@ class WordFault:
         The readings (n,) [rad] as they would be without it, where that can be told.
     also : tuple
         Parameters of further instances that were told together with the first.
+    alike : tuple of Alike
+        What sends the very same words.
     """
 
     values: Mapping[str, float]
@@ -167,6 +180,7 @@ class WordFault:
     decoded: Array
     intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     also: tuple[Mapping[str, float], ...] = ()
+    alike: tuple[Alike, ...] = ()
 
 
 class FindInWords(Protocol):
@@ -179,12 +193,14 @@ class FindInWords(Protocol):
 class InWords:
     """How a fault of the link is told by the words themselves.
 
-    ``said`` puts a fault's parameters into words. ``rows_listed``: whether the answer names each reading that it
-    touched. ``several``: whether there may be more of them in one sweep.
+    ``said`` puts a fault's parameters into words; ``line`` does so with each as it is shown, with its interval and
+    unit. ``rows_listed``: whether the answer names each reading that it touched. ``several``: whether there may be more
+    of them in one sweep.
     """
 
     find: FindInWords
     said: Callable[[Mapping[str, float]], str]
+    line: Callable[[Mapping[str, float], Mapping[str, str]], str] | None = None
     rows_listed: bool = False
     several: bool = False
 

@@ -13,6 +13,7 @@ from diagnosis.discovery.settings import over_footprints
 from twin.catalogue import CATALOGUE, base_name, find, of_one_source, unnamed
 from twin.each_recording import everywhere
 from twin.effect import Effect
+from twin.words import Alike
 
 if TYPE_CHECKING:
     from diagnosis.discovery.further.power import Option
@@ -27,7 +28,7 @@ class Finding:
     ``rivals`` are the fits with another effect in its place, ``options`` the measurements that would part them.
     ``rows`` are the raw rows (from 0) that a cause of single readings has touched; ``intervals`` are of parameters
     that no fit of the mean has, by instance and name. ``rows_off_deg`` is the RMS of what it did to its rows, where
-    that was taken off them ahead of the fit.
+    that was taken off them ahead of the fit; ``alike`` are the faults that send the very same words.
     """
 
     keys: tuple[str, ...]
@@ -41,6 +42,7 @@ class Finding:
     rows: tuple[int, ...] = ()
     intervals: Mapping[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     rows_off_deg: float | None = None
+    alike: tuple[Alike, ...] = ()
 
     def __repr__(self) -> str:
         others = ", ".join(dict.fromkeys(map(everywhere, self.rivals)))

@@ -18,6 +18,7 @@ from diagnosis.discovery.proof.misfit import Misfit, misfits
 from diagnosis.discovery.proof.predictive_check import PredictiveCheck
 from diagnosis.discovery.proof.whole_recordings import are_halves
 from diagnosis.discovery.state import State
+from twin.angles import Array
 from twin.catalogue import unnamed
 from twin.chain import Chain
 from twin.each_recording import device_of, everywhere
@@ -42,7 +43,8 @@ class Discovery:
     factors, which hold what they do. ``rival_fits`` are the fits with another effect, whose name stands beside, in the
     place of a cause. ``alone`` is each of several recordings fitted by itself, and ``whole_recordings`` whether these
     were held out as a whole. ``words`` are the effects on the words as they were sent: ``sweep`` holds the readings
-    without them, ``fit`` is of these, and the device has them.
+    without them, ``fit`` is of these, and the device has them; ``told_back`` (n,) [rad] is what readings that
+    were told back had been off by, None where none was.
     """
 
     sweep: Sweep
@@ -70,6 +72,7 @@ class Discovery:
     rival_fits: tuple[tuple[str, Fit], ...] = ()
     whole_recordings: bool = False
     words: Mapping[str, Parameters] = field(default_factory=dict)
+    told_back: Array | None = None
 
     def __repr__(self) -> str:
         names = ", ".join(cause.name for cause in self.causes) or "no cause"
@@ -116,6 +119,7 @@ class Discovery:
             alone=state.alone,
             rival_fits=state.rival_fits,
             words=state.words,
+            told_back=state.told_back,
             whole_recordings=state.fold is not None and are_halves(fit, state.fold),
         )
 

@@ -48,9 +48,9 @@ class State:
     also ``own``, its parameters that are asked whether they have moved, ``changed``, those that have,
     ``other_device``, whether so many have that it is another's twin, and ``fitted_anew``, whether the others were not
     held at its values, as it hardly tells some from the rest. ``words``, the effects on the words as they were sent,
-    which the readings of the sweep have been freed of; ``begun``, those on every reading that the words tell so plainly
-    that the fit sets out with them. Of several recordings ``alone``, each of them fitted by
-    itself.
+    which the readings of the sweep have been freed of, and ``told_back`` (n,) [rad] what that took off them; ``begun``,
+    those on every reading that the words tell so plainly that the fit sets out with them. Of several recordings
+    ``alone``, each of them fitted by itself.
     """
 
     sweep: Sweep
@@ -78,6 +78,7 @@ class State:
     other_device: bool = False
     fitted_anew: bool = False
     words: Mapping[str, Parameters] = field(default_factory=dict)
+    told_back: Array | None = None
     begun: Mapping[str, Parameters] = field(default_factory=dict)
     watch: Watch = field(default_factory=Watch)
 

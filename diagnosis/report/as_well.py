@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.result import Discovery
@@ -21,12 +23,20 @@ def as_well(found: Discovery, cause: Finding) -> dict[str, Any]:
     beside = _beside(found, cause)
     return {
         "indistinguishable_from": [*dict.fromkeys(map(everywhere, cause.rivals)), *(stage for stage, _ in beside)],
+        **_same_words(found, cause),
         "rivals_sought": found.cut_short is None,
         "to_tell_apart": "; ".join([*told, *(words for _, words in beside)]),
         "to_tell_apart_options": [
             {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options
         ],
     }
+
+
+def _same_words(found: Discovery, cause: Finding) -> dict[str, list[dict[str, Any]]]:
+    """The faults that send the very same words, and by how much the zero is another with each."""
+    sense = found.fit.chain.output_sense
+    entries = [{"what": one.said, "zero_by_deg": float(np.degrees(sense * one.zero_rad))} for one in cause.alike]
+    return {"same_words": entries} if entries else {}
 
 
 def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:

@@ -16,10 +16,11 @@ from diagnosis.report import statements
 from diagnosis.report.change_words import change_line, change_name, change_rivals_words
 from diagnosis.report.over_class import in_factors_words, open_words
 from diagnosis.report.recordings import recordings_notes, recordings_table, where_words
+from diagnosis.report.rivals_words import rivals_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.setup_words import setup_block
 from diagnosis.report.statements import FactorRow
-from diagnosis.report.wording import assumed_words, chance, rivals_words
+from diagnosis.report.wording import assumed_words, chance
 
 _ALL_SAID = ("adequate", "explained")
 """Verdicts that leave nothing open."""

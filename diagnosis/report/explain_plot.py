@@ -9,7 +9,7 @@ import numpy as np
 from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.change_words import change_name
-from diagnosis.report.facts import angle_error_deg
+from diagnosis.report.facts import angle_error_deg, as_sent_deg
 from diagnosis.report.fitted_rows import fitted
 from diagnosis.report.plotting import DIRECTIONS, drawing
 from twin.angles import Array
@@ -33,8 +33,10 @@ def residual_figure(found: Discovery) -> Figure:
     angle, way = np.mod(sweep.reference_deg, 360.0), sweep.motion().direction
     error_deg = angle_error_deg(found.baseline, sweep)
     start = "error model" if found.given is None else "given twin"
+    sent = as_sent_deg(found)
+    first = "as measured" if sent is None else f"decoded (as sent: {np.std(sent[kept]):.3g} deg RMS)"
     columns = (
-        ("as measured", error_deg - np.mean(error_deg[kept])),
+        (first, error_deg - np.mean(error_deg[kept])),
         (f"left by the {start}", np.degrees(raw_residual(found.baseline, sweep))),
         ("left by the extended twin", np.degrees(raw_residual(found.fit, sweep))),
     )

@@ -44,6 +44,14 @@ def angle_error_deg(fit: Fit, sweep: Sweep) -> Array:
     return _without_mean_deg(error)
 
 
+def as_sent_deg(found: Discovery) -> Array | None:
+    """Error of the words as they were sent [deg] (n,), without its mean; None where all readings are as they were."""
+    if found.told_back is None:
+        return None
+    error = angle_error_deg(found.baseline, found.sweep) + np.degrees(found.told_back)
+    return np.asarray(error - np.mean(error))
+
+
 def _without_mean_deg(error: Array) -> Array:
     """Angles [rad] (n,) without their mean, in degrees."""
     centre = np.angle(np.mean(np.exp(1j * error)))

@@ -12,7 +12,7 @@ import numpy as np
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.discovery.result import Discovery
-from diagnosis.report.facts import angle_error_deg
+from diagnosis.report.facts import angle_error_deg, as_sent_deg
 from twin.effect import BoolArray
 
 
@@ -45,7 +45,9 @@ def of_baseline(found: Discovery) -> dict[str, Any]:
     error_deg = angle_error_deg(found.baseline, found.sweep)[rows]
     before = float(np.std(error_deg))
     after = rms_deg(found, found.baseline)
+    sent = as_sent_deg(found)
     return {
+        **({} if sent is None else {"as_sent_error_rms_deg": float(np.std(sent[rows]))}),
         "fitted_error_rms_deg": before,
         "fitted_rms_deg": after,
         "explained_percent": 100.0 * (1.0 - (after / before) ** 2) if before > 0.0 else None,

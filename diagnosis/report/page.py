@@ -17,11 +17,13 @@ from diagnosis.report.data import Readings, readings, two_ways
 from diagnosis.report.facts import facts
 from diagnosis.report.over_class import in_factors_words, open_words
 from diagnosis.report.recordings import RMS_HEADS, recordings_notes, recordings_table, where_words
+from diagnosis.report.rivals_words import rivals_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.style import CSS
 from diagnosis.report.svg import Plot
 from diagnosis.report.tables import number
-from diagnosis.report.wording import assumed_words, minus, plain, rivals_words
+from diagnosis.report.word_fault_words import as_sent_words
+from diagnosis.report.wording import assumed_words, minus, plain
 from twin.catalogue import find
 from twin.whole_file import write_beside
 
@@ -123,8 +125,9 @@ def _baseline(answer: Mapping[str, Any], read: Readings, found: Discovery) -> st
         f"({_text(statements.floor_words(answer))}).</p>"
     )
     limits = drawn.residual_limits(read)
+    decoded = " The readings are the decoded ones." if as_sent_words(answer["baseline"])[0] else ""
     pictures = [
-        ("The error, and the baseline's prediction", "The zero is removed.", drawn.error(read)),
+        ("The error, and the baseline's prediction", f"The zero is removed.{decoded}", drawn.error(read)),
         ("What the baseline leaves", "", drawn.residual(read, read.before_deg, limits=limits)),
     ]
     if statements.extends(answer):
@@ -214,7 +217,7 @@ def _picture_names(named: Finding) -> list[str]:
 
 def _rivals(cause: Mapping[str, Any]) -> str:
     rivals = cause["indistinguishable_from"]
-    if not cause.get("rivals_sought", True):
+    if not cause.get("rivals_sought", True) or cause.get("same_words"):
         return f"<p>{statements.sentence(_text(rivals_words(cause)))}</p>"
     if not rivals:
         return "" if cause["name"] == "unnamed" else "<p>Nothing else that was searched explains the same readings.</p>"

@@ -15,12 +15,12 @@ from diagnosis.report.change_words import other_device_words
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
 from diagnosis.report.recordings import contradictions
 from diagnosis.report.row_counts import rows_listed
+from diagnosis.report.word_fault_words import as_sent_words, instance_line
 from diagnosis.report.wording import (
     around,
     figure,
     instances,
     listed,
-    parameter_line,
     plain,
     structure_words,
     with_unit,
@@ -110,15 +110,16 @@ def baseline_words(answer: Mapping[str, Any]) -> str:
     baseline, sweep = answer["baseline"], answer["sweep"]
     model = "The given twin" if sweep.get("held_against") == "given twin" else "The paper's error model"
     before, after = baseline["fitted_error_rms_deg"], baseline["fitted_rms_deg"]
+    sent, decoded = as_sent_words(baseline)
     aside = sweep["used"] - sweep["fitted"]
     over = f", over the {sweep['fitted']} readings that were fitted" if aside else ""
     steps = f"{plain(before)} -> {plain(after)} deg RMS{over}"
     share = baseline["explained_percent"]
     if share is None:
-        return f"{model} leaves {plain(after)} deg RMS{over}"
+        return f"{model} leaves {plain(after)} deg RMS{over}{sent}"
     if share < 0.0:
-        return f"{model} makes the error larger: {steps}"
-    return f"{model}: error {steps}; {percent_shown(share)} % of its mean square explained"
+        return f"{model} makes the error larger: {steps}{sent}"
+    return f"{model}: error{decoded} {steps}; {percent_shown(share)} % of its mean square explained{sent}"
 
 
 def percent_shown(share: float) -> str:
@@ -261,7 +262,7 @@ def parameter_lines(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> list
     """A cause's parameters, one line an instance; structure without a name in words."""
     if cause["name"] == "unnamed":
         return structure_lines(answer)
-    return [line for line in map(parameter_line, instances(cause["parameters"])) if line]
+    return [line for one in instances(cause["parameters"]) if (line := instance_line(cause["name"], one))]
 
 
 def structure_lines(answer: Mapping[str, Any]) -> list[str]:

@@ -187,19 +187,6 @@ def assumed_words(cause: Mapping[str, Any]) -> str:
     return f"assumed, as no magnet is described (--magnet, --twin): {assumed}" if assumed else ""
 
 
-def rivals_words(cause: Mapping[str, Any]) -> str:
-    """What a cause cannot be told from, and what would part them; empty for structure without a name."""
-    if cause["name"] == "unnamed":
-        return ""
-    rivals = cause["indistinguishable_from"]
-    if not cause.get("rivals_sought", True):
-        return "what else it may be was not looked for, as the search was stopped"
-    if not rivals:
-        return "cannot be told from: nothing else that was searched"
-    part = f". To tell them apart: {cause['to_tell_apart']}" if cause["to_tell_apart"] else ""
-    return f"cannot be told from: {', '.join(rivals)}{part}"
-
-
 # ---- findings ---------------------------------------------------------------------------------------------------
 
 

@@ -27,8 +27,8 @@ def axial_magnet(record: Record) -> Finding | None:
     return Finding(
         kind="axial_magnet",
         what="the magnet is axial instead of diametral, or not over the sensor",
-        evidence=f"the reading swings between {low % 360.0:.0f} and {high % 360.0:.0f} deg while the reference goes "
-        f"through {np.ptp(travel_deg(record.reference_deg)):.0f} deg",
+        evidence=f"the reading swings between {low % 360.0:.0f} and {high % 360.0:.0f} deg while the reference "
+        f"goes round {np.ptp(travel_deg(record.reference_deg)) / 360.0:.2f} times",
         consequence="the field at the sensor does not turn with the shaft, so that no angle can be computed from it",
         remedy="use a magnet magnetised across its diameter, centre it on the shaft's end and put the sensor in front "
         "of it; beside a shaft, a multipole ring or a sensor for that place",

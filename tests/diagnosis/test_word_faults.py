@@ -11,6 +11,7 @@ from diagnosis import diagnose, explain
 from diagnosis.explanation import Explanation
 from tests.command_line import halltwin
 from tests.hidden.link_faults import Drawn, draw
+from twin.baseline import FACTORS
 from twin.decoded import decoded
 from twin.sweep import Sweep
 
@@ -130,3 +131,75 @@ def test_a_typing_error_is_told_among_readings_that_rise_and_fall() -> None:
     found = explain({"reference_deg": shaft, "measured_deg": np.mod(shaft + error, 360.0)})
     assert found.to_dict()["sweep"]["wild_rows"] == [17]
     assert found.causes == ()
+
+
+def with_bit_5_held(tmp_path: Path) -> Path:
+    """A file of two turns whose 12-bit words have bit 5 at 0, worth 2.8125 deg; the sensor's zero is 41 deg."""
+    angle = np.arange(360) * 2.0
+    read = angle + 41.0 + 1.2 * np.sin(np.radians(angle)) + 0.03 * np.random.default_rng(2).standard_normal(360)
+    words = np.round(read / 360.0 * 4096).astype(np.int64) % 4096
+    path = tmp_path / "held.csv"
+    Sweep(angle, (words & ~32) * (360.0 / 4096)).write(path)
+    return path
+
+
+def test_what_sends_the_same_words_is_told_with_its_zero(tmp_path: Path) -> None:
+    path = with_bit_5_held(tmp_path)
+    found = explain(path)
+    answer = found.to_dict()
+    (cause,) = answer["causes"]
+    zero = answer["extended"]["parameters"]["zero_deg"]
+    # Orders 1 and 2 of the factors leave little of the mean: a hundredth of a degree.
+    assert zero["value"] == pytest.approx(-41.0, abs=0.02)
+    (other,) = cause["same_words"]
+    assert other["zero_by_deg"] == pytest.approx(32 * 360.0 / 4096)
+    # A twin with the other fault and the zero that it then has sends the same words, but for what the factors turn.
+    twin, motion = found.extended, found.sweep.motion()
+    (factor,) = (one for one in FACTORS if one.name == "zero_deg")
+    moved = twin.values[factor.key][factor.param] + other["zero_by_deg"] / factor.scale
+    own = {key: dict(twin.values[key]) for key in ("word_bit", factor.key)}
+    own["word_bit"]["into"], own[factor.key][factor.param] = 1.0, moved
+    beside = twin.with_values(own)
+    away = beside.simulate(motion, seed=1).measured_deg - twin.simulate(motion, seed=1).measured_deg
+    assert np.median(np.abs((away + 180.0) % 360.0 - 180.0)) < 0.1
+    said = " ".join(halltwin("explain", path).out.split())
+    assert "bit 5 of the 12-bit word is stuck at 0; the bit is worth 2.8125 deg" in said
+    assert "cannot be told from: bit 5 of the 12-bit word is read into bit 6 (added to it)" in said
+    assert "the zero would then be about 2.81 deg larger" in said
+    assert "level 0" not in said
+
+
+def test_the_error_of_the_words_as_sent_stands_beside_that_of_the_decoded_ones(tmp_path: Path) -> None:
+    path = with_bit_5_held(tmp_path)
+    found = explain(path)
+    baseline = found.to_dict()["baseline"]
+    # Half of the readings lack 2.8125 deg: 1.41 deg RMS about their mean, beside 1.2/sqrt(2) deg of the sensor.
+    assert baseline["fitted_error_rms_deg"] == pytest.approx(0.85, abs=0.01)
+    assert baseline["as_sent_error_rms_deg"] == pytest.approx(np.hypot(0.85, 1.41), rel=0.05)
+    said = " ".join(halltwin("explain", path).out.split())
+    assert "error of the decoded readings 0.8" in said
+    assert "Before the decoding the words as sent err by 1.6" in said
+    pytest.importorskip("matplotlib")
+    title = found.plot().axes[0].get_title()
+    assert title.startswith("decoded (as sent: 1.6")
+
+
+def test_a_sweep_with_sound_words_has_no_error_as_sent() -> None:
+    assert "as_sent_error_rms_deg" not in explain(draw("clean", seed=1).columns).to_dict()["baseline"]
+
+
+@pytest.mark.parametrize(
+    ("cause", "seed", "words"),
+    [
+        ("error_code", 4, ("stands in the place of the angle in", "of the readings, in runs of", "on average")),
+        ("dead_zone", 27, ("no angle is ever read from", "over a width of", "the lower edge stands for the first")),
+    ],
+)
+def test_a_fault_of_the_words_is_a_sentence(cause: str, seed: int, words: tuple[str, ...], tmp_path: Path) -> None:
+    path = tmp_path / "sweep.csv"
+    Sweep(**draw(cause, seed=seed).columns).write(path)
+    said = " ".join(halltwin("explain", path).out.split())
+    for part in words:
+        assert part in said
+    assert "run rows" not in said
+    assert "word bits" not in said

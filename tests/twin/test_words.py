@@ -133,3 +133,70 @@ def test_a_sweep_that_only_follows_once_decoded_is_read() -> None:
     (key, fault), *rest = decoded(sweep, CATALOGUE).faults
     assert (key, rest) == ("word_bit", [])
     assert (fault.values["bit"], fault.values["level"]) == (13.0, 1.0)
+
+
+def turned(zero_deg: float = 41.0, points: int = 360) -> tuple[np.ndarray, np.ndarray]:
+    """Angles of two turns and 12-bit words of a sensor with a zero of its own and noise of 0.03 deg."""
+    angle = np.arange(points) * (720.0 / points)
+    noise = 0.03 * np.random.default_rng(3).standard_normal(points)
+    read = angle + zero_deg + 1.2 * np.sin(np.radians(angle + 30.0)) + noise
+    return angle, np.round(read / 360.0 * 4096).astype(np.int64) % 4096
+
+
+def read_back(angle: np.ndarray, words: np.ndarray) -> tuple[WordFault, float]:
+    """The fault told, and what the reference's zero reads once it is taken off [deg]."""
+    found = decoded(Sweep(angle, words * (360.0 / 4096)), CATALOGUE)
+    ((key, fault),) = found.faults
+    assert key == "word_bit"
+    away = np.radians(found.sweep.measured_deg - angle)
+    return fault, float(np.degrees(np.angle(np.mean(np.exp(1j * away)))))
+
+
+@pytest.mark.parametrize("bit", [4, 5, 6, 8])
+def test_a_bit_held_at_0_is_told_as_such_beside_what_sends_the_same_words(bit: int) -> None:
+    """Added to the next bit it would send the very same words of a sensor whose zero is the bit's weight less."""
+    weight = 1 << bit
+    angle, words = turned()
+    sent = words & ~weight
+    other = words - weight
+    assert np.array_equal((other + (other & weight)) % 4096, sent)
+    fault, zero_deg = read_back(angle, sent)
+    assert (fault.values["bit"], fault.values["level"], fault.values["into"]) == (bit, 0.0, 0.0)
+    # The mean of 360 readings: their own error is none but for the noise and the step of the words.
+    assert zero_deg == pytest.approx(41.0, abs=0.02)
+    (alike,) = fault.alike
+    assert f"read into bit {bit + 1} (added to it)" in alike.said
+    assert np.degrees(alike.zero_rad) == pytest.approx(-weight * 360.0 / 4096)
+
+
+def test_a_bit_joined_to_the_next_sends_words_of_its_own() -> None:
+    angle, words = turned()
+    fault, zero_deg = read_back(angle, (words & ~32) | ((words & 32) << 1))
+    assert (fault.values["bit"], fault.values["into"], fault.values["joined"]) == (5.0, 1.0, 1.0)
+    assert zero_deg == pytest.approx(41.0, abs=0.02)
+    assert fault.alike == ()
+
+
+@pytest.mark.parametrize("level", [0, 1])
+@pytest.mark.parametrize("zero_deg", [41.0, -41.0])
+def test_a_highest_bit_that_is_held_leaves_half_a_turn_open(level: int, zero_deg: float) -> None:
+    """Of the two zeros the smaller is told, and that the other does as well."""
+    angle, words = turned(zero_deg)
+    fault, told_deg = read_back(angle, (words & ~2048) | 2048 * level)
+    assert (fault.values["bit"], fault.values["level"], fault.values["into"]) == (11.0, float(level), 0.0)
+    assert told_deg == pytest.approx(zero_deg, abs=0.02)
+    assert [np.degrees(one.zero_rad) for one in fault.alike] == [pytest.approx(180.0)]
+
+
+@pytest.mark.parametrize(("zero_deg", "is_code"), [(40.45, True), (40.2, False)])
+def test_a_code_near_its_own_angle_is_the_code_where_the_noise_leaves_no_doubt(zero_deg: float, is_code: bool) -> None:
+    """Noise and step leave 0.04 deg: a reading of 0 where 0.24 deg is expected is six of that off, at 0.01 deg none."""
+    angle, words = turned(zero_deg)
+    expected_deg = (angle + zero_deg + 1.2 * np.sin(np.radians(angle + 30.0)) + 180.0) % 360.0 - 180.0
+    near = int(np.argmin(np.abs(expected_deg)))
+    assert abs(expected_deg[near]) == pytest.approx(0.242 if is_code else 0.008, abs=0.001)
+    hit = {*range(10, 360, 31)}
+    words[[*hit, near]] = 0
+    found = decoded(Sweep(angle, words * (360.0 / 4096)), CATALOGUE)
+    assert [key for key, _ in found.faults] == ["error_code"]
+    assert set(np.flatnonzero(found.lost).tolist()) == (hit | {near} if is_code else hit)

@@ -92,6 +92,14 @@ def said(values: Mapping[str, float]) -> str:
     return f"no angle from {start:.2f} to {(start + width) % 360.0:.2f} deg is ever read, its edges stand for it"
 
 
+def line(values: Mapping[str, float], shown: Mapping[str, str]) -> str:
+    """Which angles are never read, and which edge stands for them."""
+    return (
+        f"no angle is ever read from {shown['start_deg']} on over a width of {shown['width_deg']}; the lower edge "
+        f"stands for the first {shown['jump_percent']} of that, the upper edge for the rest"
+    )
+
+
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
     """A few degrees anywhere: the error is half of that, whatever the strength."""
     return {
@@ -124,7 +132,7 @@ DEAD_ZONE = Effect(
     },
     forward=forward,
     footprint="sequence",
-    in_words=InWords(find=find, said=said),
+    in_words=InWords(find=find, said=said, line=line),
     drawing=drawing,
     needs=frozenset({"one turn"}),
     source="dead band about the end of the range, as of an analogue or PWM output that clamps at its ends: e.g. "

@@ -14,6 +14,8 @@ from twin.motion import Motion
 from twin.words import InWords, WordFault, Words
 
 _T95 = 1.959964
+_ODDS = 20.0
+"""So many times as likely as that the angle itself reads the code must it be that the code stands in its place."""
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
@@ -52,8 +54,19 @@ def find(words: Words) -> WordFault | None:
         apart = _different(words.expected.angle[rows[place == which]], words.apart)
         log_p = _log_choices(rows.size, apart) - (apart - 1) * float(np.log(cells))
         if best is None or log_p < best[0]:
-            best = log_p, far & (words.numbers == numbers[which])
+            best = log_p, _all_of(words, far, int(numbers[which]))
     return None if best is None else _fault(words, *best)
+
+
+def _all_of(words: Words, far: BoolArray, code: int) -> BoolArray:
+    """Which readings (n,) hold the code in the place of the angle: those that are far off, and those of the others
+    that by their share and the noise are more likely the code than an angle that reads it.
+    """
+    holds = words.usable & (words.numbers == code)
+    share = np.count_nonzero(holds & far) / np.count_nonzero(words.usable)
+    off, sigma = words.expected.residual, words.expected.sigma
+    by_angle = np.minimum(words.step / (np.sqrt(TAU) * sigma), 1.0) * np.exp(-0.5 * (off / sigma) ** 2)
+    return np.asarray(holds & (far | (share > _ODDS * (1.0 - share) * by_angle)))
 
 
 def _held(words: Words, far: BoolArray) -> BoolArray:
@@ -86,7 +99,7 @@ def _fault(words: Words, log_p: float, touched: BoolArray) -> WordFault:
     values = {
         "fraction_percent": 100.0 * share,
         "reading_deg": round(float(np.degrees(words.measured[touched][0])), 6) % 360.0,
-        "run_rows": count / int(np.count_nonzero(runs > 0)),
+        "run_rows": round(count / int(np.count_nonzero(runs > 0)), 2),
         "word_bits": float(words.bits or 0),
     }
     within = {"fraction_percent": (100.0 * max(share - half, 0.0), 100.0 * min(share + half, 1.0))}
@@ -98,6 +111,14 @@ def said(values: Mapping[str, float]) -> str:
     word, reading = derived(values).get("word"), f"{values['reading_deg']:.6g} deg"
     fixed = f"the word {word[0]:.0f} ({reading})" if word is not None else reading
     return f"{fixed} stands in the place of the angle"
+
+
+def line(values: Mapping[str, float], shown: Mapping[str, str]) -> str:
+    """What stands in the place of the readings, of how many, and in how long runs."""
+    runs = f", in runs of {shown['run_rows']} readings on average" if "run_rows" in shown else ""
+    length = f"; the word has {values['word_bits']:.0f} bits" if "word_bits" in values else ""
+    share = f" in {shown['fraction_percent']} of the readings" if "fraction_percent" in shown else ""
+    return f"{said(values)}{share}{runs}{length}"
 
 
 def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
@@ -142,7 +163,7 @@ ERROR_CODE = Effect(
     },
     forward=forward,
     footprint="sequence",
-    in_words=InWords(find=find, said=said, rows_listed=True, several=True),
+    in_words=InWords(find=find, said=said, line=line, rows_listed=True, several=True),
     repeatable=True,
     drawing=drawing,
     derived=derived,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from twin.angles import TAU, Array, IntArray, wrap
 from twin.drawing import whole
 from twin.effect import BoolArray, Effect, Param, Parameters
 from twin.motion import Motion
-from twin.words import MISSED, Expected, InWords, WordFault, Words
+from twin.words import MISSED, Alike, Expected, InWords, WordFault, Words
 
 LENGTH = 14
 """Word length where none is known."""
@@ -95,12 +95,13 @@ def find(words: Words) -> WordFault | None:
     """The bit and its fault that make the readings likeliest, of those whose words that never occur do not occur.
 
     Chance: without the fault, words would have stood where the smooth error leads one to expect some that never occur;
-    angles that are alike but for whole periods of the bit count once. A bit that counts twice reads like one that is
-    held at 0, but for its weight in the zero: of faults that are as likely the one with the smaller zero is told.
+    angles that are alike but for whole periods of the bit count once. A bit that counts twice sends the same words as
+    one that is held at 0, but for its weight in the zero: of faults that are as likely a bit that is held is told, in
+    which one thing alone is wrong, and the others beside it.
     """
     if words.bits is None or not words.usable.any():
         return None
-    told: list[tuple[float, float, WordFault]] = []
+    told: list[_Told] = []
     plain = words.expected.log_likelihood(words.usable)
     tries = words.bits * len(FAULTS)
     for fault, bit, before in _possible(words, words.bits):
@@ -109,10 +110,38 @@ def find(words: Words) -> WordFault | None:
         choices = np.count_nonzero(~np.isnan(before), axis=0)[words.usable]
         likely = expected.log_likelihood(words.usable) - float(np.sum(np.log(choices)))
         if log_p < 0.0 and likely > plain + _GAIN:
-            told.append((likely, abs(float(wrap(expected.zero))), _fault(words, fault, bit, expected, log_p)))
-    most = max((one[0] for one in told), default=0.0)
-    alike = [one for one in told if one[0] >= most - _ALIKE]
-    return min(alike, key=lambda one: one[1])[2] if alike else None
+            told.append(_Told(likely, log_p, fault, bit, _smaller_zero(fault, bit, words.bits, expected)))
+    most = max((one.likely for one in told), default=0.0)
+    alike = [one for one in told if one.likely >= most - _ALIKE]
+    if not alike:
+        return None
+    first = min(alike, key=lambda one: (one.fault.into != 0.0, abs(float(wrap(one.expected.zero)))))
+    return _fault(words, first, [one for one in alike if one is not first])
+
+
+@dataclass(frozen=True, eq=False)
+class _Told:
+    """A bit and its fault: how likely the readings are with it, and what is expected of them then."""
+
+    likely: float
+    log_p: float
+    fault: Fault
+    bit: int
+    expected: Expected
+
+
+def _half_open(fault: Fault, bit: int, length: int) -> bool:
+    """Whether the words are the same half a turn further: the highest bit is held."""
+    return bit == length - 1 and fault.into == 0.0
+
+
+def _smaller_zero(fault: Fault, bit: int, length: int, expected: Expected) -> Expected:
+    """What is expected, with the smaller of two zeros where the words leave half a turn open."""
+    if not _half_open(fault, bit, length) or abs(float(wrap(expected.zero))) <= TAU / 4.0:
+        return expected
+    half = TAU / 2.0
+    angle, chosen = wrap(expected.angle + half), np.mod(expected.chosen + half, TAU)
+    return replace(expected, angle=angle, chosen=chosen, zero=float(wrap(expected.zero + half)))
 
 
 def _possible(words: Words, length: int) -> Iterator[tuple[Fault, int, Array]]:
@@ -124,7 +153,8 @@ def _possible(words: Words, length: int) -> Iterator[tuple[Fault, int, Array]]:
     sample = numbers[:: max(numbers.size // _SAMPLE, 1)]
     changing = False
     for bit in range(length):
-        for fault in FAULTS if changing else ():
+        # Beyond the highest bit is none as which it could count.
+        for fault in [one for one in FAULTS if bit + one.into < length] if changing else ():
             if np.mean(_before(fault, sample, bit, length)[1]) > 2.0 * MISSED:
                 continue
             before, never = _before(fault, words.numbers, bit, length)
@@ -158,21 +188,39 @@ def _log_p(words: Words, fault: Fault, bit: int, expected: Expected) -> float:
     return float(np.sum(np.log(np.maximum(1.0 - mean, MISSED)))) - missed * float(np.log(MISSED))
 
 
-def _fault(words: Words, fault: Fault, bit: int, expected: Expected, log_p: float) -> WordFault:
+def _fault(words: Words, first: _Told, others: Sequence[_Told]) -> WordFault:
     """What the fault did: readings that a bit worth more than the noise has changed are told back."""
-    told = words.step * (1 << bit) > _TOLD_SIGMA * expected.sigma
+    expected, length = first.expected, words.bits or LENGTH
+    told = words.step * (1 << first.bit) > _TOLD_SIGMA * expected.sigma
     chosen = np.where(words.usable, expected.chosen, words.measured)
     touched = np.abs(wrap(chosen - words.measured)) > 0.5 * words.step
     decoded = chosen if told else words.measured
-    values = {"bit": float(bit), "word_bits": float(words.bits or LENGTH), **fault.values}
-    return WordFault(values, log_p, touched & words.usable, np.zeros(len(words), dtype=bool), decoded)
+    values = _values(first, length)
+    alike = [
+        Alike(said(_values(one, length)), float(np.median(wrap(one.expected.chosen - chosen)[words.usable])))
+        for one in others
+    ]
+    if _half_open(first.fault, first.bit, length):
+        alike.append(Alike(f"{said(values)}, with the shaft half a turn further on", TAU / 2.0))
+    lost = np.zeros(len(words), dtype=bool)
+    return WordFault(values, first.log_p, touched & words.usable, lost, decoded, alike=tuple(alike) if told else ())
+
+
+def _values(told: _Told, length: int) -> dict[str, float]:
+    return {"bit": float(told.bit), "word_bits": float(length), **told.fault.values}
 
 
 def said(values: Mapping[str, float]) -> str:
     """What the bit does."""
-    bit, into = int(values["bit"]), int(values["into"])
-    does = f"counts as bit {bit + into}" if into else f"is stuck at {values['level']:.0f}"
+    bit, into = int(values["bit"]), int(values.get("into", 0.0))
+    how = "joined to it by or" if values.get("joined") else "added to it"
+    does = f"is read into bit {bit + into} ({how})" if into else f"is stuck at {values['level']:.0f}"
     return f"bit {bit} of the {values['word_bits']:.0f}-bit word {does}"
+
+
+def line(values: Mapping[str, float], shown: Mapping[str, str]) -> str:
+    """What the bit does, and what it is worth."""
+    return f"{said(values)}; the bit is worth {shown['worth_deg']}"
 
 
 def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
@@ -208,7 +256,7 @@ WORD_BIT = Effect(
     },
     forward=forward,
     footprint="sequence",
-    in_words=InWords(find=find, said=said),
+    in_words=InWords(find=find, said=said, line=line),
     drawing=drawing,
     derived=derived,
     source="stuck-at fault of a line or register bit: M. Abramovici, M. Breuer, A. Friedman, Digital Systems Testing "

@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.settings import DiscoverySettings
+from twin.angles import Array
 from twin.catalogue import base_name
 from twin.chain import Chain
 from twin.decoded import Decoded, decoded
@@ -20,13 +21,15 @@ from twin.sweep import Sweep
 class Read:
     """Recordings without the faults of their words: ``lost`` (n,) masks the rows of all of which nothing is left.
 
-    ``findings`` are the faults as causes, ``words`` what each of them does, by its key.
+    ``findings`` are the faults as causes, ``words`` what each of them does, by its key; ``told_back`` (n,) [rad] is
+    what readings that are told back had been off by, None where none is.
     """
 
     sweeps: tuple[Sweep, ...]
     lost: BoolArray
     findings: tuple[Finding, ...]
     words: dict[str, Parameters]
+    told_back: Array | None
 
     def beside(self, given: Chain | None) -> tuple[Read, Chain | None]:
         """The same of a given twin, whose own faults of the words are no finding; and the twin without them."""
@@ -49,7 +52,9 @@ def read_words(sweeps: Sequence[Sweep], effects: Sequence[Effect], settings: Dis
         words = {**{key: fault.values for key, fault in one.faults}, **words}
         start += len(one.sweep)
     lost = np.concatenate([one.lost for one in each])
-    return Read(tuple(one.sweep for one in each), lost, tuple(findings), words)
+    back = np.concatenate([one.told_back_rad for one in each])
+    told_back = back if back.any() else None
+    return Read(tuple(one.sweep for one in each), lost, tuple(findings), words, told_back)
 
 
 def _findings(one: Decoded, family: int, start: int) -> list[Finding]:
@@ -63,6 +68,7 @@ def _findings(one: Decoded, family: int, start: int) -> list[Finding]:
             rows=tuple((start + np.flatnonzero(fault.touched)).tolist()),
             intervals={(key, name): ends for name, ends in fault.intervals.items()},
             rows_off_deg=float(np.degrees(off)),
+            alike=fault.alike,
         )
         for (key, fault), off in zip(one.faults, one.off_rad, strict=True)
     ]

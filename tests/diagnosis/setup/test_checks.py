@@ -34,6 +34,13 @@ def test_a_top_bit_that_is_stuck_is_no_axial_magnet() -> None:
     assert "axial_magnet" not in kinds(reference_deg=TURN_DEG, measured_deg=stuck)
 
 
+def test_an_axial_magnet_is_told_with_the_turns_of_the_reference() -> None:
+    columns = {"reference_deg": TURN_DEG, "measured_deg": 200.0 + 18.0 * np.sin(np.radians(TURN_DEG))}
+    (found,) = checked(Record("record", columns, np.arange(1, TURN_DEG.size + 1))).findings
+    # 270 readings 4 deg apart end one step ahead of the third turn's end.
+    assert found.evidence.endswith("while the reference goes round 2.99 times")
+
+
 def test_a_reading_that_falls_back_at_once_does_not_swing() -> None:
     """In radians a turn spans 6.28, and its low orders go to and fro."""
     assert swing_deg(np.radians(reading()), TURN_DEG) is None

@@ -1,0 +1,22 @@
+"""What a cause cannot be told from, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from diagnosis.report.word_fault_words import same_words
+
+
+def rivals_words(cause: Mapping[str, Any]) -> str:
+    """What a cause cannot be told from, and what would part them; empty for structure without a name."""
+    if cause["name"] == "unnamed":
+        return ""
+    rivals = cause["indistinguishable_from"]
+    if not cause.get("rivals_sought", True):
+        return "what else it may be was not looked for, as the search was stopped"
+    same = same_words(cause)
+    if not rivals and not same:
+        return "cannot be told from: nothing else that was searched"
+    part = f". To tell them apart: {cause['to_tell_apart']}" if cause["to_tell_apart"] else ""
+    return f"cannot be told from: {'; '.join([*([', '.join(rivals)] if rivals else []), *same])}{part}"

@@ -63,6 +63,7 @@ def an_answer(**changes: Any) -> dict[str, Any]:
     return {
         "changed": [],
         "in_factors": [],
+        "setup": [],
         "other_device": False,
         "fitted_anew": False,
         "sweep": {

@@ -14,7 +14,7 @@ from twin.angles import Array
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
 from twin.logs.angles import COUNTS_PER_TURN
-from twin.logs.guess import Guess, OpenGuess, guessed
+from twin.logs.guess import Guess, OpenGuess, guessed, unused_by
 from twin.logs.names import Meaning, meaning_of
 from twin.logs.others import others
 from twin.logs.read import by_statement, read_table
@@ -141,8 +141,7 @@ def _by_names(table: Table, *, name: str, refused: str) -> LogRecord | None:
     path = columns[-1].of(table)
     beside = others(table, said, usable, path)
     every = sorted((*columns, *_own_channels(table, said, usable), *beside.columns), key=_order)
-    used = {table.place(source) for one in every for source in one.sources}
-    unused = tuple(table.names[k] or f"#{k + 1}" for k in range(len(table.names)) if k not in used)
+    unused = unused_by(tuple(every), table, beside.why)
     return _of(table, Guess(tuple(every), beside.notes, unused), name=name, refused=refused)
 
 

@@ -68,12 +68,10 @@ def run(
     Raises FoundError, after all is written, where the correction makes the error larger on a sweep of ``check``.
     """
     words = asked(fail_on, COMPENSATE)
-    if not _FEWEST_POINTS <= outputs.points <= _MOST_POINTS:
-        raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
+    _check_points_and_prefix(outputs)
     low_c, high_c = interval("temperature", _AT if temperature is None else temperature, example="-40:125")
     require_within("temperature", [low_c, high_c], COLDEST_C, HOTTEST_C, "C")
     require_within("tolerance", tolerance_deg, 0.0, _COARSEST_DEG, "deg")
-    check_prefix(outputs.prefix)
     effects = effects_with(effect_files)
     of_twin = is_one_twin(sources)
     if temperature is not None and not of_twin:
@@ -93,13 +91,24 @@ def run(
     judged = _judge(correction, readings, others)
     source = shown_name(paths[0]) if len(paths) == 1 else f"{len(given.sweeps)} sweeps"
     rows = rows_of(judged, other=bool(checked_on))
-    show(made_of(readings, source, tolerance_deg), correction, [(one.name, one.found) for one in rows])
-    for line in (*faults, *rejected_lines(others), *given.lines, *others.lines):
-        print(line)
     shown = [one.without_zeros() for one in judged] if checked_on else judged
-    _write(files, outputs, correction, source=source, judged=shown, readings=readings, tolerance_deg=tolerance_deg)
+    try:
+        show(made_of(readings, source, tolerance_deg), correction, [(one.name, one.found) for one in rows])
+        for line in (*faults, *rejected_lines(others), *given.lines, *others.lines):
+            print(line)
+    finally:
+        # Whatever becomes of what is printed.
+        _write(files, outputs, correction, source=source, judged=shown, readings=readings, tolerance_deg=tolerance_deg)
+    _tell_written(files, outputs, correction, tolerance_deg)
     say_where_worse(judged, fails=bool(checked_on or words))
     SweepsRead((*given.sweeps, *others.sweeps), (*given.unusable, *others.unusable)).raise_unusable()
+
+
+def _check_points_and_prefix(outputs: Outputs) -> None:
+    """Refuse a table of too few or too many points, and a prefix of no C name. Raises UserError."""
+    if not _FEWEST_POINTS <= outputs.points <= _MOST_POINTS:
+        raise UserError(f"points is {outputs.points}; expected {_FEWEST_POINTS} to {_MOST_POINTS}")
+    check_prefix(outputs.prefix)
 
 
 def _of_twin(twin: Chain, low_c: float, high_c: float, tolerance_deg: float) -> Correction:
@@ -142,6 +151,9 @@ def _write(
             outputs.plot: lambda: _picture(judged, readings),
         }
     )
+
+
+def _tell_written(files: OutputFiles, outputs: Outputs, correction: Correction, tolerance_deg: float) -> None:
     several = 1 if outputs.table is None else temperatures_c(correction, tolerance_deg).size
     points = f"{outputs.points} points{f' at {several} temperatures' if several > 1 else ''}"
     files.tell_written({} if outputs.table is None else {outputs.table: points})

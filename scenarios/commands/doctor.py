@@ -16,6 +16,7 @@ from diagnosis.setup.checks import KINDS, Checked, checked
 from diagnosis.setup.of_log import LogRecord, read_record
 from scenarios.commands.fail_on import DOCTOR, asked, raise_found
 from scenarios.commands.outputs import JSON, OutputFiles, json_text
+from twin.logs.others import target_of
 from twin.shown_name import shown_name
 
 SCHEMA = "halltwin.doctor/1"
@@ -78,7 +79,7 @@ def show(answer: Mapping[str, Any]) -> None:
         console.print(Padding(Text(line), (0, 0, 0, 2)))
     console.print()
     console.print(setup_block(answer["setup"], _title(answer)))
-    lacking = _lacking(answer["not_checked"])
+    lacking = _lacking(answer["not_checked"], log["not_used"])
     if lacking:
         console.print()
         console.print(Text(f"Not checked: {lacking}"))
@@ -95,12 +96,16 @@ def _title(answer: Mapping[str, Any]) -> str:
     return f"Set-up: {' and '.join(parts)}"
 
 
-def _lacking(not_checked: Mapping[str, Sequence[str]]) -> str:
-    """What could not be checked, by what is lacking."""
+def _lacking(not_checked: Mapping[str, Sequence[str]], not_used: Sequence[str]) -> str:
+    """What could not be checked, by what is lacking; what the log holds and is not used for it bears its own name."""
+    # Behind the name of a column stands in brackets why it is not used.
+    held = {target_of(name): name for name in (one.partition(" (")[0] for one in not_used)}
     by_column: dict[str, list[str]] = {}
     for kind, lacking in not_checked.items():
-        by_column.setdefault(", ".join(lacking), []).append(kind)
-    return "; ".join(f"{', '.join(kinds)} (no {lacking})" for lacking, kinds in by_column.items())
+        unread = [held[name] for name in lacking if name in held]
+        why = f"{', '.join(unread)} not used, see above" if unread else f"no {', '.join(lacking)}"
+        by_column.setdefault(why, []).append(kind)
+    return "; ".join(f"{', '.join(kinds)} ({why})" for why, kinds in by_column.items())
 
 
 def in_setup(answer: Mapping[str, Any]) -> dict[str, str]:

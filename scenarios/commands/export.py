@@ -66,16 +66,19 @@ def run(
     made = exported(wish, source, others, seed=seed)
     provenance = Provenance.today(seed=seed, command=command)
     rows = rows_of(made.judged, other=bool(checked_on))
-    show(made, made_of(source.readings, source.name, TOLERANCE_DEG), [(one.name, one.found) for one in rows])
-    for line in (*faults, *rejected_lines(others), *given.lines, *others.lines):
-        print(line)
-    files.write(
-        {
-            outputs.table: lambda: made.table.text(about(made, provenance), wish.name),
-            outputs.json: lambda: json_text(to_dict(made, provenance)),
-            outputs.plot: lambda: _picture(made.judged),
-        }
-    )
+    try:
+        show(made, made_of(source.readings, source.name, TOLERANCE_DEG), [(one.name, one.found) for one in rows])
+        for line in (*faults, *rejected_lines(others), *given.lines, *others.lines):
+            print(line)
+    finally:
+        # Whatever becomes of what is printed.
+        files.write(
+            {
+                outputs.table: lambda: made.table.text(about(made, provenance), wish.name),
+                outputs.json: lambda: json_text(to_dict(made, provenance)),
+                outputs.plot: lambda: _picture(made.judged),
+            }
+        )
     files.tell_written({} if outputs.table is None else {outputs.table: f"{len(made.table)} entries"})
     say_where_worse(made.judged, fails=bool(checked_on or words))
     SweepsRead((*given.sweeps, *others.sweeps), (*given.unusable, *others.unusable)).raise_unusable()

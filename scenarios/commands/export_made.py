@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 
 from diagnosis.correction.compensation import Correction, correction_of
-from diagnosis.correction.compensation_c import check_prefix
 from diagnosis.correction.cross_validation import Shaft, on
 from diagnosis.correction.not_removed import NotRemoved, of_readings, of_twin
 from diagnosis.correction.straight_lines import Least
@@ -52,7 +51,7 @@ class Asked:
         kind, entries = target_of(target)
         if least not in _LEAST:
             raise UserError(f"--least is {shown(least)}; expected worst or rms")
-        check_prefix(name)
+        kind.check_name(name)
         require_within("temperature", temperature_c, COLDEST_C, HOTTEST_C, "C")
         return cls(kind, entries, "worst" if least == "worst" else "rms", temperature_c, name)
 

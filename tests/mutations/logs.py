@@ -94,6 +94,28 @@ LOGS: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
+        "twin/logs/own_tables.py",
+        "tests/untidy/test_exports.py",
+        (
+            "logs.own_tables_count_with_the_shaft",
+            "sense * _DEG_PER_TURN",
+            "_DEG_PER_TURN",
+            "::test_an_exported_table_is_read_back[c-against-left_arm]",
+        ),
+        (
+            "logs.own_tables_begin_at_zero",
+            " if zero else ()",
+            " if False else ()",
+            "::test_an_exported_table_is_read_back[autosar-sweep-halltwin]",
+        ),
+        (
+            "logs.own_tables_need_no_macros",
+            '_macro(prefix, "SENSE", constants) in (1.0, -1.0)',
+            "True",
+            "::test_c_without_its_macros_is_no_table_of_its_own",
+        ),
+    ),
+    *of_one_file(
         "twin/logs/lookups.py",
         "tests/untidy/test_tables.py",
         (

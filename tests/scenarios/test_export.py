@@ -192,6 +192,7 @@ def test_of_sweeps_at_two_temperatures_a_table_is_made_for_one(folder: Path) -> 
         (("--for", "klipper", "-o", "table.h"), "such tables end in .cfg"),
         (("--for", "c", "-o", "table.csv"), "C headers end in .h"),
         (("--for", "c", "--name", "3d", "-o", "table.h"), "begins no C name"),
+        (("--for", "klipper", "--name", "a]b", "-o", "table.cfg"), "names no section of printer.cfg"),
     ],
     ids=lambda one: " ".join(one) if isinstance(one, tuple) else "",
 )
@@ -203,3 +204,10 @@ def test_what_cannot_be_is_refused(
     assert ended.code == 2
     assert said in ended.err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_section_of_klipper_is_no_c_name(folder: Path, tmp_path: Path) -> None:
+    """Its name may hold a hyphen, and begin with a digit."""
+    path = tmp_path / "table.cfg"
+    assert halltwin("export", folder / "sensor.toml", "--for", "klipper", "--name", "2nd-x", "-o", path).code == 0
+    assert "[angle 2nd-x]" in path.read_text().splitlines()

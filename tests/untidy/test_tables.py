@@ -70,6 +70,7 @@ def test_of_two_sources_one_is_asked_for(tmp_path: Path) -> None:
         read_log(both)
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -81,6 +82,15 @@ def test_of_two_sources_one_is_asked_for(tmp_path: Path) -> None:
         ("float calibrationLut[8] = {0, 0, 0, 0, 0, 0, 0, 0};", "all entries of calibrationLut are 0"),
         ("int16_t sine[16] = {0,12539,23170,30273,32767,30273,23170,12539,0,-9,-7,-3,-2,-3,-7,-9};", "neither angles"),
         ("\n".join(f"{k * k % 97}" for k in range(40)), "two or more numbers in each line"),
+        (f'{{"entry": [{"1, " * 20}1{"0" * 400}]}}', "entry[20] is inf; expected numbers"),
+        (f'{{"entry": [{"1, " * 20}-1{"0" * 400}]}}', "entry[20] is -inf"),
+        (f'{{"entry": [{"NaN, " * 20}NaN]}}', "entry[0] is nan"),
+        (f'{{"a": {{"\u00b2": 1}}, "entry": [{"NaN, " * 20}NaN]}}', "entry[0] is nan"),
+        (f'{{"A_SHIFT": 9999, "a_entry": [{"1, " * 20}2]}}', "all entries of a_entry are 0"),
+        (f"int lookup[21] = {{{'1, ' * 20}0x{'f' * 400}}};", "lookup[20] is inf"),
+        (f"float calibrationLut[21] = {{{'1e400, ' * 20}1e400}};", "calibrationLut[0] is inf"),
+        (f"float calibrationLut[21] = {{{'1e300, ' * 20}1e308}}; int lookup[21] = {{{'1, ' * 20}0}};", "is 1e+300"),
+        ("\n".join(["1e400"] * 40), "entry[0] is inf"),
     ],
 )
 def test_what_is_no_table_of_angles_is_refused_with_the_reason(text: str, words: str, tmp_path: Path) -> None:
@@ -90,6 +100,17 @@ def test_what_is_no_table_of_angles_is_refused_with_the_reason(text: str, words:
     assert ended.code == 2
     assert words in ended.err
     assert ended.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("line", ["firmware 1.2.3", "address 10.0.0.7", "firmware .", f"motor.table.{'9' * 5000} 1"])
+def test_a_line_of_a_configuration_that_holds_no_number_is_passed_over(line: str, tmp_path: Path) -> None:
+    name = "motor_position.sources.0.compensation_table"
+    plain, mixed = tmp_path / "plain.cfg", tmp_path / "mixed.cfg"
+    first, _, rest = STORED["moteus"].text.partition("\n")
+    plain.write_text(f"{first}\n{rest}")
+    mixed.write_text(f"{first}\n{line}\n{rest}")
+    assert name in read_log(plain).guess.text
+    assert read_log(mixed).guess == read_log(plain).guess
 
 
 EVEN_DEG = np.arange(0.0, 360.0, 5.0)

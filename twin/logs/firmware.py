@@ -84,11 +84,6 @@ _LISTED: tuple[tuple[str, Callable[[Array], bool], Rule], ...] = (
         Rule("the MA600", CORRECTION, factors=_CODES_OF_12_BIT),
     ),
     (
-        "halltwin_entry",
-        lambda entries: _between(np.abs(entries), 0.0, _MIDDLE),
-        Rule("C that halltwin writes", CORRECTION, factors=_CODES),
-    ),
-    (
         "lookup",
         lambda entries: entries.size == 16_384 and not _whole(entries) and _between(entries, 0.0, 360.0),
         Rule("Mechaduino", ANGLE),

@@ -21,14 +21,14 @@ from twin.logs.odd_factors import odd_factor
 from twin.logs.others import others
 from twin.logs.ratios import turned
 from twin.logs.statement import Column, text_of
-from twin.logs.table import Table
+from twin.logs.table import LARGEST, Table
 from twin.sweep_columns import COLUMNS
 
 _SHOWN, _SIDES = 2, 2
 _ERROR_IS = "an error is the reading less the true angle, a correction the reverse"
 _FIT = {2: "two guesses fit"}
-_FEWEST, _LARGEST = 4, 1e20
-"""Numbers that a column must hold to be judged, and the largest; nanoseconds since 1970 are 2e18."""
+_FEWEST = 4
+"""Numbers that a column must hold to be judged."""
 _MOST_ANGLES = 12
 """Columns that are compared each with each other; of more a name must say that they are angles."""
 
@@ -77,7 +77,7 @@ def guessed(table: Table) -> Guess:
     if table.entries:
         return _guessed_of_entries(table)
     said = meanings_of(table.names)
-    usable = [k for k, values in enumerate(table.values) if k not in table.faults and _told(values)]
+    usable = [k for k, values in enumerate(table.values) if k not in table.faults and not _untold(values)]
     angles = [k for k in usable if said[k].role in ("angle", "")]
     if len(angles) > _MOST_ANGLES:
         angles = [k for k in angles if said[k].role]
@@ -112,10 +112,13 @@ def _one_of(fitting: Sequence[tuple[Column, Column]], notes: tuple[str, ...], ta
     return Guess(fitting[0], notes, unused_by(fitting[0], table))
 
 
-def _told(values: Array) -> bool:
-    """Whether a column (n,) holds enough numbers, and none that no bench can have meant."""
+def _untold(values: Array) -> str:
+    """Why a column (n,) tells nothing: few numbers, or one that no bench can have meant; empty where it does."""
     known = values[np.isfinite(values)]
-    return bool(known.size >= _FEWEST and np.max(np.abs(known)) <= _LARGEST)
+    if known.size < _FEWEST:
+        return f"holds {known.size or 'no'} number{'' if known.size == 1 else 's'}"
+    largest = float(np.max(np.abs(known)))
+    return "" if largest <= LARGEST else f"holds numbers up to {largest:.3g}, beyond {LARGEST:g}"
 
 
 def unused_by(columns: tuple[Column, ...], table: Table, why: Mapping[int, str] | None = None) -> tuple[str, ...]:
@@ -128,6 +131,7 @@ def unused_by(columns: tuple[Column, ...], table: Table, why: Mapping[int, str] 
 def _left(table: Table, place: int, why: str) -> str:
     fault = table.faults.get(place, "")
     why = why or ("holds words" if " words " in fault else fault and "holds cells that are no numbers")
+    why = why or _untold(table.values[place])
     return f"{table.names[place] or f'#{place + 1}'}{f' ({why})' if why else ''}"
 
 

@@ -9,10 +9,11 @@ import numpy as np
 from twin.angles import Array
 from twin.errors import SweepError
 from twin.logs.angles import AngleUnit, units_of_pair
-from twin.logs.firmware import ANGLE, CORRECTION, ERROR, READING, TORQUES, Rule, rule_of
+from twin.logs.firmware import ANGLE, CORRECTION, ERROR, READING, TORQUES, Rule, is_known, rule_of
 from twin.logs.names import Meaning, meaning_of
+from twin.logs.own_tables import is_own, own_statements
 from twin.logs.statement import Addend, Column, Term
-from twin.logs.table import Table
+from twin.logs.table import LARGEST, Table
 from twin.logs.units import UNITS
 
 INDEX = "index"
@@ -35,10 +36,10 @@ def statements_of(table: Table) -> tuple[list[Statement], tuple[str, ...]]:
 
     Raises SweepError where none does, with the reason.
     """
-    places = range(1, len(table.names))
-    curve = _curve(table)
-    if curve:
-        return [curve], ("taken as a curve: what is added to the reading, by the reading, both in codes of 16 bit",)
+    places = _of_numbers(table)
+    own, said = own_statements(table)
+    if own:
+        return own, said
     rules = [(k, rule) for k in places if (rule := rule_of(table.names[k], table.values[k]))]
     if rules:
         return [statement(table, k, rule) for k, rule in rules], (rules[0][1].said,)
@@ -48,13 +49,18 @@ def statements_of(table: Table) -> tuple[list[Statement], tuple[str, ...]]:
     raise SweepError(f"{table.file}: {_why_none(table)}")
 
 
-def _curve(table: Table) -> Statement | None:
-    """The statement for a curve of two arrays, ``NAME_x`` and ``NAME_y``, in codes of 16 bit; None for others."""
-    own = {name.rpartition("_")[2]: k for k, name in enumerate(table.names) if name.startswith("halltwin_")}
-    if set(own) != {"x", "y"}:
-        return None
-    x, y = (Term(table.sources[own[axis]], (("*", 360.0), ("/", 65_536.0))) for axis in "xy")
-    return Column("reference_deg", x, plus=Addend("+", y)), Column("measured_deg", x)
+def _of_numbers(table: Table) -> list[int]:
+    """The places of the arrays all of whose entries are numbers of a bench. Raises SweepError where those count."""
+    wrong = {k: np.flatnonzero(~(np.abs(values) <= LARGEST)) for k, values in enumerate(table.values) if k}
+    sound = [k for k, entries in wrong.items() if not entries.size]
+    for k, entries in wrong.items():
+        name = table.names[k]
+        if entries.size and (not sound or is_known(name) or is_own(name, table.constants)):
+            raise SweepError(
+                f"{table.file}: {name}[{entries[0]}] is {table.values[k][entries[0]]:g}; expected numbers "
+                f"within {LARGEST:g}: read the table out of the drive again"
+            )
+    return sound
 
 
 def _why_none(table: Table) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from twin.angles import Array, wrap_deg
-from twin.logs.names import Meaning
+from twin.logs.names import Meaning, meaning_of
 from twin.logs.statement import Column, Term
 from twin.logs.table import Table
 from twin.logs.units import UNITS
@@ -43,6 +43,11 @@ class Found:
     columns: tuple[Column, ...] = ()
     notes: tuple[str, ...] = ()
     why: Mapping[int, str] = field(default_factory=dict)
+
+
+def target_of(name: str) -> str:
+    """The column of a sweep, beside its angles, that the name of a log's column means; empty where it means none."""
+    return _TARGETS.get(meaning_of(name).role, "")
 
 
 def others(table: Table, said: tuple[Meaning, ...], usable: list[int], reference_deg: Array) -> Found:

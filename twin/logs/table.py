@@ -10,6 +10,9 @@ from twin.angles import Array
 from twin.errors import SweepError
 from twin.shown import shown
 
+LARGEST = 1e20
+"""The largest number that a column of a bench may mean; nanoseconds since 1970 are 2e18."""
+
 
 @dataclass(frozen=True, eq=False)
 class Table:
@@ -17,7 +20,8 @@ class Table:
 
     ``names`` are those of the file, empty where it gives none. ``faults`` says for a column's place which cell is no
     number, ``notes`` how the file was read, ``left`` what it holds beside columns of numbers. ``entries``: the rows are
-    the entries of a firmware's table, and the first column, ``index``, counts them from 0.
+    the entries of a firmware's table, and the first column, ``index``, counts them from 0; ``constants`` are the single
+    numbers beside it, by their names.
     """
 
     file: str
@@ -27,6 +31,7 @@ class Table:
     notes: tuple[str, ...] = ()
     left: tuple[str, ...] = ()
     entries: bool = False
+    constants: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def sources(self) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from diagnosis.correction.targets.target import Target, hash_comment, rows
 from diagnosis.correction.wanted import Wanted
 from twin.angles import TAU, Array, IntArray
 from twin.errors import UserError
+from twin.shown import shown
 
 _TURN = 65536
 _BUCKETS = 64
@@ -117,6 +118,15 @@ class Klipper:
         )
 
 
+def check_section(name: str) -> None:
+    """Refuse a name that no section of printer.cfg can bear. Raises UserError."""
+    if not re.fullmatch(r"[\w.+-]+", name, re.ASCII):
+        raise UserError(
+            f"--name is {shown(name)}, which names no section of printer.cfg; expected letters A to Z, digits, "
+            "and _ - + . without blanks"
+        )
+
+
 def _ascends(number: IntArray) -> bool:
     """Whether step numbers (n,), which go once round, go up."""
     return bool((number[1] - number[0]) % number.size == 1)
@@ -144,6 +154,7 @@ TARGET = Target(
     absolute=True,
     fitted=Klipper.fitted,
     read=Klipper.read,
+    check_name=check_section,
     load="[include] it behind the section of that name (--name) in printer.cfg; the reference's zero must be a full "
     "step of phase 0 and count as the motor does, else ANGLE_CALIBRATE on the printer is the way",
 )

@@ -10,6 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
+from diagnosis.correction.compensation_c import check_prefix
 from diagnosis.correction.straight_lines import Least
 from diagnosis.correction.wanted import Wanted
 from twin.angles import Array, wrap
@@ -53,6 +54,8 @@ class Target:
         the sensor's own sense and zero.
     load : str
         What to do with the file.
+    check_name : callable
+        Refuses a name that cannot stand in the file.
     """
 
     name: str
@@ -69,6 +72,7 @@ class Target:
     most: int = 4096
     step: int = 1
     absolute: bool = False
+    check_name: Callable[[str], None] = check_prefix
 
     @property
     def sizes(self) -> range:

@@ -59,6 +59,17 @@ def test_a_log_without_a_reference_gets_its_finding(tmp_path: Path) -> None:
     assert [found["kind"] for found in answer["setup"]] == ["no_reference"]
 
 
+def test_a_check_says_that_its_column_is_there_and_not_used(tmp_path: Path) -> None:
+    """A counter whose numbers are none of a bench, and a status in words, each under its own name."""
+    path = written(tmp_path, measured_deg=(ANGLE_DEG + 0.8 * np.sin(np.radians(ANGLE_DEG))) % 360.0)
+    head, *rows = path.read_text().splitlines()
+    path.write_text("\n".join([f"{head},frame_no,status", *(f"{row},{k}e300,ok" for k, row in enumerate(rows)), ""]))
+    out = " ".join(halltwin("doctor", path).out.split())
+    assert "not used: frame_no (holds numbers up to 2.39e+302, beyond 1e+20), status (holds words)" in out
+    assert "lost_frames (frame_no not used, see above); other_status (status not used, see above)" in out
+    assert "read_late (no speed_rpm)" in out
+
+
 def test_explain_begins_with_what_has_to_be_mended(tmp_path: Path) -> None:
     """A table of 24 angles, in one of whose rows two digits are exchanged."""
     shaft = np.arange(0.0, 360.0, 15.0)

@@ -35,9 +35,8 @@ ANSWERING = [
 ]
 
 
-@pytest.mark.parametrize("arguments", ANSWERING, ids=" ".join)
-def test_a_full_device_is_one_line(arguments: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def on_a_full_device(*arguments: str) -> str:
+    """Standard error of a command that cannot print its answer, and ends so."""
     err = io.StringIO()
     with (
         open("/dev/full", "w", encoding="utf-8") as full,
@@ -48,8 +47,32 @@ def test_a_full_device_is_one_line(arguments: tuple[str, ...], tmp_path: Path, m
     ):
         main()
     assert ended.value.code == 2
-    assert err.getvalue().startswith("halltwin: standard output cannot be written (No space left on device)")
-    assert err.getvalue().count("\n") == 1
+    return err.getvalue()
+
+
+@pytest.mark.parametrize("arguments", ANSWERING, ids=" ".join)
+def test_a_full_device_is_one_line(arguments: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = on_a_full_device(*arguments)
+    assert said.startswith("halltwin: standard output cannot be written (No space left on device)")
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("export", SWEEP, "--for", "c", "-o", "table.h"),
+        ("compensate", SWEEP, "--header", "table.h"),
+        ("doctor", SWEEP, "--json", "table.json"),
+    ],
+    ids=" ".join,
+)
+def test_files_are_written_whatever_becomes_of_what_is_printed(
+    arguments: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    on_a_full_device(*arguments)
+    assert (tmp_path / arguments[-1]).stat().st_size > 0
 
 
 def ended(*arguments: str, unbuffered: str, stdout: int) -> tuple[int, bytes]:

@@ -17,12 +17,13 @@ from twin.words import LIMIT_LOG_P, InWords, WordFault, Words, faults_of
 class Decoded:
     """A recording without the faults of its words.
 
-    ``sweep`` holds the readings told back, and where nothing is left of one what is expected there; ``lost`` (n,) masks
-    the latter, ``told_back_rad`` (n,) is what the others had been off by. ``faults`` are those that were found, each
-    with the key of its instance; ``off_rad`` is the RMS of what each did to the readings that it touched, and ``said``
-    tells it in words.
+    ``read`` is the recording as it was read; ``sweep`` holds the readings told back, and where nothing is left of one
+    what is expected there; ``lost`` (n,) masks the latter, ``told_back_rad`` (n,) is what the others had been off by.
+    ``faults`` are those that were found, each with the key of its instance; ``off_rad`` is the RMS of what each did to
+    the readings that it touched, and ``said`` tells it in words.
     """
 
+    read: Sweep
     sweep: Sweep
     lost: BoolArray
     told_back_rad: Array
@@ -45,9 +46,13 @@ class Decoded:
     @property
     def lines(self) -> tuple[str, ...]:
         """A sentence for each fault whose readings are told back, as no rejected row tells of it."""
+        return self.lines_saying("are told back")
+
+    def lines_saying(self, became: str) -> tuple[str, ...]:
+        """The same with what became of the readings in other words."""
         told = zip(self.faults, self.said, strict=True)
         return tuple(
-            f"{self.sweep.name}: {words}; {np.count_nonzero(fault.touched)} readings are told back"
+            f"{self.sweep.name}: {words}; {np.count_nonzero(fault.touched)} readings {became}"
             for (_, fault), words in told
             if not fault.lost.any()
         )
@@ -76,7 +81,7 @@ def decoded(sweep: Sweep, effects: Iterable[Effect], *, limit_log_p: float = LIM
     words = Words(radians(sweep.reference_deg), measured, ~lost)
     found = faults_of(words, finders, limit_log_p) if finders else ()
     if not found:
-        return Decoded(sweep, lost, np.zeros(len(sweep)))
+        return Decoded(sweep, sweep, lost, np.zeros(len(sweep)))
     for _, fault in found:
         words, lost = words.without(fault), lost | fault.lost
     expected = np.round(words.expected.angle / words.step) * words.step
@@ -87,7 +92,7 @@ def decoded(sweep: Sweep, effects: Iterable[Effect], *, limit_log_p: float = LIM
     read = np.where(changed, np.degrees(told % TAU), sweep.measured_deg)
     said = tuple(f"{name}: {finders[name].said(fault.values)}" for name, fault in found)
     back = np.where(lost | ~changed, 0.0, _half_turn_down(measured - told))
-    return Decoded(replace(sweep, measured_deg=read), lost, back, _numbered(found), off, said)
+    return Decoded(sweep, replace(sweep, measured_deg=read), lost, back, _numbered(found), off, said)
 
 
 def begun_by_words(sweep: Sweep, lost: BoolArray, effects: Iterable[Effect]) -> tuple[tuple[str, WordFault], ...]:

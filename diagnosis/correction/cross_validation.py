@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from diagnosis.thermal.laws import FROM_C
 from diagnosis.thermal.recording import Recording
 from twin.angles import TAU, Array, IntArray, wrap
+from twin.effect import BoolArray
 
 BLOCKS = 10
 FOLDS = 5
@@ -39,7 +39,7 @@ class BeforeAfter:
         before, after = (float(np.degrees(np.max(np.abs(part)))) for part in (self.before_rad, self.after_rad))
         return before, after
 
-    def among(self, rows: NDArray[np.bool_]) -> BeforeAfter:
+    def among(self, rows: BoolArray) -> BeforeAfter:
         """The same of some of the readings (n,)."""
         return BeforeAfter(self.before_rad[rows], self.after_rad[rows])
 
@@ -48,7 +48,7 @@ class BeforeAfter:
         return BeforeAfter(_without_zeros(self.before_rad, turn), _without_zeros(self.after_rad, turn))
 
 
-def folds(rows: int) -> Iterator[NDArray[np.bool_]]:
+def folds(rows: int) -> Iterator[BoolArray]:
     """Masks (rows,) of the held-out readings: blocks of consecutive rows, several a fold, each row once."""
     count = min(FOLDS, rows // 4)
     block = np.arange(rows) * BLOCKS // rows
@@ -62,20 +62,31 @@ def cross_validated(recording: Recording, level: IntArray, correct: Callable[[Re
 
     ``level`` (n,) numbers the temperatures, each of which is cut into blocks of its own.
     """
+    return on_held_out(recording, shafts_without(level, lambda rows: correct(recording.part(rows))))
+
+
+def shafts_without(level: IntArray, correct: Callable[[BoolArray], Shaft]) -> list[tuple[BoolArray, Shaft]]:
+    """Of each fold the mask (n,) of its readings, and the correction that ``correct`` makes of all others (n,)."""
+    return [(mask, correct(~mask)) for mask in _folds_of_all(level)]
+
+
+def on_held_out(recording: Recording, shafts: Iterable[tuple[BoolArray, Shaft]]) -> BeforeAfter:
+    """Errors of readings, each with the correction that was made without its fold."""
     before, after = np.zeros(len(recording)), np.zeros(len(recording))
-    for mask in _folds_of_all(level):
-        one = on(recording.part(mask), correct(recording.part(~mask)))
+    for mask, shaft in shafts:
+        one = on(recording.part(mask), shaft)
         before[mask], after[mask] = one.before_rad, one.after_rad
     return BeforeAfter(before, after)
 
 
-def between(recording: Recording, level: IntArray, correct: Callable[[Recording], Shaft]) -> dict[int, BeforeAfter]:
+def between(recording: Recording, level: IntArray, correct: Callable[[BoolArray], Shaft]) -> dict[int, BeforeAfter]:
     """By level: calibrate on all other temperatures and hold the correction against this one.
 
-    Only levels between others are held out: beyond those it has seen a correction stays what it is at their end.
+    ``correct`` makes the correction of the readings of a mask (n,). Only levels between others are held out: beyond
+    those it has seen a correction stays what it is at their end.
     """
     inner = range(1, int(level.max(initial=0)))
-    return {k: on(recording.part(level == k), correct(recording.part(level != k))) for k in inner}
+    return {k: on(recording.part(level == k), correct(level != k)) for k in inner}
 
 
 def on(recording: Recording, shaft: Shaft) -> BeforeAfter:
@@ -100,7 +111,7 @@ def against(reference_rad: Array, measured_rad: Array, shaft: Callable[[Array], 
     return on(readings, lambda measured, _: shaft(measured))
 
 
-def _folds_of_all(level: IntArray) -> Iterator[NDArray[np.bool_]]:
+def _folds_of_all(level: IntArray) -> Iterator[BoolArray]:
     """Masks (n,) of the held-out readings: of each level a fold, and not the same, so that no angle is lost to all."""
     parts = []
     for k in range(int(level.max(initial=0)) + 1):

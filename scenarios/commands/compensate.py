@@ -10,18 +10,21 @@ from typing import Any
 from diagnosis.correction.compensation import Correction, correction_of, correction_over
 from diagnosis.correction.compensation_c import check_prefix, header
 from diagnosis.correction.correction_file import to_dict
+from diagnosis.correction.left_of_readings import of_words_of
 from scenarios.commands.compensate_judge import Judged, held_out, on_others, rows_of, say_where_worse
 from scenarios.commands.compensate_source import Readings, readings_of
 from scenarios.commands.compensate_table import table, temperatures_c
 from scenarios.commands.compensate_text import made_of, show
-from scenarios.commands.correction_sources import files_of, is_one_twin, read_files, rejected_lines, sound
+from scenarios.commands.correction_sources import Sound, files_of, is_one_twin, lines_of, read_files
 from scenarios.commands.fail_on import COMPENSATE, asked
 from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels
 from scenarios.commands.intervals import interval
+from scenarios.commands.left_words import left_words
 from scenarios.commands.outputs import HEADER, PICTURE, TABLE, TOML, OutputFiles
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from twin.catalogue import find
 from twin.chain import Chain
+from twin.decoded import Decoded
 from twin.errors import UserError
 from twin.extensions import effects_with
 from twin.limits import require_within
@@ -83,18 +86,18 @@ def run(
     checked_on, paths = check.paths(), [Path(sources[0])] if of_twin else files_of(sources)
     files = _files(outputs, inputs=[*paths, *checked_on, *effect_files])
     others = check.read(checked_on)
-    given, faults = sound(SweepsRead(()) if of_twin else read_files(paths, check), effects)
-    others, _ = sound(others, effects)
+    given = SweepsRead(()) if of_twin else read_files(paths, check)
+    words_of, checked = (Sound.of(one, effects) for one in (given, others))
     check_panels(outputs.plot, len(others.sweeps) if checked_on or of_twin else 1)
-    readings = None if of_twin else readings_of(given.sweeps, tolerance_deg=tolerance_deg, seed=seed)
+    readings = None if of_twin else readings_of(words_of.decoded, tolerance_deg=tolerance_deg, seed=seed)
     correction = _of_twin(twin, low_c, high_c, tolerance_deg) if readings is None else readings.correction
-    judged = _judge(correction, readings, others)
+    judged = _judge(correction, readings, checked.decoded)
     source = shown_name(paths[0]) if len(paths) == 1 else f"{len(given.sweeps)} sweeps"
     rows = rows_of(judged, other=bool(checked_on))
     shown = [one.without_zeros() for one in judged] if checked_on else judged
     try:
         show(made_of(readings, source, tolerance_deg), correction, [(one.name, one.found) for one in rows])
-        for line in (*faults, *rejected_lines(others), *given.lines, *others.lines):
+        for line in (*_left_of(checked), *lines_of(words_of, checked)):
             print(line)
     finally:
         # Whatever becomes of what is printed.
@@ -127,9 +130,14 @@ def _files(outputs: Outputs, *, inputs: Sequence[Path]) -> OutputFiles:
     return OutputFiles.checked(asked, inputs=inputs, force=outputs.force)
 
 
-def _judge(correction: Correction, readings: Readings | None, others: SweepsRead) -> list[Judged]:
-    if others.sweeps:
-        return on_others(correction.shaft, others.sweeps)
+def _left_of(checked: Sound) -> list[str]:
+    """What faults of words leave of the sweeps that the correction is tried on."""
+    return [f"not removed: {left_words(one)}" for one in of_words_of(checked.decoded)]
+
+
+def _judge(correction: Correction, readings: Readings | None, others: Sequence[Decoded]) -> list[Judged]:
+    if others:
+        return on_others(correction.shaft, others)
     return [] if readings is None else held_out(readings)
 
 

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from diagnosis import diagnose_many
+from diagnosis.correction.as_read import AsRead, as_read
 from diagnosis.correction.calibration import Calibration, calibrate, calibrate_over_temperature
 from diagnosis.correction.compensation import Correction, correction_of, correction_over
 from diagnosis.correction.cross_validation import Shaft
 from diagnosis.factors.findings import OneSense
 from diagnosis.report.temperature_answer import to_dict
-from diagnosis.thermal.recording import SMALLEST_SPAN_K, Recording, joined, over_temperature
+from diagnosis.thermal.recording import SMALLEST_SPAN_K, Recording, over_temperature
+from twin.decoded import Decoded
 from twin.errors import UserError
 from twin.sweep import Sweep
 
@@ -24,9 +26,14 @@ from twin.sweep import Sweep
 class Readings:
     """The readings of one sensor, and how corrections are made of them: of all, and of parts in the same way."""
 
-    sweeps: tuple[Sweep, ...]
+    decoded: tuple[Decoded, ...]
     tolerance_deg: float
     seed: int
+
+    @cached_property
+    def sweeps(self) -> tuple[Sweep, ...]:
+        """The sweeps without the faults of their words."""
+        return tuple(one.usable for one in self.decoded)
 
     @property
     def title(self) -> str:
@@ -36,8 +43,13 @@ class Readings:
 
     @cached_property
     def recording(self) -> Recording:
-        """All readings. Raises UserError where a sweep counts the other way round."""
-        return joined(self.sweeps)
+        """All readings without the faults of their words. Raises UserError where a sweep counts the other way round."""
+        return self.as_read.kept
+
+    @cached_property
+    def as_read(self) -> AsRead:
+        """All readings as the drive reads them."""
+        return as_read(self.decoded)
 
     @cached_property
     def over_temperature(self) -> bool:
@@ -66,7 +78,9 @@ class Readings:
     @cached_property
     def correction(self) -> Correction:
         """The correction by all readings."""
-        return self.corrected(self.calibration)
+        made = self.corrected(self.calibration)
+        faults = dict.fromkeys(fault.cause for fault in self.as_read.faults)
+        return replace(made, left_out=(*made.left_out, *faults))
 
     def shaft_of(self, recording: Recording) -> Shaft:
         """The correction that some of the readings make."""
@@ -101,9 +115,10 @@ class Readings:
         return f"temperature {at} C alone: what others do to the error is not in the correction"
 
 
-def readings_of(sweeps: Sequence[Sweep], *, tolerance_deg: float, seed: int) -> Readings:
+def readings_of(decoded: Sequence[Decoded], *, tolerance_deg: float, seed: int) -> Readings:
     """The readings of sweeps. Raises UserError for several that are no measurement over temperature."""
-    found = Readings(tuple(sweeps), tolerance_deg, seed)
+    found = Readings(tuple(decoded), tolerance_deg, seed)
+    sweeps = found.sweeps
     if len(sweeps) > 1 and not found.over_temperature:
         for sweep in sweeps:
             if sweep.temperature_c is None:

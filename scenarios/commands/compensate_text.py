@@ -16,10 +16,12 @@ from rich.text import Text
 
 from diagnosis.correction.compensation import Correction
 from diagnosis.correction.cross_validation import BeforeAfter
+from diagnosis.correction.left_of_readings import of_words
 from diagnosis.report.row_counts import counts_of, diagnosed_rows, left_out_words
 from diagnosis.report.temperature_text import lines
 from diagnosis.report.wording import decimals_of, rms_shown
 from scenarios.commands.compensate_source import Readings
+from scenarios.commands.left_words import left_words
 from scenarios.commands.terminal import terminal_width
 
 Rows = Sequence[tuple[str, BeforeAfter]]
@@ -32,13 +34,14 @@ _NARROW = 72
 class MadeOf:
     """What a correction was made of: a name, what became of the readings in words, and how well it is known [deg].
 
-    ``readings`` is empty for a twin. ``temperature``: what they say of it, line by line.
+    ``readings`` is empty for a twin. ``temperature``: what they say of it, line by line; ``faults``: of their words.
     """
 
     name: str
     readings: str
     uncertainty_deg: float
     temperature: Sequence[str] = ()
+    faults: Sequence[str] = ()
 
 
 def made_of(readings: Readings | None, name: str, tolerance_deg: float) -> MadeOf:
@@ -54,7 +57,8 @@ def made_of(readings: Readings | None, name: str, tolerance_deg: float) -> MadeO
     told = diagnosed_rows(counts[0]) if len(counts) == 1 else left_out_words(counts) or "all fitted"
     # Of the mean of so many readings; and no better than the orders that were left out.
     known_deg = float(np.degrees(readings.calibration.sigma_rad)) / np.sqrt(fitted)
-    return MadeOf(name, f"{rows} readings; {told}", max(known_deg, tolerance_deg), _of_temperature(readings))
+    faults = [f"not removed: {left_words(left)}" for left in of_words(readings.as_read)]
+    return MadeOf(name, f"{rows} readings; {told}", max(known_deg, tolerance_deg), _of_temperature(readings), faults)
 
 
 def show(made: MadeOf, correction: Correction, rows: Rows, console: Console | None = None) -> None:
@@ -75,6 +79,8 @@ def show(made: MadeOf, correction: Correction, rows: Rows, console: Console | No
     if correction.left_out:
         left_out = ", ".join(correction.left_out)
         console.print(Text(f"not in the correction, because a single angle reading cannot tell it: {left_out}"))
+    for line in made.faults:
+        console.print(Text(line))
     if correction.to_middle:
         console.print(Text(f"corrected to the middle between both directions: {', '.join(correction.to_middle)}"))
     if rows:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from diagnosis.report.row_counts import counts_of, rejected_words
 from scenarios.commands.inputs import SweepFiles, SweepsRead, sweep_paths
-from twin.decoded import decoded
+from twin.decoded import Decoded, decoded
 from twin.effect import Effect
 from twin.errors import UserError
 from twin.presets import is_twin
@@ -38,13 +38,30 @@ def read_files(paths: Sequence[Path], how: SweepFiles) -> SweepsRead:
     return SweepsRead((how.read_one(paths[0]),)) if len(paths) == 1 else how.read(paths)
 
 
-def sound(read: SweepsRead, effects: Sequence[Effect]) -> tuple[SweepsRead, list[str]]:
-    """The sweeps without the faults of their words, and what is said of readings that were told back."""
-    each = [decoded(sweep, effects) for sweep in read.sweeps]
-    return replace(read, sweeps=tuple(one.usable for one in each)), [line for one in each for line in one.lines]
+@dataclass(frozen=True, eq=False)
+class Sound:
+    """The sweeps of files, each as it was read and without the faults of its words; and the files left out."""
+
+    decoded: tuple[Decoded, ...]
+    read: SweepsRead
+
+    @classmethod
+    def of(cls, read: SweepsRead, effects: Sequence[Effect]) -> Sound:
+        """What the words of sweeps tell."""
+        return cls(tuple(decoded(sweep, effects) for sweep in read.sweeps), read)
+
+    def lines(self, *, corrects: bool) -> list[str]:
+        """What is said of readings that can be told back: those that a correction is made of are, others are not."""
+        became = f"are {'told back to make the correction, and ' * corrects}judged as they are read"
+        return [line for one in self.decoded for line in one.lines_saying(became)]
+
+    def rejected_lines(self) -> list[str]:
+        """Which sweeps hold rows that could not be used, or whose word says nothing of the angle."""
+        counts = [(one.sweep.name, counts_of(one.usable, ())) for one in self.decoded if one.usable.rejected]
+        return [f"{name}: {told['rows']} readings; {rejected_words(told)}" for name, told in counts]
 
 
-def rejected_lines(others: SweepsRead) -> list[str]:
-    """Which sweeps of ``--check`` hold rows that could not be used."""
-    counts = [(one.name, counts_of(one, ())) for one in others.sweeps if one.rejected]
-    return [f"{name}: {told['rows']} readings; {rejected_words(told)}" for name, told in counts]
+def lines_of(given: Sound, checked: Sound) -> list[str]:
+    """What is said of the sweeps that a correction is made of, and of those that it is tried on."""
+    said = [*given.lines(corrects=True), *checked.lines(corrects=False), *checked.rejected_lines()]
+    return [*said, *given.read.lines, *checked.read.lines]

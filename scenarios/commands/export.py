@@ -11,13 +11,14 @@ from diagnosis.report.provenance import Provenance
 from scenarios.commands.compensate_judge import Judged, rows_of, say_where_worse
 from scenarios.commands.compensate_source import readings_of
 from scenarios.commands.compensate_text import made_of
-from scenarios.commands.correction_sources import files_of, is_one_twin, read_files, rejected_lines, sound
+from scenarios.commands.correction_sources import Sound, files_of, is_one_twin, lines_of, read_files
 from scenarios.commands.export_made import TOLERANCE_DEG, Asked, Source, exported
 from scenarios.commands.export_text import about, show, to_dict
 from scenarios.commands.fail_on import EXPORT, asked
 from scenarios.commands.inputs import SweepFiles, SweepsRead, check_panels
 from scenarios.commands.outputs import JSON, PICTURE, OutputFiles, drive_table, json_text
 from twin.chain import Chain
+from twin.decoded import Decoded
 from twin.effect import Effect
 from twin.extensions import effects_with
 from twin.presets import read_twin_or_preset
@@ -60,15 +61,15 @@ def run(
     files = OutputFiles.checked(given_files, inputs=inputs, force=outputs.force)
     others = check.read(checked_on)
     check_panels(outputs.plot, len(others.sweeps) if checked_on else 1)
-    given, faults = sound(SweepsRead(()) if of_a_twin else read_files(paths, check), effects)
-    others, _ = sound(others, effects)
-    source = _source(sources, given, paths, effects=effects, temperature_c=wish.temperature_c, seed=seed)
-    made = exported(wish, source, others, seed=seed)
+    given = SweepsRead(()) if of_a_twin else read_files(paths, check)
+    words_of, checked = (Sound.of(one, effects) for one in (given, others))
+    source = _source(sources, words_of.decoded, paths, effects=effects, temperature_c=wish.temperature_c, seed=seed)
+    made = exported(wish, source, checked.decoded, seed=seed)
     provenance = Provenance.today(seed=seed, command=command)
     rows = rows_of(made.judged, other=bool(checked_on))
     try:
         show(made, made_of(source.readings, source.name, TOLERANCE_DEG), [(one.name, one.found) for one in rows])
-        for line in (*faults, *rejected_lines(others), *given.lines, *others.lines):
+        for line in lines_of(words_of, checked):
             print(line)
     finally:
         # Whatever becomes of what is printed.
@@ -86,7 +87,7 @@ def run(
 
 def _source(
     sources: Sequence[str | Path],
-    given: SweepsRead,
+    given: Sequence[Decoded],
     paths: Sequence[Path],
     *,
     effects: tuple[Effect, ...],
@@ -94,10 +95,10 @@ def _source(
     seed: int,
 ) -> Source:
     """What the table is made of."""
-    name = shown_name(paths[0]) if len(paths) == 1 else f"{len(given.sweeps)} sweeps"
-    if not given.sweeps:
+    name = shown_name(paths[0]) if len(paths) == 1 else f"{len(given)} sweeps"
+    if not given:
         return Source(name, None, read_twin_or_preset(sources[0], effects=effects), temperature_c)
-    readings = readings_of(given.sweeps, tolerance_deg=TOLERANCE_DEG, seed=seed)
+    readings = readings_of(given, tolerance_deg=TOLERANCE_DEG, seed=seed)
     return Source(name, readings, Chain(effects=effects), temperature_c)
 
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from diagnosis.correction.compensation import Correction, correction_of
 from diagnosis.correction.cross_validation import Shaft, on
-from diagnosis.correction.not_removed import NotRemoved, of_readings, of_twin
+from diagnosis.correction.left_of_readings import of_held_out, of_readings, of_words, of_words_of
+from diagnosis.correction.not_removed import NotRemoved, of_twin
 from diagnosis.correction.straight_lines import Least
 from diagnosis.correction.targets.known import target_of
 from diagnosis.correction.targets.target import Table, Target
@@ -18,15 +19,14 @@ from diagnosis.correction.wanted import Wanted
 from diagnosis.thermal.recording import Recording
 from scenarios.commands.compensate_judge import Judged, held_out, on_others
 from scenarios.commands.compensate_source import Readings
-from scenarios.commands.inputs import SweepsRead
 from scenarios.commands.protocol import COLDEST_C, HOTTEST_C
 from twin.angles import TAU, Array, wrap
 from twin.chain import Chain
+from twin.decoded import Decoded
 from twin.errors import UserError
 from twin.limits import require_within
 from twin.motion import Motion
 from twin.shown import shown
-from twin.sweep import Sweep
 
 TOLERANCE_DEG = 1e-4
 """Largest error from orders left out of the curve that a table follows: less than any of them tells."""
@@ -95,7 +95,7 @@ class Exported:
         return np.degrees(wrap(self.asked.target.shaft(self.table, self.wanted, word) - self.wanted.shaft(word)))
 
 
-def exported(wish: Asked, source: Source, others: SweepsRead, *, seed: int) -> Exported:
+def exported(wish: Asked, source: Source, others: Sequence[Decoded], *, seed: int) -> Exported:
     """The table of a source, judged on other sweeps, on blocks held out of its own, or on a simulated sweep."""
     wanted = Wanted.of(source.correction, wish.temperature_c)
     table = wish.table(wanted)
@@ -111,21 +111,26 @@ def exported(wish: Asked, source: Source, others: SweepsRead, *, seed: int) -> E
         return wish.target.shaft(table, wanted, reading)
 
     if source.readings is not None:
-        recording = source.readings.recording
-        judged = on_others(whole, others.sweeps) if others.sweeps else held_out(source.readings, made_of_some)
+        judged = on_others(whole, others) if others else held_out(source.readings, made_of_some)
         # What a gross error does is no part of it.
-        kept = ~source.readings.calibration.gross
-        own = on(recording, whole).among(kept).after_rad
-        left = of_readings(recording.part(kept), own, source.correction, wish.temperature_c)
+        kept = source.readings.recording.part(~source.readings.calibration.gross)
+        own = on(kept, whole).after_rad
+        left = [
+            *of_words(source.readings.as_read),
+            *of_readings(kept, own, source.correction, wish.temperature_c),
+        ]
+        if not others:
+            sound = judged[0].sound or judged[0]
+            left += of_held_out((sound.without_gross() or sound).found, own, left)
     else:
-        judged = on_others(whole, others.sweeps or (_simulated(source.twin, wish.temperature_c, seed=seed),))
-        if not others.sweeps:
+        judged = on_others(whole, others or (_simulated(source.twin, wish.temperature_c, seed=seed),))
+        if not others:
             judged = [replace(one, name="on a sweep simulated from it", title=source.name) for one in judged]
         left = of_twin(source.twin, wish.temperature_c, seed=seed)
-    return Exported(wish, source, wanted, table, judged, left)
+    return Exported(wish, source, wanted, table, judged, [*left, *of_words_of(others)])
 
 
-def _simulated(twin: Chain, temperature_c: float, *, seed: int) -> Sweep:
+def _simulated(twin: Chain, temperature_c: float, *, seed: int) -> Decoded:
     """A sweep of the twin there and back at one temperature, at angles at which no table has an entry."""
     way = TAU * (np.arange(2 * _SIMULATED) + 1.0 / np.pi) / _SIMULATED
     motion = Motion.from_angle(
@@ -133,4 +138,5 @@ def _simulated(twin: Chain, temperature_c: float, *, seed: int) -> Sweep:
         direction=np.repeat([1.0, -1.0], way.size),
         temperature_c=np.full(2 * way.size, temperature_c),
     )
-    return twin.simulate(motion, seed=seed)
+    sweep = twin.simulate(motion, seed=seed)
+    return Decoded(sweep, sweep, np.zeros(len(sweep), dtype=bool), np.zeros(len(sweep)))

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 from rich.console import Console
 from rich.text import Text
 
-from diagnosis.correction.not_removed import NotRemoved
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.wording import plain, rms_shown
 from scenarios.commands.compensate_judge import Judged
 from scenarios.commands.compensate_text import MadeOf, Rows, figures
 from scenarios.commands.export_made import Exported
+from scenarios.commands.left_words import left_words
 
 SCHEMA = "halltwin.export/1"
 _DIGITS = 2
@@ -30,22 +29,27 @@ def show(made: Exported, of: MadeOf, rows: Rows, console: Console | None = None)
     if made.not_removed:
         console.print(Text("not removed by a table of the reading alone:"))
         for left in made.not_removed:
-            console.print(Text(f"  {_left(left)}"))
+            console.print(Text(f"  {left_words(left)}"))
     console.print(Text(f"to load it: {made.asked.target.load}"))
 
 
 def about(made: Exported, provenance: Provenance) -> tuple[str, ...]:
     """The lines of the comment in the file."""
-    judged = [one for one in made.judged if not one.part]
+    judged = [one for one in _with_sound(made) if not one.part]
     return (
         f"Angle correction for {made.asked.target.what}.",
         f"Made by halltwin {provenance.version} on {provenance.date} from {made.source.name}, seed {provenance.seed}"
         f"{'' if provenance.command is None else f': {provenance.command}'}",
         *_what(made)[1:],
         *(f"Angle error {one.name}: {_short(one)}" for one in judged),
-        *(f"Not removed: {_left(left)}" for left in made.not_removed),
+        *(f"Not removed: {left_words(left)}" for left in made.not_removed),
         f"To load it: {made.asked.target.load}.",
     )
+
+
+def _with_sound(made: Exported) -> list[Judged]:
+    """What the table was judged on, and beside it without the faults of the words where there are any."""
+    return [one for whole in made.judged for one in (whole, whole.sound) if one is not None]
 
 
 def _what(made: Exported) -> list[str]:
@@ -55,6 +59,7 @@ def _what(made: Exported) -> list[str]:
     return [
         target.what,
         f"{len(made.table)} entries: {target.axis}; {target.sign}; unit {target.unit}",
+        *([formula] if (formula := target.formula_of(made.wanted)) else []),
         f"read back, it follows the correction at {made.asked.temperature_c:g} C to {plain(largest, _DIGITS)} deg at "
         f"worst, {plain(_rms(made.away_deg), _DIGITS)} deg RMS",
     ]
@@ -64,20 +69,6 @@ def _short(one: Judged) -> str:
     found = one.found
     rms = " -> ".join(rms_shown(value, found.before_rad.size) for value in found.rms_deg)
     return f"RMS {rms} deg, largest {' -> '.join(plain(value, _DIGITS) for value in found.peak_deg)} deg"
-
-
-def _left(left: NotRemoved) -> str:
-    """One thing that stays, in words."""
-    causes = f" ({', '.join(left.causes)})" if left.causes not in ((), (left.what,)) else ""
-    sizes = list(_sizes(left))
-    return f"{left.what}{causes}{': ' if sizes else ''}{', '.join(sizes)}{f', {left.at}' if left.at else ''}"
-
-
-def _sizes(left: NotRemoved) -> Iterator[str]:
-    if left.rms_deg is not None:
-        yield f"{plain(left.rms_deg, _DIGITS)} deg RMS"
-    if left.largest_deg is not None:
-        yield f"{plain(left.largest_deg, _DIGITS)} deg at most"
 
 
 def to_dict(made: Exported, provenance: Provenance) -> dict[str, Any]:
@@ -93,13 +84,14 @@ def to_dict(made: Exported, provenance: Provenance) -> dict[str, Any]:
         "axis": target.axis,
         "sign": target.sign,
         "entry_unit": target.unit,
+        "formula": target.formula_of(correction) or None,
         "least": made.asked.least,
         "load": target.load,
         "temperature_c": made.asked.temperature_c,
         "slope": correction.slope,
         "zero_deg": float(np.degrees(correction.zero_rad)),
         "read_back": {"largest_deg": float(np.max(np.abs(made.away_deg))), "rms_deg": _rms(made.away_deg)},
-        "judged": [_judged(one) for one in made.judged],
+        "judged": [_judged(one) for one in _with_sound(made)],
         "not_removed": [
             {
                 "what": left.what,

@@ -128,7 +128,7 @@ EXPORT: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
-        "diagnosis/correction/not_removed.py",
+        "diagnosis/correction/left_of_readings.py",
         _EXPORT,
         (
             "export.noise_counts_as_direction",
@@ -136,10 +136,14 @@ EXPORT: tuple[Mutation, ...] = (
             "    square = float(4.0 * np.nanmean(half**2))",
             "::test_direction_of_a_sweep_is_told_apart_from_its_noise",
         ),
+    ),
+    *of_one_file(
+        "diagnosis/correction/not_removed.py",
+        _EXPORT,
         (
             "export.speed_is_told_at_half_the_speed",
-            "np.full(_GRID, _SPEED_RPM * RPM)",
-            "np.full(_GRID, 0.5 * _SPEED_RPM * RPM)",
+            "np.full(GRID, _SPEED_RPM * RPM)",
+            "np.full(GRID, 0.5 * _SPEED_RPM * RPM)",
             "::test_of_a_twin_tells_what_no_table_removes",
         ),
         (

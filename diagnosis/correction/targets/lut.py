@@ -61,11 +61,13 @@ TARGET = Target(
     what="a plain table as CSV (lut:N for N rows)",
     ending=".csv",
     axis="row k at k/n of a turn of the sensor's own reading",
-    sign="correction_deg is added to the shaft angle, linear in between, the last row to the first",
+    sign="linear in between, the last row to the first; shaft_deg holds correction_deg and the zero already",
     unit="deg",
     entries=64,
     absolute=True,
     fitted=Lut.fitted,
     read=Lut.read,
-    load="draw straight lines between its rows; shaft_deg is the shaft angle as the reference counts it",
+    formula="shaft angle = {reading} + correction_deg {zero} deg",
+    load="draw straight lines between its rows: of shaft_deg, the shaft angle as the reference counts it, or of "
+    "correction_deg for the formula",
 )

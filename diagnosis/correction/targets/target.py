@@ -56,6 +56,8 @@ class Target:
         What to do with the file.
     check_name : callable
         Refuses a name that cannot stand in the file.
+    formula : str
+        The shaft angle by what the file holds, where it does not hold all: with ``{reading}`` and ``{zero}`` in it.
     """
 
     name: str
@@ -68,11 +70,18 @@ class Target:
     fitted: Callable[[Wanted, int, Least], Table]
     read: Callable[[str], Table]
     load: str
+    formula: str = ""
     fewest: int = 4
     most: int = 4096
     step: int = 1
     absolute: bool = False
     check_name: Callable[[str], None] = check_prefix
+
+    def formula_of(self, wanted: Wanted) -> str:
+        """The shaft angle by what the file holds; empty where the file holds all."""
+        zero = np.degrees(-wanted.zero_rad)
+        sense = "reading" if wanted.slope > 0 else "-reading"
+        return self.formula.format(reading=sense, zero=f"{'-' if zero < 0 else '+'} {abs(zero):.6f}")
 
     @property
     def sizes(self) -> range:

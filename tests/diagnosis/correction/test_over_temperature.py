@@ -175,7 +175,7 @@ def test_held_out_blocks_and_a_held_out_temperature() -> None:
         before, after = found.among(level == k).rms_deg
         assert before > 0.35
         assert after < 0.023
-    alone = between(recording, level, correct)
+    alone = between(recording, level, lambda rows: correct(recording.part(rows)))
     assert list(alone) == [1]
     # Half of the readings less: 0.02 sqrt(1 + 16/360).
     assert alone[1].rms_deg[1] < 0.023

@@ -125,16 +125,22 @@ def test_a_checked_sweep_is_judged_as_it_is_read_by_both_commands(
             assert f"faults of the word ({fault.split()[0]}): " in ended.out
 
 
-def test_a_correction_that_makes_words_worse_as_they_are_read_is_said_to(tmp_path: Path) -> None:
-    """A bit of 45 deg that is stuck, and an error that makes up for a part of it: the same error corrected is none."""
-    turn = np.radians(REFERENCE_DEG)
-    bit = BITS - 3
-    exact = np.round((REFERENCE_DEG - 1.5 * np.sin(4.0 * turn)) / 360.0 * 2**BITS).astype(np.int64) % 2**BITS
-    bad = written(tmp_path / "bad.csv", (exact & ~(1 << bit)) / 2**BITS * 360.0)
+def test_a_wrong_table_is_told_by_the_words_that_say_the_angle(tmp_path: Path) -> None:
+    """That of a sensor whose error is the opposite: a code's rows, of 17 deg RMS, neither hide it nor make it up."""
+    opposite = (2.0 * (REFERENCE_DEG + ZERO_DEG) - readings(6)) % 360.0
+    wrong, bad = written(tmp_path / "wrong.csv", opposite), written(tmp_path / "bad.csv", with_code())
+    count = np.count_nonzero(with_code() == 0.0)
     for command in (("compensate",), ("export", "--for", "c")):
-        ended = halltwin(*command, bad, "--fail-on", "worse")
+        ended = halltwin(*command, wrong, "--check", bad)
         assert ended.code == 1
-        assert "makes the error larger on held-out blocks, words as they are read" in ended.err
+        said = " ".join(ended.err.split())
+        found = re.search(
+            r"bad\.csv, words as they are read, (\d+) readings .* left out \(([\d.]+) -> ([\d.]+) deg", said
+        )
+        assert found is not None
+        assert int(found[1]) == count
+        # Orders 1 and 2 of 1.2 and 0.5 deg, and twice that.
+        assert [float(value) for value in found.groups()[1:]] == pytest.approx([0.92, 1.84], rel=0.03)
 
 
 @pytest.mark.parametrize("sense", [1, -1])

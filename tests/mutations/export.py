@@ -138,6 +138,42 @@ EXPORT: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
+        "diagnosis/correction/as_read.py",
+        "tests/scenarios/test_words_as_read.py",
+        (
+            "export.words_are_judged_as_told_back",
+            "[radians(one.read.measured_deg) for one in sweeps]",
+            "[radians(one.sweep.measured_deg) for one in sweeps]",
+            "::test_a_table_is_judged_on_the_words_that_the_drive_reads[word_bit]",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/correction/left_of_readings.py",
+        "tests/scenarios/test_words_as_read.py",
+        (
+            "export.what_follows_a_current_counts_as_noise",
+            "    rest = scatter - noise",
+            "    rest = 0.0",
+            "::test_noise_is_told_apart_from_what_follows_a_current",
+        ),
+        (
+            "export.what_held_out_readings_err_more_is_left_without_a_reason",
+            "    if held <= _LEFT_OVER * own:",
+            "    if held <= 10.0 * own:",
+            "::test_what_is_left_adds_up_to_the_error_on_held_out_readings",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/correction/targets/target.py",
+        "tests/scenarios/test_words_as_read.py",
+        (
+            "export.the_zero_of_a_plain_table_has_the_other_sign",
+            "        zero = np.degrees(-wanted.zero_rad)",
+            "        zero = np.degrees(wanted.zero_rad)",
+            "::test_a_plain_table_is_applied_as_its_sentence_says[1]",
+        ),
+    ),
+    *of_one_file(
         "diagnosis/correction/not_removed.py",
         _EXPORT,
         (

@@ -39,9 +39,9 @@ def read_sweep(
     try:
         return checked(read_columns(path, max_bytes=max_bytes))
     except SweepError as error:
-        from twin.logs.read import advice
+        from twin.logs.read import refused
 
-        raise SweepError(f"{error}{advice(path)}") from None
+        raise SweepError(refused(path, str(error))) from None
 
 
 def read_columns(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> dict[str, Array]:

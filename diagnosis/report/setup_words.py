@@ -19,7 +19,7 @@ def setup_block(findings: Sequence[Mapping[str, Any]], title: str) -> Renderable
         style = "bold yellow" if found["level"] == "fault" else "bold"
         parts.append(Text.assemble(f"{number:3}  ", (found["kind"], style), f"  {found['what']}"))
         lines = [f"seen in: {found['evidence']}", f"so: {found['consequence']}", f"do: {found['remedy']}"]
-        if found["columns"]:
-            lines.append(f'--columns "{found["columns"]}"')
+        options = [found["columns"]] if found["columns"] else found.get("options", ())
+        lines += [f'--columns "{option}"' for option in options]
         parts.extend(Padding(Text(line), (0, 0, 0, _INSET)) for line in lines)
     return Group(*parts)

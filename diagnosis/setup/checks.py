@@ -22,6 +22,7 @@ from diagnosis.setup.record import Record
 from diagnosis.setup.roles import coarse_reference, swapped_roles
 from diagnosis.setup.sampling import aliased_frequency, aliased_order, few_points, part_of_a_turn
 from diagnosis.setup.typing_error import typing_error
+from diagnosis.setup.word import OF_WORD, without_faults_of_word
 from twin.sweep import Sweep
 
 
@@ -70,7 +71,9 @@ CHECKS: tuple[Check, ...] = (
     Check(("other_status",), other_status, ("status",)),
 )
 """Every check, in order."""
-KINDS = tuple(kind for check in CHECKS for kind in check.kinds)
+AMBIGUOUS = "ambiguous"
+"""Of a log that can be read in several ways, see :mod:`diagnosis.setup.several_readings`."""
+KINDS = (AMBIGUOUS, *OF_WORD, *(kind for check in CHECKS for kind in check.kinds))
 """The words of all findings."""
 
 
@@ -83,8 +86,12 @@ class Checked:
 
 
 def checked(record: Record, found_before: tuple[Finding, ...] = ()) -> Checked:
-    """Make every check that the record's columns allow; what was found as it was read stands before the rest."""
-    findings = list(found_before)
+    """Make every check that the record's columns allow; what was found as it was read stands before the rest.
+
+    Faults of the words are told first and taken off: what they do to a reading is no fault of magnet or reference.
+    """
+    of_words, record = without_faults_of_word(record)
+    findings = [*found_before, *of_words]
     lacking: dict[str, tuple[str, ...]] = {}
     ended = False
     for check in CHECKS:
@@ -102,13 +109,20 @@ def checked(record: Record, found_before: tuple[Finding, ...] = ()) -> Checked:
 
 
 def checked_sweep(sweep: Sweep) -> tuple[Finding, ...]:
-    """What is wrong with the set-up of a sweep; of several recordings with each, by its number."""
+    """What is wrong with the set-up of a sweep; of several recordings with each, by its number.
+
+    Faults of the word are left out: ``explain`` names them as causes.
+    """
     if sweep.recordings is None:
-        return checked(Record.of(sweep)).findings
+        return _but_of_words(checked(Record.of(sweep)))
     rows = np.arange(len(sweep))
     alone = replace(sweep, recordings=None)
     return tuple(
         replace(finding, evidence=f"recording {number}: {finding.evidence}")
         for number, part in enumerate(sweep.recordings.slices, 1)
-        for finding in checked(Record.of(alone.part(rows[part]))).findings
+        for finding in _but_of_words(checked(Record.of(alone.part(rows[part]))))
     )
+
+
+def _but_of_words(found: Checked) -> tuple[Finding, ...]:
+    return tuple(finding for finding in found.findings if finding.kind not in OF_WORD)

@@ -25,6 +25,8 @@ class Finding:
         Numbers of the rows that show it (the first reading is 1), where single ones do.
     columns : str
         The statement for ``--columns`` that mends it; empty where none does.
+    options : tuple of str
+        Statements for ``--columns`` of which one may be meant.
     """
 
     kind: str
@@ -35,6 +37,7 @@ class Finding:
     level: Literal["fault", "note"] = "fault"
     rows: tuple[int, ...] = ()
     columns: str = ""
+    options: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values of an answer."""
@@ -48,6 +51,7 @@ class Finding:
             "rows": list(self.rows[:MOST_ROWS]),
             "rows_left_out": max(len(self.rows) - MOST_ROWS, 0),
             "columns": self.columns or None,
+            "options": list(self.options),
         }
 
 

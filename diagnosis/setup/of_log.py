@@ -42,6 +42,8 @@ class LogRecord:
         Why no statement was found that makes a sweep of it, in the reader's words; empty where one was.
     findings : tuple of Finding
         What the guess has mended already: an angle that turns several times as fast.
+    otherwise : tuple of LogRecord
+        The log read by other statements, where several fit equally well: none of them is the one that is meant.
     """
 
     record: Record
@@ -51,6 +53,7 @@ class LogRecord:
     unused: tuple[str, ...] = ()
     refused: str = ""
     findings: tuple[Finding, ...] = ()
+    otherwise: tuple[LogRecord, ...] = ()
 
 
 def read_record(
@@ -83,6 +86,8 @@ def read_record(
         found = _by_names(table, name=name, refused="") if _leaves_a_reference(guess, table) else None
         return _with_mended(_of(table, guess, name=name), table) if found is None else found
     except OpenGuess as two:
+        if two.fit:
+            return _of_several(table, two, name=name)
         found = _by_names(table, name=name, refused=str(two))
         return found if found is not None else _of_options(table, two, name=name)
     except SweepError as error:
@@ -120,8 +125,17 @@ def _of(table: Table, guess: Guess, *, name: str, refused: str = "") -> LogRecor
 
 
 def _of_options(table: Table, two: OpenGuess, *, name: str) -> LogRecord:
-    """By the first of two statements that fit equally well; which one is meant is asked."""
+    """By the first of some statements of which one may be meant, against what the names say."""
     return _of(table, by_statement(parsed(two.options[0]), table), name=name, refused=str(two))
+
+
+def _of_several(table: Table, two: OpenGuess, *, name: str) -> LogRecord:
+    """By each of the statements that fit equally well; which one is meant is asked."""
+    first, *rest = (
+        _with_mended(_of(table, by_statement(parsed(option), table), name=name, refused=str(two)), table)
+        for option in two.options
+    )
+    return replace(first, otherwise=tuple(rest))
 
 
 def _by_names(table: Table, *, name: str, refused: str) -> LogRecord | None:

@@ -14,10 +14,11 @@ from diagnosis.setup.record import Record
 from diagnosis.setup.relation import Relation
 from diagnosis.setup.sampling import even_points
 from diagnosis.setup.step_change import steps_of
-from twin.angles import Array
+from twin.angles import Array, radians
 from twin.following import spread_deg
 from twin.logs.angles import AngleUnit, Pair, units_of_pair
 from twin.logs.names import Meaning
+from twin.words import Words
 
 _LARGEST_TERM = 12
 """Of pole pairs and gears: a ratio of larger whole numbers is one of counts."""
@@ -207,24 +208,33 @@ def counts_a_turn(record: Record) -> Finding | None:
     if relation.turns < _WHOLE_TURNS or relation.travel_deg.size < 24 or read_late(record) is not None:
         return None
     opened = _open_deg(relation)
-    ratio = abs(relation.ratio)
+    ratio, of_reading = abs(relation.ratio), _is_of_the_reading(record)
     if opened is None:
         within = _within_a_turn(record)
         if within is None:
             return None
-        ratio, opened = within
+        ratio, opened, of_reading = within
     elif not _is_a_slope(relation):
         return None
     pairs = _pairs_of_counts(ratio, max(3.0 * relation.ratio_error, 1e-4))
     said = f"; {' or '.join(f'{a} counts taken for {b}' for a, b in pairs)} would do it" if pairs else ""
+    side, factor = ("measured_deg", 1.0 / ratio) if of_reading else ("reference_deg", ratio)
     return Finding(
         kind="wrong_counts",
-        what="a wrong number of counts or steps makes a turn, in one of the two columns",
+        what=f"a wrong number of counts or steps makes a turn, in {'the reading' if of_reading else 'one of the two'}",
         evidence=f"a turn of the reference is {360.0 * ratio:.2f} deg of the reading{said}",
         consequence=f"{abs(opened):.2f} deg are missing or too many in each turn, which no error of the sensor is",
         remedy="set the counts a turn where the log is written",
-        columns=record.stated(reference_deg=round(ratio, 6)),
+        columns=record.stated(**{side: round(factor, 6)}),
     )
+
+
+def _is_of_the_reading(record: Record) -> bool:
+    """Whether the factor goes from a word's 0, where the sensor's turn begins: then the reading is multiplied by it."""
+    from twin.link.scale_error import find
+
+    words = Words(radians(record.reference_deg), radians(record.measured_deg), np.ones(record.both.size, dtype=bool))
+    return find(words) is not None
 
 
 def _is_a_slope(relation: Relation) -> bool:
@@ -236,8 +246,11 @@ def _is_a_slope(relation: Relation) -> bool:
     return min(one.slope_alone.sigma for one in by) <= min(one.alone.sigma for one in by)
 
 
-def _within_a_turn(record: Record) -> tuple[float, float] | None:
-    """A factor that each turn begins anew with, as of a wrapped word: the ratio, and the degrees that are open."""
+def _within_a_turn(record: Record) -> tuple[float, float, bool] | None:
+    """A factor that each turn begins anew with, as of a wrapped word: the ratio, and the degrees that are open.
+
+    And whether it is the reading's.
+    """
     relation = record.relation
     assert relation is not None
     if relation.turns < 1.5 or not relation.follows or relation.travel_deg.size < 48:
@@ -253,7 +266,7 @@ def _within_a_turn(record: Record) -> tuple[float, float] | None:
         sure = abs(opened) > times_sure() * float(fit.errors[-1])
         if sure and _LEAST_OPEN_DEG < abs(opened) < _MOST_OPEN_DEG and fit.sigma < 0.5 * before.sigma:
             factor = 1.0 / (1.0 - opened / 360.0) if side > 0 else 1.0 + opened / 360.0
-            return factor, opened
+            return factor, opened, side > 0.0
     return None
 
 

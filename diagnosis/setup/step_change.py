@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,11 @@ _MOST_STEPS = 3
 _MOST_WILD = 0.02
 _SOON_ROWS, _SOON = 20, 0.03
 """Rows, or share of the record, within which a step that is taken back is a burst: stale frames, a word's gap."""
+_NEAR_ROWS, _NEAR = 20, 0.04
+"""Rows, or share of the record, on either side of a step within which a drift is even."""
+_HALF = 0.5
+_ONE_WAY = 0.9
+"""Share of the way that a shaft gets on by, from which it goes one way: a slip may throw it back for a row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +36,20 @@ class Steps:
     def better_than_a_slope(self) -> bool:
         """Whether up to three steps leave less than a slope does."""
         return self.alone.sigma < self.slope_alone.sigma
+
+    def is_sudden(self, place: int) -> bool:
+        """Whether the error near a step is nearer to one of that size than to a smooth way through its neighbours.
+
+        Over a few rows whatever drifts goes on evenly, however it goes over the whole record.
+        """
+        k = self.places.index(place)
+        size = float(self.with_slope.values[k - len(self.places)])
+        left = self.with_slope.left + size * _after(self.with_slope.left.size, place)
+        reach = max(_NEAR_ROWS, int(_NEAR * left.size))
+        inside = slice(max(place - reach, 0), place + reach)
+        at = np.arange(left.size, dtype=np.float64)[inside] - place
+        shapes = [np.ones_like(at), at, np.asarray(at >= 0.0, dtype=np.float64)]
+        return float(_fitted(shapes, left[inside]).values[-1]) / size > _HALF
 
     def lasting(self) -> tuple[int, float, float] | None:
         """Place, size and standard error of the largest step that no other takes back; None where each one is."""
@@ -52,17 +72,22 @@ class Steps:
         return self.places[worst], float(sizes[worst]), float(errors[worst])
 
 
-def steps_of(error: Array, travel_deg: Array, *, turn_of: Array) -> Steps:
+def steps_of(error: Array, travel_deg: Array, *, turn_of: Array, beside: Sequence[Array] = ()) -> Steps:
     """Up to three steps of an error (n,) along the record, beside orders 1 to 4 and what goes with the direction.
 
     ``turn_of`` (n,) is the angle [deg] that the sensor's orders go with, ``travel_deg`` (n,) the one that a slope does.
+    ``beside`` holds further shapes (n,) that are fitted with them, as those of a drift.
     """
     n = error.size
     way = np.sign(np.diff(travel_deg, prepend=2.0 * travel_deg[0] - travel_deg[1]))
-    rest = [np.ones(n), *waves(np.radians(turn_of), (1, 2, 3, 4))]
-    if np.ptp(way) > 0.0:
+    rest = [np.ones(n), *waves(np.radians(turn_of), (1, 2, 3, 4)), *beside]
+    both_ways = abs(travel_deg[-1] - travel_deg[0]) < _ONE_WAY * np.sum(np.abs(np.diff(travel_deg)))
+    if both_ways:
         rest.append(way)
-    slope = travel_deg / 360.0 - float(np.mean(travel_deg)) / 360.0
+    slope = [travel_deg / 360.0 - float(np.mean(travel_deg)) / 360.0]
+    if beside and not both_ways:
+        # Of a shaft that goes on evenly the rows less the reference's turns are the reference's own steps.
+        slope = []
     places: list[int] = []
     for _ in range(_MOST_STEPS):
         known = [*rest, *(_after(n, place) for place in places)]
@@ -71,8 +96,8 @@ def steps_of(error: Array, travel_deg: Array, *, turn_of: Array) -> Steps:
     return Steps(
         tuple(places),
         _fitted([*rest, *steps], error),
-        _fitted([*rest, slope, *steps], error),
-        _fitted([*rest, slope], error),
+        _fitted([*rest, *slope, *steps], error),
+        _fitted([*rest, *slope], error),
     )
 
 

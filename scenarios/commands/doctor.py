@@ -12,8 +12,9 @@ from rich.text import Text
 
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.setup_words import setup_block
-from diagnosis.setup.checks import KINDS, Checked, checked
+from diagnosis.setup.checks import KINDS, Checked
 from diagnosis.setup.of_log import LogRecord, read_record
+from diagnosis.setup.several_readings import checked_log
 from scenarios.commands.fail_on import DOCTOR, asked, raise_found
 from scenarios.commands.outputs import JSON, OutputFiles, json_text
 from twin.logs.others import target_of
@@ -36,7 +37,7 @@ def run(
     words = asked(fail_on, (*DOCTOR, *KINDS))
     files = OutputFiles.checked([(json, JSON)], inputs=[log], force=force)
     read = read_record(log, name=shown_name(log), columns=columns, max_bytes=max_bytes)
-    answer = to_dict(read, checked(read.record, read.findings), Provenance.today(seed=0, command=command))
+    answer = to_dict(read, checked_log(read), Provenance.today(seed=0, command=command))
     try:
         show(answer)
     finally:
@@ -55,7 +56,7 @@ def to_dict(read: LogRecord, found: Checked, made: Provenance) -> dict[str, Any]
             "name": record.name,
             "rows": int(record.numbers.size),
             "columns": list(record.columns),
-            "read_as": read.read_as,
+            "read_as": None if read.otherwise else read.read_as,
             "read": list(read.read),
             "notes": list(read.notes),
             "not_used": list(read.unused),
@@ -72,7 +73,8 @@ def show(answer: Mapping[str, Any]) -> None:
     log = answer["log"]
     read = "; ".join([f"{log['rows']} rows", *log["read"]])
     console.print(Text.assemble((log["name"], "bold"), f"   {read}"))
-    lines = [f'read as: --columns "{log["read_as"]}"', *(f"taken for granted: {note}" for note in log["notes"])]
+    read_as = [f'read as: --columns "{log["read_as"]}"'] if log["read_as"] else []
+    lines = [*read_as, *(f"taken for granted: {note}" for note in log["notes"])]
     if log["not_used"]:
         lines.append(f"not used: {', '.join(log['not_used'])}")
     for line in lines:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from tests.mutations.mutation import Mutation, of_one_file
 
 _CHECKS = "tests/diagnosis/setup/test_checks.py"
+_DRIFTS = "tests/diagnosis/setup/test_drift_and_word.py"
+_SEVERAL = "tests/diagnosis/setup/test_several_readings.py"
 _FAULTS = "tests/setup_faults/test_setup_faults.py"
 
 SETUPS: tuple[Mutation, ...] = (
@@ -59,7 +61,7 @@ SETUPS: tuple[Mutation, ...] = (
         _CHECKS,
         (
             "setup.play_is_a_slip",
-            "    if np.ptp(way) > 0.0:",
+            "    if both_ways:",
             "    if False:",
             "::test_a_zero_that_steps_where_the_shaft_turns_round_is_no_open_turn",
         ),
@@ -164,6 +166,88 @@ SETUPS: tuple[Mutation, ...] = (
             "    return int(np.argmax(gain))",
             "    return int(np.argmin(gain)) + _FEWEST",
             "::test_a_slip_is_no_wrong_number_of_counts",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/setup/checks.py",
+        _DRIFTS,
+        (
+            "setup.words_have_no_fault",
+            "    of_words, record = without_faults_of_word(record)",
+            "    of_words = without_faults_of_word(record)[0]",
+            "::test_a_stuck_bit_is_told_and_makes_no_other_order[5]",
+        ),
+        (
+            "setup.words_are_told_twice",
+            "if finding.kind not in OF_WORD)",
+            "if finding.kind)",
+            "::test_explain_names_faults_of_the_word_as_causes_alone",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/setup/closure.py",
+        _DRIFTS,
+        (
+            "setup.a_drift_is_a_step",
+            ", beside=_drifts(record))",
+            ", beside=())",
+            "::test_what_goes_with_the_current_is_no_open_turn",
+        ),
+        (
+            "setup.a_fast_drift_is_a_step",
+            " or not found.is_sudden(place):",
+            ":",
+            "::test_a_zero_that_drifts_is_no_open_turn[within a hundred rows]",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/setup/ratio.py",
+        _DRIFTS,
+        (
+            "setup.a_factor_is_the_references",
+            "    return find(words) is not None",
+            "    return False",
+            "::test_a_reading_with_a_wrong_factor_is_multiplied_itself",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/setup/several_readings.py",
+        _SEVERAL,
+        (
+            "setup.one_reading_is_enough",
+            "    rest = [checked(one.record, one.findings) for one in read.otherwise]",
+            "    rest = [first]",
+            "::test_every_statement_that_fits_is_listed_and_none_is_taken[two angles, the sensor first]",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/setup/of_log.py",
+        _SEVERAL,
+        (
+            "setup.names_choose_a_reading",
+            "        if two.fit:",
+            "        if False:",
+            "::test_every_statement_that_fits_is_listed_and_none_is_taken[corrections beside a reading]",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/read.py",
+        _SEVERAL,
+        (
+            "logs.a_comment_is_a_header",
+            "        if table.entries:",
+            "        if False:",
+            "::test_explain_of_a_table_says_what_it_is_and_how_many_statements_fit",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/names.py",
+        "tests/untidy/test_guess.py",
+        (
+            "logs.small_and_large_letters_are_two_words",
+            "    if behind and unit_of(behind[2]):",
+            "    if behind and None:",
+            "::test_a_current_is_read_in_the_unit_of_its_name[current_mA-1000.0]",
         ),
     ),
 )

@@ -18,11 +18,11 @@ from tests.setup_faults.formats import write
 
 def found_in(path: Path) -> list[str]:
     """The kinds that the program finds in a log."""
-    from diagnosis.setup.checks import checked
     from diagnosis.setup.of_log import read_record
+    from diagnosis.setup.several_readings import checked_log
 
     read = read_record(path, name=path.name)
-    return [finding.kind for finding in checked(read.record, read.findings).findings]
+    return [finding.kind for finding in checked_log(read).findings]
 
 
 def trial(fault: Fault, rng: np.random.Generator, folder: Path) -> tuple[str, list[str]]:

@@ -160,3 +160,11 @@ def test_of_logs_drawn_at_random_none_is_misread(tmp_path: Path) -> None:
     found = [outcome(seed, tmp_path) for seed in range(60)]
     assert found.count("wrong") == 0
     assert found.count("right") >= 54
+
+
+@pytest.mark.parametrize(("name", "factor"), [("current_mA", 1000.0), ("current_A", 1.0), ("iq [mA]", 1000.0)])
+def test_a_current_is_read_in_the_unit_of_its_name(name: str, factor: float, tmp_path: Path) -> None:
+    current = np.linspace(4.0, 6.0, ROWS)
+    path = tmp_path / "log.csv"
+    path.write_text(table({"encoder_deg": REFERENCE_DEG, "sensor_deg": MEASURED_DEG, name: np.round(factor * current)}))
+    np.testing.assert_allclose(read_log(path).columns["current_a"], np.round(factor * current) / factor)

@@ -26,7 +26,6 @@ from twin.sweep_columns import COLUMNS
 
 _SHOWN, _SIDES = 2, 2
 _ERROR_IS = "an error is the reading less the true angle, a correction the reverse"
-_FIT = {2: "two guesses fit"}
 _FEWEST = 4
 """Numbers that a column must hold to be judged."""
 _MOST_ANGLES = 12
@@ -34,11 +33,15 @@ _MOST_ANGLES = 12
 
 
 class OpenGuess(SweepError):
-    """No single guess is right as it stands; ``options`` are the statements of which one may be meant."""
+    """No single guess is right as it stands; ``options`` are the statements of which one may be meant.
 
-    def __init__(self, said: str, options: tuple[str, ...]) -> None:
+    ``fit``: each of several fits names and values as well as the others; else they go against what a name says.
+    """
+
+    def __init__(self, said: str, options: tuple[str, ...], *, fit: bool = False) -> None:
         super().__init__(said)
         self.options = options
+        self.fit = fit
 
 
 @dataclass(frozen=True)
@@ -108,7 +111,7 @@ def _guessed_of_entries(table: Table) -> Guess:
 def _one_of(fitting: Sequence[tuple[Column, Column]], notes: tuple[str, ...], table: Table) -> Guess:
     """The one statement that fits. Raises OpenGuess where more do."""
     if len(fitting) > 1:
-        _raise_open(table, _FIT.get(len(fitting), "several guesses fit"), [text_of(one) for one in fitting])
+        _raise_several(table, fitting)
     return Guess(fitting[0], notes, unused_by(fitting[0], table))
 
 
@@ -146,7 +149,7 @@ def _pair(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[C
         _raise_odd_factor(table, said, angles)
         return _by_name_alone(table, said, angles)
     if len(fitting) > 1:
-        _raise_open(table, "two guesses fit", [text_of(one.columns(table)) for one in fitting])
+        _raise_several(table, [one.columns(table) for one in fitting])
     return fitting[0].columns(table)
 
 
@@ -161,23 +164,31 @@ def _turned(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple
             for one in turned(table.values[a], table.values[b], said=(said[a], said[b]))
         ]
         if len(fitting) > 1:
-            _raise_open(table, _FIT.get(len(fitting), "several guesses fit"), [text_of(one) for one in fitting])
+            _raise_several(table, fitting)
         if fitting:
             return fitting[0]
     return None
 
 
-def _raise_open(table: Table, what: str, options: Sequence[str]) -> NoReturn:
-    more = f", and {len(options) - _SHOWN} more" if len(options) > _SHOWN else ""
+def _raise_several(table: Table, fitting: Sequence[tuple[Column, ...]]) -> NoReturn:
+    """Raise OpenGuess: nothing speaks for one of the statements that fit."""
+    count = "two" if len(fitting) == 2 else "several"
+    _raise_open(table, f"{count} guesses fit", [text_of(one) for one in fitting], fit=True)
+
+
+def _raise_open(table: Table, what: str, options: Sequence[str], *, fit: bool = False) -> NoReturn:
     which = "say which it is" if len(options) > 1 else "if so, say it"
     raise OpenGuess(
-        f"{table.file}: {what} (found {table.listed()}); {which}: {in_words(options)}{more}", tuple(options[:_SHOWN])
+        f"{table.file}: {what} (found {table.listed()}); {which}: {in_words(options)}",
+        tuple(options),
+        fit=fit,
     )
 
 
 def in_words(options: Sequence[str]) -> str:
-    """The first two of some statements as options of a command."""
-    return " or ".join(f'--columns "{option}"' for option in options[:_SHOWN])
+    """The first two of some statements as options of a command, and how many more there are."""
+    more = f", and {len(options) - _SHOWN} more" if len(options) > _SHOWN else ""
+    return " or ".join(f'--columns "{option}"' for option in options[:_SHOWN]) + more
 
 
 def _candidates(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> Iterator[_Candidate]:
@@ -259,7 +270,7 @@ def _by_channels(
         if len(fitting) == 1:
             return fitting[0]
         if fitting:
-            _raise_open(table, "two guesses fit", [text_of(one) for one in fitting])
+            _raise_several(table, fitting)
     mistyped = [fault for fault in table.faults.values() if " words " not in fault]
     if mistyped:
         raise SweepError(f"{table.file}: {mistyped[0]}")

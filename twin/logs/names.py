@@ -143,6 +143,10 @@ def _parted(name: str) -> tuple[str, Unit | None, bool]:
 
 def _last_word(text: str) -> tuple[str, str]:
     """What stands before the last word of a name, and that word in small letters: ``encDeg``, ``enc_deg``, ``deg``."""
+    behind = re.match(r"^(.+)_([a-z]A)$", text)
+    if behind and unit_of(behind[2]):
+        # A unit of a small and a large letter is one word: ``current_mA``.
+        return behind[1], behind[2].lower()
     found = re.match(r"^(.*?)[\s_.\-]*([A-Z]?[^\W\d_A-Z]+|[A-Z]+|°C?)$", text)
     return (found[1], found[2].lower()) if found else (text, "")
 

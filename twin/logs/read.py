@@ -66,15 +66,23 @@ LARGEST_ADVISED_BYTES = 5_000_000
 """Of a longer file that was refused nothing is guessed: reading it once took its time."""
 
 
-def advice(path: Path) -> str:
-    """What ``--columns`` would read a file that is refused, for the end of the message; empty where nothing would."""
+def refused(path: Path, said: str) -> str:
+    """What is told of a file that makes no sweep as it is: why, and what ``--columns`` would read it, if anything.
+
+    ``said`` is why by its columns; of a table of entries, as source text of a firmware holds it, there are none.
+    """
     try:
         if not path.is_file() or path.stat().st_size > LARGEST_ADVISED_BYTES:
-            return ""
-        guess = read_log(path, max_bytes=LARGEST_ADVISED_BYTES).guess
+            return said
+        table = read_table(path, max_bytes=LARGEST_ADVISED_BYTES)
+        advised = f"{said}; or say what is meant"
+        if table.entries:
+            said = f"{table.file}: holds a table of {len(table.values[0])} entries, and no columns of a sweep"
+            advised = f"{said}; say what is meant"
+        guess = guessed(table)
     except OpenGuess as two:
-        return f"; or say what is meant: {in_words(two.options)}"
+        return f"{advised}: {in_words(two.options)}"
     except (SweepError, OSError):
-        return ""
+        return said
     as_it_is = all(str(column) == f"{column.target}={column.target}" for column in guess.columns)
-    return "" if as_it_is else f"; or say what is meant: {in_words([guess.text])}"
+    return said if as_it_is else f"{advised}: {in_words([guess.text])}"

@@ -33,6 +33,7 @@ _LISTED: tuple[tuple[Unit, str], ...] = (
     (Unit("arcmin", "angle", 1.0 / 60.0), "arcminute arcminutes"),
     (Unit("arcsec", "angle", 1.0 / 3600.0), "arcsecond arcseconds"),
     (Unit("mdeg", "angle", 1e-3), "millideg"),
+    (Unit("cdeg", "angle", 0.01), "centideg centidegree centidegrees"),
     (Unit("s", "time"), "sec secs second seconds sekunden"),
     (Unit("ms", "time", 1e-3), "msec msecs millis millisec milliseconds"),
     (Unit("us", "time", 1e-6), "usec usecs micros microsec microseconds µs μs"),

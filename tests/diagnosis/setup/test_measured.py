@@ -15,11 +15,15 @@ pytestmark = pytest.mark.measured
 CASES = {
     "D06b_spin_down_no_reference_column": ["no_reference"],
     "D09a_sixstep_motor0_typo": ["typing_error"],
+    "F04_zero_reads_100": ["error_code"],
     "F06b_two_slips_midturn_180": ["turn_not_closed"],
     "F07_factor_0p087_72": ["wrong_counts"],
+    "S05b_dead_zone_8deg": ["dead_zone"],
+    "S06_bit6_misread": ["word_bit"],
+    "S07c_msb_stuck_40_radians_message": ["word_bit"],
     "S16_axial_magnet_180_230": ["axial_magnet"],
 }
-"""Of all other cases, whose fault is the sensor's or its word's, nothing is found."""
+"""Of all other cases, whose fault is the sensor's, nothing is found."""
 FILES = sorted([*REAL.glob("*.csv"), *(DATA / "cases").glob("*.csv")])
 
 

@@ -190,12 +190,24 @@ class FindInWords(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Also:
+    """Another ``cause`` that does the same to the readings (n,) [rad] of a motion ``where`` it says so.
+
+    ``tells`` is the measurement that would tell them apart.
+    """
+
+    cause: str
+    tells: str
+    where: Callable[[Array, Motion], bool]
+
+
+@dataclass(frozen=True, kw_only=True)
 class InWords:
     """How a fault of the link is told by the words themselves.
 
     ``said`` puts a fault's parameters into words; ``line`` does so with each as it is shown, with its interval and
     unit. ``rows_listed``: whether the answer names each reading that it touched. ``several``: whether there may be more
-    of them in one sweep.
+    of them in one sweep. ``also``: what else does the same.
     """
 
     find: FindInWords
@@ -203,6 +215,7 @@ class InWords:
     line: Callable[[Mapping[str, float], Mapping[str, str]], str] | None = None
     rows_listed: bool = False
     several: bool = False
+    also: Also | None = None
 
 
 def faults_of(words: Words, finders: Mapping[str, InWords], limit_log_p: float) -> tuple[tuple[str, WordFault], ...]:

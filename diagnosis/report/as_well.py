@@ -40,7 +40,17 @@ def _same_words(found: Discovery, cause: Finding) -> dict[str, list[dict[str, An
 
 
 def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
-    """Such stages, each with what would tell it apart; none where rivals were not looked for."""
-    comb = find(cause.keys[0], found.fit.chain.effects).comb
-    sought = found.cut_short is None and found.fit.observations.observables == 1
-    return [comb.also] if sought and comb is not None and comb.also is not None else []
+    """Such stages, each with what would tell it apart; none where rivals were not looked for.
+
+    And causes of which a fault of the words says that they do the same on this record.
+    """
+    if found.cut_short is not None:
+        return []
+    effect, observations = find(cause.keys[0], found.fit.chain.effects), found.fit.observations
+    beside = []
+    if effect.comb is not None and effect.comb.also is not None and observations.observables == 1:
+        beside.append(effect.comb.also)
+    also = effect.in_words.also if effect.in_words is not None else None
+    if also is not None and also.where(observations.measured, observations.motion):
+        beside.append((also.cause, also.tells))
+    return beside

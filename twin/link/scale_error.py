@@ -9,7 +9,7 @@ import numpy as np
 from twin.angles import TAU, Array, wrap
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
-from twin.words import ORDERS, Expected, InWords, WordFault, Words, noise_of, of_orders
+from twin.words import ORDERS, Also, Expected, InWords, WordFault, Words, noise_of, of_orders
 
 _T95 = 1.959964
 _PASSES = 5
@@ -96,6 +96,13 @@ def said(values: Mapping[str, float]) -> str:
     return f"a turn reads {360.0 * values['factor']:.5g} deg"
 
 
+def _begins_anew_at_the_first_row(read_rad: Array, motion: Motion) -> bool:
+    """Whether one turn is recorded from where the words begin: then a zero that drifts over it makes the same ramp."""
+    word = np.mod(read_rad, TAU)
+    one_turn = float(np.ptp(motion.shaft_rad)) < TAU * (1.0 + 1.0 / word.size)
+    return one_turn and bool(np.argmin(word) == 0 or np.argmax(word) == 0)
+
+
 def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
     """What a whole turn reads."""
     turn = 360.0 * float(np.ravel(values["factor"])[0])
@@ -122,7 +129,15 @@ SCALE_ERROR = Effect(
     forward=forward,
     shapes=shapes,
     derived=derived,
-    in_words=InWords(find=find, said=said),
+    in_words=InWords(
+        find=find,
+        said=said,
+        also=Also(
+            cause="zero_drift",
+            tells="record a second turn: a zero that drifts goes on there, a factor begins anew",
+            where=_begins_anew_at_the_first_row,
+        ),
+    ),
     needs=frozenset({"one turn"}),
     source="definition: gain error of a converter, IEEE Std 1241, section 4.5 (gain and offset), on a word that wraps",
     signature="a ramp of (k - 1) times the angle, with one step a turn: a turn reads 360 k",

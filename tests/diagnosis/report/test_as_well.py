@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from diagnosis import explain
 
@@ -28,3 +29,15 @@ def test_mechanics_may_stand_behind_a_line_of_an_angle_alone() -> None:
 
 def test_raw_channels_leave_the_magnet() -> None:
     assert named(channels=True) == ([], "")
+
+
+@pytest.mark.parametrize(("zero_deg", "turns", "drifts"), [(0.0, 1, True), (40.0, 1, False), (0.0, 2, False)])
+def test_one_turn_from_the_word_0_may_have_drifted(zero_deg: float, turns: int, drifts: bool) -> None:
+    """A factor of 0.99 makes a ramp with its step where the words begin anew, a drift where the record begins."""
+    shaft = np.arange(0.0, 360.0 * turns, 3.0)
+    read = np.mod(shaft + zero_deg + 0.4 * np.sin(np.radians(shaft)), 360.0)
+    noisy = 0.99 * read + np.random.default_rng(6).normal(0.0, 0.02, shaft.size)
+    (cause,) = explain({"reference_deg": shaft, "measured_deg": noisy}).to_dict()["causes"]
+    assert cause["name"] == "scale_error"
+    assert cause["indistinguishable_from"] == (["zero_drift"] if drifts else [])
+    assert ("record a second turn" in cause["to_tell_apart"]) == drifts

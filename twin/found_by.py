@@ -110,3 +110,20 @@ class Marks:
     ) -> tuple[BoolArray, float]:
         """The touched rows (n,) and the log probability of as many by chance: see :class:`FindMarks`."""
         return self.find(measured, residual, noise, step, motion)
+
+
+@dataclass(frozen=True)
+class OverSpeed:
+    """The variance [rad^2] that a cause adds to the angle, from the shaft's speed (n,) [rad/s] and the parameters."""
+
+    variance: Callable[[Array, Mapping[str, Any]], Array]
+
+    def __call__(self, speed_rad_s: Array, values: Mapping[str, Any]) -> Array:
+        return self.variance(speed_rad_s, values)
+
+
+def added_variance(
+    spread: Callable[[Array, Mapping[str, Any]], Array], angle: Array, motion: Motion, values: Mapping[str, Any]
+) -> Array:
+    """Variance (n,) [rad^2] that a cause adds at each reading: by its sensor angle (n,) [rad], or by its speed."""
+    return spread(motion.speed_rad_s if isinstance(spread, OverSpeed) else angle, values)

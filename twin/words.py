@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Protocol
@@ -191,14 +191,14 @@ class FindInWords(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Also:
-    """Another ``cause`` that does the same to the readings (n,) [rad] of a motion ``where`` it says so.
+    """Another ``cause`` that does the same ``where`` it says so, by readings (n,) [rad], motion and touched rows.
 
     ``tells`` is the measurement that would tell them apart.
     """
 
     cause: str
     tells: str
-    where: Callable[[Array, Motion], bool]
+    where: Callable[[Array, Motion, Sequence[int]], bool]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -51,6 +51,6 @@ def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     if effect.comb is not None and effect.comb.also is not None and observations.observables == 1:
         beside.append(effect.comb.also)
     also = effect.in_words.also if effect.in_words is not None else None
-    if also is not None and also.where(observations.measured, observations.motion):
+    if also is not None and also.where(observations.measured, observations.motion, cause.rows):
         beside.append((also.cause, also.tells))
     return beside

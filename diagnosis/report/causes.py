@@ -16,6 +16,7 @@ from diagnosis.report.wording import minus
 from twin.angles import TAU, Array
 from twin.catalogue import find, unnamed
 from twin.effect import BoolArray, Effect
+from twin.found_by import OverSpeed, added_variance
 from twin.motion import RPM
 
 _PERIODS = 8.0
@@ -160,17 +161,22 @@ def _spread(found: Discovery, read: Readings, effect: Effect, values: Any) -> tu
         layers = by_way(read, clock, read.after_deg, "residual", colour="c-cause")
         note = "The stretch that scatters more than the rest."
         return note, Plot(Axis(name), Axis("residual / deg"), layers, "residual in the order of the readings")
-    sigma = np.degrees(np.sqrt(effect.spread(fit.linear.sensor_angle, values)))
+    motion = fit.observations.motion
+    sigma = np.degrees(np.sqrt(added_variance(effect.spread, fit.linear.sensor_angle, motion, values)))
     added = sigma if len(sigma) == len(read.after_deg) else sigma[fit.observations.group]
+    over, axis, words, limits = read.angle_deg, ANGLE, "angle", (0.0, 360.0)
+    if isinstance(effect.spread, OverSpeed):
+        over, axis, words = np.abs(read.motion.speed_rad_s) / RPM, Axis("speed / rpm"), "speed"
+        limits = (0.0, float(np.max(over)))
     rest = np.sqrt(max(float(np.mean(read.after_deg[read.plain] ** 2) - np.mean(added**2)), 0.0))
-    middles, means = binned(read.angle_deg, np.hypot(added, rest), angle_bins(len(added), each=3))
+    middles, means = binned(over, np.hypot(added, rest), angle_bins(len(added), each=3), limits)
     kept = np.isfinite(means)
     layers = [
-        *by_way(read, read.angle_deg, read.after_deg, "residual", colour="c-cause"),
+        *by_way(read, over, read.after_deg, "residual", colour="c-cause"),
         Layer("line", middles[kept], 2.0 * means[kept], "two standard deviations, with the effect", "c-cause deep"),
         Layer("line", middles[kept], -2.0 * means[kept], "", "c-cause deep"),
     ]
-    return "The scatter over the angle.", Plot(ANGLE, Axis("residual / deg"), layers, "scatter over the shaft angle")
+    return f"The scatter over the {words}.", Plot(axis, Axis("residual / deg"), layers, f"scatter over the {words}")
 
 
 def _single_readings(read: Readings, cause: Finding) -> tuple[str, Plot]:

@@ -202,6 +202,7 @@ EXAMPLES: dict[str, Example] = {
     "latency": Example(
         strengths={"delay_us": 60.0}, shapes={}, signature=lambda m, p: -1e-6 * p["delay_us"] * m.speed_rad_s
     ),
+    "time_jitter": Example(strengths={"rms_us": 20.0}, shapes={}, signature=None),
     "output_quantisation": Example(strengths={"bits": 11.0}, shapes={}, signature=None),
     "stale_frames": Example(strengths={"fraction_percent": 5.0}, shapes={}, signature=None, memory=True),
     "bus_glitch": Example(strengths={"count": 7.0}, shapes={}, signature=None),

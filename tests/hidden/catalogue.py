@@ -54,6 +54,7 @@ CAUSES: dict[str, Cause] = {
     "hysteresis": Cause(shaft.plan_hysteresis, BOTH_WAYS),
     "backlash": Cause(shaft.plan_backlash, BOTH_WAYS),
     "latency": Cause(shaft.plan_latency, FAST),
+    "time_jitter": Cause(shaft.plan_time_jitter, ("speeds", "speeds_one_way"), Demands(single_readings=True)),
     "xy_skew": Cause(channel.plan_xy_skew, FAST),
     "reference_rezero": Cause(
         shaft.plan_reference_rezero, LONG, Demands(turns=4, turn_column=True, single_readings=True)

@@ -20,6 +20,7 @@ from .noise import Noise
 # in each stage the order of the entries is the physical order
 SHAFT: dict[str, Callable[[Array, Motion, Injected], Array]] = {
     "latency": shaft.latency,
+    "time_jitter": shaft.time_jitter,
     "drive_ripple": shaft.drive_ripple,
     "motor_poles": periods.motor_poles,
     "cardan_coupling": shaft.cardan_coupling,

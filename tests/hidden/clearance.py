@@ -47,7 +47,7 @@ def clearance_sigma(bench: Bench, causes: Sequence[Injected], name: str) -> floa
         (burst,) = (injected for injected in causes if injected.name == name)
         excess = burst.parameters["factor"] ** 2 - 1
         return float(excess * np.sqrt(burst.parameters["rows"] / 2))
-    if name == "reference_jitter":
+    if name in ("reference_jitter", "time_jitter"):
         # noise that adds a variance v to s^2 changes the log likelihood by v^2 / 4 s^4 a reading
         added = np.var(angle_change(bench, causes, name)) / bench.noise.sigma_deg**2
         return float(added / (1 + added) * np.sqrt(len(bench.motion.time_s) / 2))

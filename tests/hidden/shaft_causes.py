@@ -37,6 +37,18 @@ def latency(shaft: Array, motion: Motion, injected: Injected) -> Array:
     return shaft - motion.speed_deg_s * injected.parameters["delay_us"] * 1e-6
 
 
+def plan_time_jitter(rng: np.random.Generator, strength: float, setting: Setting) -> Injected:
+    """Strength: sqrt(2) times the RMS over all readings."""
+    speed = setting.motion.speed_deg_s
+    size = strength / np.sqrt(2.0) / float(np.sqrt(np.mean(speed**2)))
+    return Injected("time_jitter", strength, {"rms_us": 1e6 * size}, {"late": rng.standard_normal(len(speed))})
+
+
+def time_jitter(shaft: Array, motion: Motion, injected: Injected) -> Array:
+    """The reading shows where the shaft was a moment before or after."""
+    return shaft + motion.speed_deg_s * 1e-6 * injected.parameters["rms_us"] * injected.hidden["late"]
+
+
 # --- mechanics ----------------------------------------------------------------------------------
 
 

@@ -49,6 +49,7 @@ GRAINY = frozenset(
         "stale_frames",
         "adc_stuck_bit",
         "reference_jitter",
+        "time_jitter",
         "noise_burst",
     }
 )

@@ -41,7 +41,8 @@ PEAK = {
     *STRUCTURES,
 } - {"noise_burst"}
 """Strength is the largest angle."""
-ROOT_MEAN_SQUARE = {"multipole", "motor_poles", "drive_ripple", "mains_pickup", "reference_ripple", "reference_jitter"}
+ROOT_MEAN_SQUARE = {"multipole", "motor_poles", "drive_ripple", "mains_pickup", "reference_ripple"}
+ROOT_MEAN_SQUARE |= {"reference_jitter", "time_jitter"}
 """Strength is sqrt(2) times the RMS."""
 
 

@@ -1,4 +1,4 @@
-"""The angle word on its way. ``latency`` makes a reading old, so it acts on the shaft angle it shows."""
+"""The angle word on its way. What makes a reading old, or its instant uncertain, acts on the shaft angle it shows."""
 
 from twin.link.bus_glitch import BUS_GLITCH
 from twin.link.dead_zone import DEAD_ZONE
@@ -7,6 +7,17 @@ from twin.link.latency import LATENCY
 from twin.link.output_quantisation import OUTPUT_QUANTISATION
 from twin.link.scale_error import SCALE_ERROR
 from twin.link.stale_frames import STALE_FRAMES
+from twin.link.time_jitter import TIME_JITTER
 from twin.link.word_bit import WORD_BIT
 
-EFFECTS = (LATENCY, OUTPUT_QUANTISATION, STALE_FRAMES, BUS_GLITCH, DEAD_ZONE, WORD_BIT, SCALE_ERROR, ERROR_CODE)
+EFFECTS = (
+    LATENCY,
+    TIME_JITTER,
+    OUTPUT_QUANTISATION,
+    STALE_FRAMES,
+    BUS_GLITCH,
+    DEAD_ZONE,
+    WORD_BIT,
+    SCALE_ERROR,
+    ERROR_CODE,
+)

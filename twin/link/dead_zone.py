@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from twin.angles import TAU, Array, radians
 from twin.drawing import span
 from twin.effect import BoolArray, Effect, Param, Parameters
 from twin.motion import Motion
-from twin.words import MISSED, InWords, WordFault, Words
+from twin.words import MISSED, Also, InWords, WordFault, Words
 
 _NOISE_SIGMA = 4.0
 _WIDEST = TAU / 3.0
@@ -100,6 +100,11 @@ def line(values: Mapping[str, float], shown: Mapping[str, str]) -> str:
     )
 
 
+def _holds_once(read_rad: Array, motion: Motion, rows: Sequence[int]) -> bool:
+    """Whether the readings that were held follow one another: then frames that were repeated do the same."""
+    return bool(np.all(np.diff(sorted(rows)) == 1))
+
+
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
     """A few degrees anywhere: the error is half of that, whatever the strength."""
     return {
@@ -132,7 +137,16 @@ DEAD_ZONE = Effect(
     },
     forward=forward,
     footprint="sequence",
-    in_words=InWords(find=find, said=said, line=line),
+    in_words=InWords(
+        find=find,
+        said=said,
+        line=line,
+        also=Also(
+            cause="stale_frames",
+            tells="record a second turn: a zone holds the word at the same angles again, frames are repeated anywhere",
+            where=_holds_once,
+        ),
+    ),
     drawing=drawing,
     needs=frozenset({"one turn"}),
     source="dead band about the end of the range, as of an analogue or PWM output that clamps at its ends: e.g. "

@@ -96,7 +96,7 @@ def said(values: Mapping[str, float]) -> str:
     return f"a turn reads {360.0 * values['factor']:.5g} deg"
 
 
-def _begins_anew_at_the_first_row(read_rad: Array, motion: Motion) -> bool:
+def _begins_anew_at_the_first_row(read_rad: Array, motion: Motion, rows: Sequence[int]) -> bool:
     """Whether one turn is recorded from where the words begin: then a zero that drifts over it makes the same ramp."""
     word = np.mod(read_rad, TAU)
     one_turn = float(np.ptp(motion.shaft_rad)) < TAU * (1.0 + 1.0 / word.size)

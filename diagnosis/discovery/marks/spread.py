@@ -1,4 +1,4 @@
-"""Spread: whether the noise is louder at some angles, or in one stretch of the record, and by how much."""
+"""Spread: whether the noise is louder at some angles or speeds, or in one stretch of the record, and by how much."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from diagnosis.discovery.fitting.observations import Observations
 from twin.angles import Array
 from twin.effect import BoolArray, Effect
 from twin.empirical.spread import UNNAMED_BURST
+from twin.found_by import added_variance
 
 _T95 = 1.959964
 
@@ -62,11 +63,11 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
 def _spread_shape(fit: Fit, effect: Effect, square: Array, expected: Array) -> SpreadFinding | None:
     """One effect's shape of the variance at its best strength, given the squares (rows in use,); None: no gain."""
     assert effect.spread is not None
-    use, angle = fit.observations.usable, fit.linear.sensor_angle
+    use, angle, motion = fit.observations.usable, fit.linear.sensor_angle, fit.observations.motion
     name = effect.roles("random")[0]
     typical = effect.params[name].typical
-    shape = effect.spread(angle, {name: typical})[use]
-    if np.ptp(shape) < 1e-3 * np.mean(shape):
+    shape = added_variance(effect.spread, angle, motion, {name: typical})[use]
+    if np.ptp(shape) <= 1e-3 * np.mean(shape):
         return None
     gain, ratio = _variance_gain(square, shape / np.mean(shape), expected)
     if ratio <= 0.0:
@@ -79,7 +80,7 @@ def _spread_shape(fit: Fit, effect: Effect, square: Array, expected: Array) -> S
         typical * float(np.sqrt(max(v, 0.0) * unit))
         for v in (added - _T95 * deviation, added, added + _T95 * deviation)
     )
-    full = effect.spread(angle, {name: value}) + sigma2 * base
+    full = added_variance(effect.spread, angle, motion, {name: value}) + sigma2 * base
     log_p = _half_chi_square(gain / _inflation(square / full[use]))
     return SpreadFinding(effect.name, {name: value}, gain, log_p, full, {name: (low, high)})
 

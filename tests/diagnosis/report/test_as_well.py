@@ -41,3 +41,16 @@ def test_one_turn_from_the_word_0_may_have_drifted(zero_deg: float, turns: int, 
     assert cause["name"] == "scale_error"
     assert cause["indistinguishable_from"] == (["zero_drift"] if drifts else [])
     assert ("record a second turn" in cause["to_tell_apart"]) == drifts
+
+
+@pytest.mark.parametrize(("turns", "again"), [(1, ["stale_frames"]), (2, [])])
+def test_a_word_that_holds_once_may_be_a_frame_repeated(turns: int, again: list[str]) -> None:
+    shaft = np.arange(0.0, 360.0 * turns, 1.0)
+    read = np.round((shaft + 0.4 * np.sin(np.radians(shaft))) % 360.0 / 360.0 * 4096) * (360.0 / 4096)
+    read[(read > 100.0) & (read < 108.0)] = 100.0 - 100.0 % (360.0 / 4096)
+    causes = explain({"reference_deg": shaft, "measured_deg": read}).to_dict()["causes"]
+    # Beside the grid, which is all that is left of a sweep without noise.
+    (cause,) = [cause for cause in causes if cause["name"] != "output_quantisation"]
+    assert cause["name"] == "dead_zone"
+    assert cause["indistinguishable_from"] == again
+    assert ("at the same angles again" in cause["to_tell_apart"]) == bool(again)

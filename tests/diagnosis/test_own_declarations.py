@@ -12,7 +12,7 @@ from scenarios.bench.hall_node import check_playable
 from scenarios.commands.protocol import Protocol
 from scenarios.studies.design.field import scaled_values
 from scenarios.studies.training.draw import Ranges, draw, drawable, uniforms_needed
-from twin.angles import Array
+from twin.angles import Array, wrap
 from twin.catalogue import CATALOGUE, in_order
 from twin.chain import Chain
 from twin.contract import check
@@ -23,20 +23,20 @@ from twin.magnet.assembly import Assembly
 from twin.magnet.placement import Placement
 from twin.motion import Motion
 
-CODE_RAD = 2.0
+AHEAD_RAD = 0.5
 
 
 def replaced(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    """Words that an error code stands in place of."""
+    """Words that are ahead by a fixed angle."""
     if rng is None:
         return signal
     hit = rng.random(signal.shape) < 0.01 * np.asarray(values["share_percent"])
-    return np.where(hit, CODE_RAD, signal)
+    return np.where(hit, signal + AHEAD_RAD, signal)
 
 
-def find_code(measured: Array, residual: Array, noise: float, step: float, motion: Motion) -> tuple[BoolArray, float]:
-    """Rows that read the code to the last digit, far from where the shaft is; each by a chance of one in a thousand."""
-    mask = (np.abs(measured - CODE_RAD) < 1e-6) & (np.abs(residual) > 10.0 * noise)
+def find_ahead(measured: Array, residual: Array, noise: float, step: float, motion: Motion) -> tuple[BoolArray, float]:
+    """Rows that are ahead by the angle within the noise; each by a chance of one in a thousand."""
+    mask = np.abs(wrap(residual - AHEAD_RAD)) < 10.0 * noise
     return mask, float(np.count_nonzero(mask)) * float(np.log(1e-3))
 
 
@@ -45,16 +45,16 @@ def told(touched: int, readings: int) -> Mapping[str, tuple[float, float]]:
     return {"share_percent": (100.0 * share, 100.0 * float(np.sqrt(share * (1.0 - share) / readings)))}
 
 
-ERROR_CODE = Effect(
-    name="error_code",
+WORDS_AHEAD = Effect(
+    name="words_ahead",
     stage="link",
     acts_on="angle",
     params={"share_percent": Param(unit="%", null=0.0, lower=0.0, upper=99.0, doc="of the words", role="random")},
     forward=replaced,
     footprint="sequence",
-    marks=Marks(find=find_code, told=told, rows_listed=True),
-    source="status word of the link in place of the angle",
-    signature="readings of one value",
+    marks=Marks(find=find_ahead, told=told, rows_listed=True),
+    source="drawing of the link",
+    signature="readings ahead by one angle",
 )
 
 
@@ -87,21 +87,22 @@ CREEP = Effect(
     source="drawing of the front-end",
     signature="order 1 times the time",
 )
-EFFECTS = in_order((*CATALOGUE, CREEP, ERROR_CODE))
+EFFECTS = in_order((*CATALOGUE, CREEP, WORDS_AHEAD))
 
 
-@pytest.mark.parametrize("effect", [CREEP, ERROR_CODE], ids=lambda effect: effect.name)
+@pytest.mark.parametrize("effect", [CREEP, WORDS_AHEAD], ids=lambda effect: effect.name)
 def test_they_keep_the_contract(effect: Effect) -> None:
     assert [result for result in check(effect) if result.kept is False] == []
 
 
 def test_single_readings_of_ones_own_cause_are_named_and_counted() -> None:
     motion = Protocol(turns=2, points=360, channels=False).motion()
-    chain = Chain(effects=EFFECTS).with_effect("noise", rms_deg=0.02).with_effect("error_code", share_percent=2.0)
+    chain = Chain(effects=EFFECTS).with_effect("noise", rms_deg=0.02).with_effect("words_ahead", share_percent=2.0)
     sweep = chain.simulate(motion, seed=4)
-    hit = np.flatnonzero(np.abs(np.radians(sweep.measured_deg) - CODE_RAD) < 1e-6)
-    (cause,) = explain(sweep, effects=ERROR_CODE).to_dict()["causes"]
-    assert cause["name"] == "error_code"
+    ahead = wrap(np.radians(sweep.measured_deg - sweep.reference_deg) - AHEAD_RAD)
+    hit = np.flatnonzero(np.abs(ahead) < 0.1)
+    (cause,) = explain(sweep, effects=WORDS_AHEAD).to_dict()["causes"]
+    assert cause["name"] == "words_ahead"
     assert cause["rows"] == sweep.numbers[hit].tolist()
     share = cause["parameters"]["share_percent"]
     assert share["value"] == pytest.approx(100.0 * hit.size / len(sweep))
@@ -118,7 +119,7 @@ def test_the_mirror_the_field_the_bench_and_the_draw_ask_the_effect() -> None:
         check_playable(chain)
     motion = Protocol(turns=1, points=90).motion()
     causes = drawable(motion, EFFECTS)
-    assert {"offset_creep", "error_code"} <= set(causes)
+    assert {"offset_creep", "words_ahead"} <= set(causes)
     uniforms = np.random.default_rng(0).random((64, uniforms_needed(causes)))
     drawn = draw(uniforms, chain, causes, motion, Ranges(most=len(causes)))
     acting = drawn.labels[:, causes.index("offset_creep")]

@@ -72,6 +72,23 @@ _MECHANISMS: tuple[Mutation, ...] = (
         (f"{_TESTS}/fitting/test_turns_zeros.py::test_they_are_the_same_from_afar",),
     ),
     Mutation(
+        "as_well.no_fault_of_the_words_has_a_rival",
+        "diagnosis/report/as_well.py",
+        "    if also is not None and also.where(",
+        "    if False and also.where(",
+        (
+            "tests/diagnosis/report/test_as_well.py::test_one_turn_from_the_word_0_may_have_drifted",
+            "tests/diagnosis/report/test_as_well.py::test_a_word_that_holds_once_may_be_a_frame_repeated",
+        ),
+    ),
+    Mutation(
+        "spread.speed_is_an_angle",
+        "twin/found_by.py",
+        "isinstance(spread, OverSpeed)",
+        "False",
+        (f"{_TESTS}/marks/test_spread.py::test_an_uncertain_instant_scatters_by_the_speed",),
+    ),
+    Mutation(
         "selection.slack_for_all",
         "diagnosis/discovery/proof/selection.py",
         "settings.heldout_slack if cause.log_p < settings.beyond_doubt_log_p else 1.0",

@@ -86,8 +86,8 @@ PERIODS: tuple[Mutation, ...] = tuple(
         (
             "periods.mechanics_make_no_lines",
             "diagnosis/report/as_well.py",
-            "return [comb.also] if sought",
-            "return [] if sought",
+            "effect.comb.also is not None and observations.observables == 1",
+            "False",
             "tests/diagnosis/report/test_as_well.py::test_mechanics_may_stand_behind_a_line_of_an_angle_alone",
         ),
     )

@@ -46,7 +46,7 @@ TIME_JITTER = Effect(
         )
     },
     forward=forward,
-    needs=frozenset({"two speeds", "moving shaft"}),
+    needs=frozenset({"two speeds"}),
     footprint="spread",
     spread=OverSpeed(spread),
     drawing=drawing,

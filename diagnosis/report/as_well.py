@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.result import Discovery
 from twin.catalogue import find
 from twin.each_recording import everywhere
+from twin.effect import Effect, Parameters
 
 
 def as_well(found: Discovery, cause: Finding) -> dict[str, Any]:
@@ -25,7 +27,7 @@ def as_well(found: Discovery, cause: Finding) -> dict[str, Any]:
         "indistinguishable_from": [*dict.fromkeys(map(everywhere, cause.rivals)), *(stage for stage, _ in beside)],
         **_same_words(found, cause),
         "rivals_sought": found.cut_short is None,
-        "to_tell_apart": "; ".join([*told, *(words for _, words in beside)]),
+        "to_tell_apart": "; ".join([*told, *dict.fromkeys(words for _, words in beside)]),
         "to_tell_apart_options": [
             {"measurement": option.measurement, "sigma": option.sigma, "cost": option.cost} for option in cause.options
         ],
@@ -42,7 +44,8 @@ def _same_words(found: Discovery, cause: Finding) -> dict[str, list[dict[str, An
 def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     """Such stages, each with what would tell it apart; none where rivals were not looked for.
 
-    And causes of which a fault of the words says that they do the same on this record.
+    And causes of which a fault of the words says that they do the same on this record; and the same cause with other
+    numbers.
     """
     if found.cut_short is not None:
         return []
@@ -50,7 +53,24 @@ def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     beside = []
     if effect.comb is not None and effect.comb.also is not None and observations.observables == 1:
         beside.append(effect.comb.also)
+    values = found.fit.chain.values
+    beside += _other_makers(effect, [values[key] for key in cause.keys if key in values])
     also = effect.in_words.also if effect.in_words is not None else None
     if also is not None and also.where(observations.measured, observations.motion, cause.rows):
         beside.append((also.cause, also.tells))
     return beside
+
+
+def _other_makers(effect: Effect, lines: Sequence[Parameters]) -> list[tuple[str, str]]:
+    """The same cause with other numbers that make all of these lines as well."""
+    comb = effect.comb
+    if comb is None or comb.unite is None or comb.united is None:
+        return []
+    orders = sorted({round(order) for values in lines for order in comb.orders(values)})
+    others = [shape for shape in comb.unite(orders) if set(orders) <= set(comb.united(shape))]
+    words = [" and ".join(f"{value:g} {name}" for name, value in shape.items()) for shape in others]
+    return [
+        (f"{effect.name} of {said}", "count them on the part itself")
+        for said, shape in zip(words, others, strict=True)
+        if any(shape[name] != lines[0][name] for name in shape)
+    ]

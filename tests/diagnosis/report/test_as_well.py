@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from diagnosis import explain
+from diagnosis.report.as_well import _other_makers
+from twin.catalogue import find
 
 _SHAFT_DEG = np.arange(0.0, 720.0, 2.0)
 
@@ -54,3 +56,14 @@ def test_a_word_that_holds_once_may_be_a_frame_repeated(turns: int, again: list[
     assert cause["name"] == "dead_zone"
     assert cause["indistinguishable_from"] == again
     assert ("at the same angles again" in cause["to_tell_apart"]) == bool(again)
+
+
+def test_other_motors_that_make_the_same_lines_are_named() -> None:
+    """Orders 6, 8 and 12: 6 slots and 8 poles, or 6 slots and 4 poles, of which 8 and 12 are multiples."""
+    lines = [{"slots": 6.0, "poles": 8.0, "order": order} for order in (6.0, 8.0, 12.0)]
+    ((said, told),) = _other_makers(find("motor_poles"), lines)
+    assert said == "motor_poles of 6 slots and 4 poles"
+    assert told == "count them on the part itself"
+    twelve = [{"slots": 12.0, "poles": 14.0, "order": order} for order in (12.0, 14.0, 24.0, 28.0)]
+    assert _other_makers(find("motor_poles"), twelve) == []
+    assert _other_makers(find("magnet_harmonic"), [{"order": 4.0}]) == []

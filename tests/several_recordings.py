@@ -163,7 +163,8 @@ def judged(found: Explanation, truth: str | None) -> str:
         return "open"
     if any(truth not in (cause.name, *cause.indistinguishable_from) for cause in found.causes):
         return "wrong"
-    alone = all(not cause.indistinguishable_from for cause in found.causes)
+    # A pulley or a gear stands on the shaft as the magnet does: no turn of the sensor and no gap parts these.
+    alone = all(set(cause.indistinguishable_from) <= {"mechanics"} for cause in found.causes)
     return "right" if alone and names == {truth} else "open"
 
 

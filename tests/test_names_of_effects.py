@@ -21,6 +21,7 @@ NAMES = "|".join(effect.name for effect in CATALOGUE)
 KEY = re.compile(rf"(?P<name>{NAMES})(#\w*|[.:](?P<param>\w+)(=.*)?)?")
 LOOK_UPS = {"get", "pop", "setdefault", "with_effect", "without", "find", "of", "Free"}
 ALLOWED: dict[str, str] = {
+    "diagnosis/setup": "a finding of the set-up bears the name of the cause that it is",
     "scenarios/bench/hidden.py": "what the closed loop hides unless told otherwise, as one would write it",
 }
 """File or folder -> why it may name effects."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from typing import Any
@@ -73,7 +74,9 @@ def test_the_public_calls_work_on_one_thread(
         return []
 
     monkeypatch.setattr(inner, probe)
-    call(Chain().simulate(Motion.from_angle(np.radians(np.arange(0.0, 360.0, 10.0)))))
+    # The probe gives back nothing of any sweep, with which no answer can be made.
+    with contextlib.suppress(ValueError):
+        call(Chain().simulate(Motion.from_angle(np.radians(np.arange(0.0, 360.0, 10.0)))))
     assert within == [{1}]
     assert threads() == {2}
 

@@ -235,8 +235,8 @@ SETUPS: tuple[Mutation, ...] = (
         _SEVERAL,
         (
             "logs.a_comment_is_a_header",
-            "        if table.entries:",
-            "        if False:",
+            "        if table.entries and ",
+            "        if False and ",
             "::test_explain_of_a_table_says_what_it_is_and_how_many_statements_fit",
         ),
     ),

@@ -63,10 +63,10 @@ bits = 12
 def test_a_training_sweep_is_what_the_same_twin_records(tmp_path: Path) -> None:
     (tmp_path / "twin.toml").write_text(NOISY_PLATES)
     recipe = recipe_of(str(tmp_path / "twin.toml"), protocol=BENCH, ranges=Ranges(), seed=3)
-    block = simulate_block(recipe, range(12))
+    block = simulate_block(recipe, range(40))
     names, whole = parameter_names(recipe), {"iterations", "bits"}
     drawn_iterations = set()
-    for k in range(12):
+    for k in range(40):
         stream = np.random.default_rng(np.random.SeedSequence(3, spawn_key=(k,)))
         stream.random(uniforms_needed(recipe.causes))
         chain = recipe.chain

@@ -9,6 +9,7 @@ import numpy as np
 from twin.angles import TAU, Array, radians
 from twin.drawing import span
 from twin.effect import BoolArray, Effect, Param, Parameters
+from twin.link.stale_frames import STALE_FRAMES
 from twin.motion import Motion
 from twin.words import MISSED, Also, InWords, WordFault, Words
 
@@ -142,7 +143,7 @@ DEAD_ZONE = Effect(
         said=said,
         line=line,
         also=Also(
-            cause="stale_frames",
+            cause=STALE_FRAMES.name,
             tells="record a second turn: a zone holds the word at the same angles again, frames are repeated anywhere",
             where=_holds_once,
         ),

@@ -8,6 +8,7 @@ import numpy as np
 
 from twin.angles import TAU, Array, wrap
 from twin.effect import Effect, Param, Parameters
+from twin.mechanics.zero_drift import ZERO_DRIFT
 from twin.motion import Motion
 from twin.words import ORDERS, Also, Expected, InWords, WordFault, Words, noise_of, of_orders
 
@@ -133,7 +134,7 @@ SCALE_ERROR = Effect(
         find=find,
         said=said,
         also=Also(
-            cause="zero_drift",
+            cause=ZERO_DRIFT.name,
             tells="record a second turn: a zero that drifts goes on there, a factor begins anew",
             where=_begins_anew_at_the_first_row,
         ),

@@ -76,7 +76,8 @@ def refused(path: Path, said: str) -> str:
             return said
         table = read_table(path, max_bytes=LARGEST_ADVISED_BYTES)
         advised = f"{said}; or say what is meant"
-        if table.entries:
+        # Columns that bear a sweep's names are those of a sweep, whatever they lack.
+        if table.entries and not any("reference_deg" in name for name in table.names):
             said = f"{table.file}: holds a table of {len(table.values[0])} entries, and no columns of a sweep"
             advised = f"{said}; say what is meant"
         guess = guessed(table)

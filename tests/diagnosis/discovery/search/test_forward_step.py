@@ -61,8 +61,8 @@ class Joint:
 
 
 JOINT = {
-    "two": Joint(points=180, size_deg=0.015, orders=(3, 5), added=2),
-    "two where one may be": Joint(points=180, size_deg=0.015, orders=(3, 5), most=1, added=0),
+    "two": Joint(points=180, size_deg=0.015, orders=(4, 5), added=2),
+    "two where one may be": Joint(points=180, size_deg=0.015, orders=(4, 5), most=1, added=0),
     "three": Joint(points=90, size_deg=0.05, orders=(5, 6, 7), added=3),
     "three where two may be": Joint(points=90, size_deg=0.05, orders=(5, 6, 7), most=2, added=0),
     "too weak together": Joint(points=90, size_deg=0.015, orders=(5, 6, 7), added=0),

@@ -67,7 +67,7 @@ _MECHANISMS: tuple[Mutation, ...] = (
     Mutation(
         "joint_fit.zeros_draw_themselves_to_nothing",
         "diagnosis/discovery/fitting/joint_fit.py",
-        "    return spread / float(np.sqrt(np.mean(weight / (weight + held**2))))\n",
+        "    return spread / float(np.sqrt(share)) if share > 1e-9 else spread\n",
         "    return spread\n",
         (f"{_TESTS}/fitting/test_turns_zeros.py::test_they_are_the_same_from_afar",),
     ),

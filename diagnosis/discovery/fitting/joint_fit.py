@@ -270,7 +270,9 @@ def _scatter(fit: Fit, turns: Sequence[int], unit: float) -> float:
     root = root_weights(fit.weighting, fit.observations.observables)
     weight = np.sum((fit.cosine_jacobian[turns] * root) ** 2, axis=(1, 2))
     held = np.where(fit.strengths[turns] > 0.0, fit.strengths[turns], unit / spread)
-    return spread / float(np.sqrt(np.mean(weight / (weight + held**2))))
+    share = float(np.mean(weight / (weight + held**2)))
+    # Zeros that no reading tells stay as they are.
+    return spread / float(np.sqrt(share)) if share > 1e-9 else spread
 
 
 def from_centre(chain: Chain, free: tuple[Free, ...]) -> Array:

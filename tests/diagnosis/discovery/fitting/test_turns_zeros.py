@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
 
-from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, free_of, solve
+import numpy as np
+import pytest
+
+from diagnosis.discovery.fitting.joint_fit import Fit, _scatter, evaluate, free_of, solve
 from diagnosis.discovery.stages.stepwise import stepwise
 from tests.diagnosis.discovery.sweeps import Made, before
 from twin.angles import Array
@@ -43,3 +46,11 @@ def test_the_scatter_is_the_most_likely() -> None:
     held = np.array([fit.strengths[place] for place, one in enumerate(fit.free) if one.turn is not None])
     # The strength is the noise's RMS over the scatter, in degrees; what the baseline takes of the means is left out.
     np.testing.assert_allclose(noise / held, np.degrees(np.sqrt(own)), rtol=0.1)
+
+
+def test_zeros_that_no_reading_tells_stay_as_they_are() -> None:
+    """As of a recording without rows in use."""
+    fit = fitted()
+    blind = replace(fit, cosine_jacobian=np.zeros_like(fit.cosine_jacobian))
+    turns = [place for place, one in enumerate(fit.free) if one.turn is not None]
+    assert _scatter(blind, turns, 1.0) == pytest.approx(np.std(zeros_deg(fit), ddof=1))

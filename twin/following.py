@@ -34,7 +34,12 @@ def spread_deg(angle: Array) -> float:
 
 def follows(measured: Array, driver: Array) -> bool:
     """Whether one angle (n,) [deg] follows another. Over part of a turn a constant is near to any, hence the share."""
-    return distance_deg(measured, driver) <= min(FOLLOWS_DEG, _FOLLOWS_SHARE * spread_deg(driver))
+    return is_near(distance_deg(measured, driver), spread_deg(driver))
+
+
+def is_near(off_deg: float, moved_deg: float) -> bool:
+    """Whether what is off by so much from what moves by so much follows it."""
+    return off_deg <= min(FOLLOWS_DEG, _FOLLOWS_SHARE * moved_deg)
 
 
 def swing_deg(measured: Array, driver: Array) -> tuple[float, float] | None:

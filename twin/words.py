@@ -24,7 +24,7 @@ LIMIT_LOG_P = float(np.log(0.01 / 20.0))
 MOST_FAULTS = 4
 """So many at once: a link with more faults is no link."""
 _BINS = 90
-_NEAR_RAD = np.radians(30.0)
+NEAR_RAD = np.radians(30.0)
 """No sensor's smooth error is larger."""
 _PASSES = 6
 _TRIMMED = 5.0
@@ -77,13 +77,7 @@ class Words:
     @cached_property
     def bits(self) -> int | None:
         """Length of the shortest word on whose grid all usable readings lie; None where they lie on none."""
-        read = self.measured[self.usable]
-        for bits in range(5, _LONGEST_WORD + 1):
-            step = TAU / 2.0**bits
-            off = float(np.max(np.abs(read / step - np.round(read / step)), initial=0.0)) * step
-            if any(off < digits < step / 12.0 for digits in _DIGITS_RAD):
-                return bits
-        return None
+        return word_length(self.measured[self.usable], shortest=5)
 
     @property
     def step(self) -> float:
@@ -114,7 +108,7 @@ class Words:
         sense, zero = _sense_and_zero(self.reference, candidates[:, self.usable], self.usable)
         turn = sense * self.reference + zero
         columns = of_orders(self.reference, ORDERS if self.usable.sum() >= 12 else 1)
-        curve, limit = np.zeros(len(self)), float(_NEAR_RAD)
+        curve, limit = np.zeros(len(self)), float(NEAR_RAD)
         sigma, chosen = limit, candidates[0]
         for _ in range(_PASSES):
             chosen = _nearest(candidates, turn + curve)
@@ -128,13 +122,13 @@ class Words:
             freedom = kept.sum() / (kept.sum() - columns.shape[1])
             sigma = float(_MAD * np.median(left[kept]) * np.sqrt(freedom))
             sigma = max(sigma, self.step / np.sqrt(12.0))
-            limit = min(float(_NEAR_RAD), _TRIMMED * sigma)
+            limit = min(float(NEAR_RAD), _TRIMMED * sigma)
         return Expected(wrap(turn + curve), _nearest(candidates, turn + curve), sigma, zero, sense)
 
     @property
     def follow(self) -> bool:
         """Whether the readings in use go round with the reference at all, but for a few."""
-        near = np.abs(self.expected.residual[self.usable]) < _NEAR_RAD
+        near = np.abs(self.expected.residual[self.usable]) < NEAR_RAD
         return near.size > 0 and float(np.mean(near)) >= 1.0 - 2.0 * MISSED
 
     def without(self, fault: WordFault) -> Words:
@@ -247,6 +241,16 @@ def _nearest(candidates: Array, angle: Array) -> Array:
         return np.asarray(candidates[0])
     off = np.where(np.isnan(candidates), np.inf, np.abs(wrap(np.nan_to_num(candidates) - angle)))
     return np.asarray(candidates[np.argmin(off, axis=0), np.arange(candidates.shape[1])])
+
+
+def word_length(read: Array, *, shortest: int) -> int | None:
+    """Length of the shortest word, of those of so many bits and more, on whose grid readings (n,) [rad] lie, if any."""
+    for bits in range(shortest, _LONGEST_WORD + 1):
+        step = TAU / 2.0**bits
+        off = float(np.max(np.abs(read / step - np.round(read / step)), initial=0.0)) * step
+        if any(off < digits < step / 12.0 for digits in _DIGITS_RAD):
+            return bits
+    return None
 
 
 def noise_of(left: Array) -> float:

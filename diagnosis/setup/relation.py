@@ -9,7 +9,7 @@ import numpy as np
 from diagnosis.setup.harmonics import Fitted, fitted, waves
 from diagnosis.setup.ratio_search import closeness, part_to_search
 from twin.angles import Array, wrap_deg
-from twin.following import FOLLOWS_DEG, follows, spread_deg
+from twin.following import follows, is_near, spread_deg
 
 _SMALL_STEP_DEG = 90.0
 """Rows of the reference that are typically closer than this follow one another round the turn."""
@@ -17,8 +17,6 @@ _WHOLE = 0.9
 """Turns from which orders are told from a slope."""
 _AS_CLOSE = 0.95
 """Share of the closest: a fifth of a line's width beside its middle it is sinc(0.2) = 0.94."""
-_SHARE = 0.6
-"""A reading that follows is off by less than this share of what it follows, see :mod:`twin.following`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +103,7 @@ def _searched(travel: Array, measured: Array) -> float | None:
     off = spread_deg(reading - best * at)
     if abs(best) < 0.5 * part.finest:
         return None
-    return best if off <= min(FOLLOWS_DEG, _SHARE * spread_deg(best * at)) else None
+    return best if is_near(off, spread_deg(best * at)) else None
 
 
 def _refined(ratio: float, travel: Array, measured: Array) -> Relation | None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.setup.harmonics import Fitted, fitted, waves
 from twin.angles import Array
+from twin.step_gains import step_gains
 
 _FEWEST = 6
 """Rows on either side of a step."""
@@ -31,11 +32,6 @@ class Steps:
     alone: Fitted
     with_slope: Fitted
     slope_alone: Fitted
-
-    @property
-    def better_than_a_slope(self) -> bool:
-        """Whether up to three steps leave less than a slope does."""
-        return self.alone.sigma < self.slope_alone.sigma
 
     def is_sudden(self, place: int) -> bool:
         """Whether the error near a step is nearer to one of that size than to a smooth way through its neighbours.
@@ -115,10 +111,6 @@ def _strongest(fit: Fitted, known: list[Array]) -> int:
     n = fit.left.size
     basis = np.linalg.qr(np.stack(known, axis=1))[0]
     left = np.where(fit.kept, fit.left, 0.0)
-    left = left - basis @ (basis.T @ left)
-    sums = np.cumsum(left[::-1])[::-1]
-    parts = np.cumsum(basis[::-1], axis=0)[::-1]
-    own = np.maximum(np.arange(n, 0, -1) - np.sum(parts**2, axis=1), 1e-9)
-    gain = np.where(own > 0.5, sums**2 / own, 0.0)
+    gain = step_gains(left - basis @ (basis.T @ left), basis, least=0.5)
     gain[:_FEWEST], gain[n - _FEWEST :] = 0.0, 0.0
     return int(np.argmax(gain))

@@ -174,13 +174,13 @@ LOGS: tuple[Mutation, ...] = (
         "tests/untidy/test_recorders.py",
         (
             "logs.a_gap_is_filled",
-            "(leaps | gaps)[after - 1]",
-            "leaps[after - 1]",
+            "(restarts(channel.values) | gaps)[after - 1]",
+            "restarts(channel.values)[after - 1]",
             "::test_in_a_gap_and_where_an_angle_begins_anew_nothing_is_made_up",
         ),
         (
             "logs.between_two_turns_lies_an_angle",
-            "(leaps | gaps)[after - 1]",
+            "(restarts(channel.values) | gaps)[after - 1]",
             "gaps[after - 1]",
             "::test_where_an_angle_begins_anew_the_cell_is_missing",
         ),

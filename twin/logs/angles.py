@@ -10,6 +10,7 @@ import numpy as np
 from twin.angles import Array, wrap_deg
 from twin.following import distance_deg, follows, spread_deg
 from twin.logs.names import Meaning
+from twin.logs.restarts import restarts
 from twin.logs.statement import Column, Term
 from twin.logs.units import UNITS
 
@@ -39,8 +40,6 @@ _DRIFT_ON_A_PART, _LEAST_ON_A_PART_DEG = 10.0, 4.0
 """The same on a part of a turn, where errors of orders 1 and 2 seem to drift, too."""
 _SMALL_STEP_DEG = 90.0
 """Rows that are typically closer than this follow one another round the turn."""
-_WRAP_SHARE = 0.5
-"""A step of more than this share of the span is where an angle begins anew."""
 _FULL_SHARE = 0.9
 """Share of a turn that wrapped counts fill at least."""
 _EVEN = 0.8
@@ -139,7 +138,7 @@ def _may_be_counts(values: Array, said: Meaning) -> bool:
     """Whether values (n,) without a unit are whole numbers that show no turn of 360: counts or degrees."""
     if said.unit is not None or np.any(values % 1.0 != 0.0):
         return False
-    return not bool(np.any(np.abs(np.diff(values)) > _WRAP_SHARE * np.ptp(values)))
+    return not bool(np.any(restarts(values)))
 
 
 def same_angle(measured_deg: Array, reference_deg: Array) -> bool:
@@ -181,7 +180,7 @@ def options_of(values: Array, said: Meaning) -> list[AngleUnit]:
     if said.counts:
         return counts
     span = float(np.ptp(values))
-    if bool(np.any(np.abs(np.diff(values)) > _WRAP_SHARE * span)):
+    if bool(np.any(restarts(values))):
         named = [AngleUnit(name) for name, turn in _TURN.items() if 0.9 * turn <= span <= 1.001 * turn]
         return named or counts
     named = [AngleUnit("deg")] if span > _LEAST_DEG else []
@@ -195,7 +194,7 @@ def _counts(values: Array, *, stated: bool) -> list[AngleUnit]:
     whole = bool(np.all(values == np.round(values)))
     if not (whole or stated) or span < 50.0:
         return []
-    wraps = bool(np.any(np.abs(np.diff(values)) > _WRAP_SHARE * span))
+    wraps = bool(np.any(restarts(values)))
     # Of what is not called counts, 360 a turn are degrees.
     known = [n for n in COUNTS_PER_TURN if (stated or n != 360) and not _leaps(values, n)]
     full = [n for n in known if _FULL_SHARE * n <= span <= n]

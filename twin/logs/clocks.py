@@ -10,13 +10,12 @@ import numpy as np
 from twin.angles import Array
 from twin.errors import SweepError
 from twin.logs.names import meaning_of
+from twin.logs.restarts import restarts
 from twin.logs.table import Table
 
 _FEWEST = 8
 _GAP = 5.0
 """Times the typical interval from which what lies between two samples is a gap: nothing is made up in it."""
-_WRAP_SHARE = 0.5
-"""A step of more than this share of a channel's span is where an angle begins anew: nothing lies between."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +55,7 @@ def _between(channel: Channel, time_s: Array) -> Array:
     steps = np.diff(channel.time_s)
     after = np.clip(np.searchsorted(channel.time_s, time_s), 1, channel.values.size - 1)
     found = np.interp(time_s, channel.time_s, channel.values, left=np.nan, right=np.nan)
-    leaps = np.abs(np.diff(channel.values)) > _WRAP_SHARE * np.ptp(channel.values)
     gaps = steps > _GAP * np.median(steps)
     exact = np.isclose(time_s, channel.time_s[after], rtol=0.0, atol=1e-9)
-    found[(leaps | gaps)[after - 1] & ~exact] = np.nan
+    found[(restarts(channel.values) | gaps)[after - 1] & ~exact] = np.nan
     return found

@@ -9,12 +9,12 @@ import numpy as np
 from twin.angles import Array
 from twin.logs.angles import AngleUnit, options_of
 from twin.logs.names import Meaning
+from twin.logs.restarts import restarts
 from twin.logs.statement import Column, Term, unwrapped_deg
 
 _LEAST_TURN_DEG = 324.0
 _LEFT_DEG = 5.0
 """Scatter about a straight line that errors of an angle may have; what is no angle scatters by a part of its span."""
-_WRAP_SHARE = 0.5
 _DIGITS = 4
 
 
@@ -67,13 +67,13 @@ def _named(values: Array, said: Meaning) -> list[AngleUnit]:
     """The units that a column (n,) names, or shows by where it begins anew."""
     if said.unit is not None:
         return [AngleUnit(said.unit.name)]
-    wraps = bool(np.any(np.abs(np.diff(values)) > _WRAP_SHARE * np.ptp(values)))
+    wraps = bool(np.any(restarts(values)))
     return [unit for unit in options_of(values, said) if unit.name] if wraps else []
 
 
 def _a_turn(angle_deg: Array, numbers: Array) -> float | None:
     """By how much numbers (n,) go on in a turn of an angle, to four digits; None where they do not follow it."""
-    begins_anew = np.any(np.abs(np.diff(numbers)) > _WRAP_SHARE * np.ptp(numbers))
+    begins_anew = np.any(restarts(numbers))
     if np.ptp(angle_deg) < _LEAST_TURN_DEG or np.ptp(numbers) == 0.0 or begins_anew:
         return None
     slope, at_zero = np.polyfit(angle_deg, numbers, 1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from twin.angles import Array
 from twin.effect import Effect, Param, Parameters
 from twin.hall.offset import add
-from twin.magnet.stray_field import FIELD_MT
+from twin.magnet.stray_field import FIELD_MT, OWN_FIELD, beside
 from twin.motion import Motion
 
 
@@ -20,10 +19,8 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 
 def at_magnet(assembly: Any) -> Effect:
-    """The effect beside a described magnet (an ``Assembly``): its millitesla count against that magnet's field."""
-    known = MOTOR_FIELD.params["field_mT"]
-    own = replace(known, null=float(np.clip(assembly.nominal_mT, known.lower, known.upper)))
-    return replace(MOTOR_FIELD, params={**MOTOR_FIELD.params, "field_mT": own}, assumes="")
+    """The effect beside a described magnet."""
+    return beside(MOTOR_FIELD, assembly)
 
 
 MOTOR_FIELD = Effect(
@@ -43,16 +40,7 @@ MOTOR_FIELD = Effect(
             mirror=-1,
             owner="bench",
         ),
-        "field_mT": Param(
-            unit="mT",
-            null=FIELD_MT,
-            lower=1.0,
-            upper=500.0,
-            doc="the magnet's own field",
-            role="shape",
-            typical=10.0,
-            field_power=1.0,
-        ),
+        "field_mT": OWN_FIELD,
     },
     forward=forward,
     at_magnet=at_magnet,

@@ -16,6 +16,18 @@ FIELD_MT = 50.0
 """The magnet's field at the sensor that the millitesla are counted against where no magnet is described."""
 
 
+OWN_FIELD = Param(
+    unit="mT",
+    null=FIELD_MT,
+    lower=1.0,
+    upper=500.0,
+    doc="the magnet's own field",
+    role="shape",
+    typical=10.0,
+    field_power=1.0,
+)
+
+
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     scale = 1.0 / values.get("field_mT", FIELD_MT)
     bx, by = values["bx_mT"] * scale, values["by_mT"] * scale
@@ -26,11 +38,15 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return add(signal, bx, by)
 
 
+def beside(effect: Effect, assembly: Any) -> Effect:
+    """An effect beside a described magnet (an ``Assembly``): its millitesla count against that magnet's field."""
+    own = replace(OWN_FIELD, null=float(np.clip(assembly.nominal_mT, OWN_FIELD.lower, OWN_FIELD.upper)))
+    return replace(effect, params={**effect.params, "field_mT": own}, assumes="")
+
+
 def at_magnet(assembly: Any) -> Effect:
-    """The effect beside a described magnet (an ``Assembly``): its millitesla count against that magnet's field."""
-    known = STRAY_FIELD.params["field_mT"]
-    own = replace(known, null=float(np.clip(assembly.nominal_mT, known.lower, known.upper)))
-    return replace(STRAY_FIELD, params={**STRAY_FIELD.params, "field_mT": own}, assumes="")
+    """The effect beside a described magnet."""
+    return beside(STRAY_FIELD, assembly)
 
 
 STRAY_FIELD = Effect(
@@ -50,16 +66,7 @@ STRAY_FIELD = Effect(
             mirror=-1,
             owner="bench",
         ),
-        "field_mT": Param(
-            unit="mT",
-            null=FIELD_MT,
-            lower=1.0,
-            upper=500.0,
-            doc="the magnet's own field",
-            role="shape",
-            typical=10.0,
-            field_power=1.0,
-        ),
+        "field_mT": OWN_FIELD,
     },
     forward=forward,
     at_magnet=at_magnet,

@@ -10,7 +10,8 @@ from twin.angles import Array, IntArray, radians, wrap
 from twin.drawing import span
 from twin.effect import BoolArray, Effect, Param, Parameters
 from twin.motion import Motion
-from twin.words import ORDERS, InWords, WordFault, Words, noise_of, of_orders
+from twin.step_gains import step_gains
+from twin.words import NEAR_RAD, ORDERS, InWords, WordFault, Words, noise_of, of_orders
 
 MOST_JUMPS = 4
 _FEWEST = 40
@@ -18,7 +19,6 @@ _FEWEST_BETWEEN = 8
 """Readings between two jumps: a few that are off together are an error of the link."""
 _CLEAR = 3
 """Readings on either side of a jump, beyond which the motion goes on as before: its step itself looks like one back."""
-_NEAR_RAD = np.radians(30.0)
 _NOISE_RATIO = 2.0
 """What is left is noise where it is hardly larger than what differs from reading to reading."""
 _LEAST_SIGMA = 10.0
@@ -43,7 +43,7 @@ def find(words: Words) -> WordFault | None:
     one, or what else moves the zero in steps, as a change of direction or speed does, is left to the search.
     """
     before, motion = words.expected, words.motion
-    rows = np.flatnonzero(words.usable & (np.abs(before.residual) < _NEAR_RAD))
+    rows = np.flatnonzero(words.usable & (np.abs(before.residual) < NEAR_RAD))
     least = words.step / np.sqrt(12.0)
     if motion is None or rows.size < _FEWEST or before.sigma <= 2.0 * max(noise_of(before.residual[rows]), least):
         return None
@@ -93,14 +93,10 @@ def _with_jumps(columns: Array, jumps: Sequence[int]) -> Array:
 
 
 def _best(columns: Array, off: Array, others: Sequence[int]) -> int:
-    """Where a further jump gains most: of all places at once, by sums over the rows behind each."""
+    """Where a further jump gains most."""
     basis = np.linalg.qr(_with_jumps(columns, others))[0]
     left = off - basis @ (basis.T @ off)
-    behind = np.cumsum(np.column_stack([left, basis])[::-1], axis=0)[::-1]
-    square = np.arange(off.size, 0, -1) - np.sum(behind[:, 1:] ** 2, axis=1)
-    gain = behind[:, 0] ** 2 / np.maximum(square, 1e-9)
-    gain[square < 1.0] = 0.0
-    return int(np.argmax(gain[2:-2])) + 2
+    return int(np.argmax(step_gains(left, basis, least=1.0)[2:-2])) + 2
 
 
 def _moves_otherwise(motion: Motion, at: IntArray) -> BoolArray:

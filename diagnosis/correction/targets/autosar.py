@@ -12,10 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.correction.compensation_c import check_prefix
 from diagnosis.correction.straight_lines import Least, Nodes, best_values, spread_nodes
 from diagnosis.correction.targets.c_table import TURN, Words, word_of
-from diagnosis.correction.targets.target import Target, c_comment, numbers_of, rows
+from diagnosis.correction.targets.target import Target, numbers_of, rows
 from diagnosis.correction.wanted import Wanted
 from twin.angles import TAU, Array, IntArray
 
@@ -114,16 +113,9 @@ class Autosar:
 
     def text(self, about: Sequence[str], name: str) -> str:
         """The header. Raises UserError for a name that no C name begins with."""
-        check_prefix(name)
         return _TEMPLATE.format(
-            comment=c_comment(about),
-            name=name,
-            upper=name.upper(),
+            **self.words.header(about, name),
             points=len(self),
-            shift=self.words.shift,
-            zero=self.words.zero,
-            sense=f"({self.words.sense})",
-            counted="(uint32_t)reading" if self.words.sense > 0 else "0u - reading",
             x=rows([str(value) for value in self.x], 12),
             y=rows([str(value) for value in self.y], 12),
         )

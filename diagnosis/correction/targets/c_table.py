@@ -76,6 +76,19 @@ class Words:
         shift, zero, sense = (constant_of(text, name) for name in ("SHIFT", "ZERO", "SENSE"))
         return cls(shift, zero, sense, TAU / TURN / 2**shift)
 
+    def header(self, about: Sequence[str], name: str) -> dict[str, str]:
+        """What a C file says of them and of itself. Raises UserError for a name that no C name begins with."""
+        check_prefix(name)
+        return {
+            "comment": c_comment(about),
+            "name": name,
+            "upper": name.upper(),
+            "shift": str(self.shift),
+            "zero": str(self.zero),
+            "sense": f"({self.sense})",
+            "counted": "(uint32_t)reading" if self.sense > 0 else "0u - reading",
+        }
+
     def shaft(self, word: IntArray, scaled: IntArray, bits: int) -> IntArray:
         """Shaft words of reading words, and of what is added in units of ``bits`` below the word; rounded."""
         added = ((scaled + (TURN << bits) + (1 << bits >> 1)) >> bits) % TURN
@@ -123,18 +136,8 @@ class CTable:
 
     def text(self, about: Sequence[str], name: str) -> str:
         """The header. Raises UserError for a name that no C name begins with."""
-        check_prefix(name)
-        return _TEMPLATE.format(
-            comment=c_comment(about),
-            name=name,
-            upper=name.upper(),
-            entries=len(self),
-            shift=self.words.shift,
-            zero=self.words.zero,
-            sense=f"({self.words.sense})",
-            counted="(uint32_t)reading" if self.words.sense > 0 else "0u - reading",
-            listed=rows([str(value) for value in self.entry], 12),
-        )
+        listed = rows([str(value) for value in self.entry], 12)
+        return _TEMPLATE.format(**self.words.header(about, name), entries=len(self), listed=listed)
 
 
 TARGET = Target(

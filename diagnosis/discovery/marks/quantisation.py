@@ -20,6 +20,7 @@ from twin.catalogue import output_grid
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.sweep import Sweep
+from twin.words import word_length
 
 CELLS_OFF = (np.array([0]), np.array([-1, 0, 1]))
 """Cells of the output's grid that a word may be off its angle: none, or one where it was cut off or rounded twice."""
@@ -31,13 +32,7 @@ def grid_bits(measured: Array, settings: DiscoverySettings) -> int | None:
     if words < settings.fewest_words:
         # A few angles lie on a coarse grid by the bench's choice, not by the word's length.
         return None
-    for bits in range(6, 21):
-        step = TAU / 2.0**bits
-        off = float(np.max(np.abs(measured / step - np.round(measured / step)))) * step
-        # As many digits as files have: six decimals of a degree, or three.
-        if any(off < digits < step / 12.0 for digits in (np.radians(1.2e-6), np.radians(6e-4))):
-            return bits
-    return None
+    return word_length(measured, shortest=6)
 
 
 def rounded(fit: Fit, sweep: Sweep, step: float) -> bool:

@@ -77,11 +77,12 @@ def rotor_of(rng: np.random.Generator, *, slowest: float, deceleration: float, m
         viscous=float(shares[1] / middle),
         quadratic=float(shares[2] / middle**2),
         drag_ripple=0.1,
+        viscous_ripple=0.02,
         drag_phase=float(rng.uniform(0.0, TURN)),
         waves=tuple(waves),
     )
     if not hard:
-        return replace(rotor, drag_ripple=0.02)
+        return replace(rotor, drag_ripple=0.02, viscous_ripple=0.0)
     if rng.random() < 0.2:
         belt = Belt(float(rng.uniform(20.0, 80.0)), float(rng.uniform(0.01, 0.05)), float(rng.uniform(0.1, 0.5)))
         rotor = replace(rotor, belt=belt)
@@ -124,7 +125,7 @@ def _driven(rng: np.random.Generator, turns_per_s: tuple[float, ...], *, hard: b
     """Rotor, drive, and the time of one speed."""
     speeds = tuple(TURN * one for one in turns_per_s)
     slowest = min(speeds)
-    friction = slowest * float(rng.uniform(0.2, 1.5))
+    friction = slowest * float(rng.uniform(0.2, 0.8))
     rotor = rotor_of(rng, slowest=slowest, deceleration=friction, middle=slowest, hard=hard)
     lasts = min(float(rng.uniform(2.0, 8.0)), 250.0 / sum(turns_per_s))
     if hard and rng.random() < 0.5:

@@ -20,13 +20,21 @@ ENTRIES = 32
 
 
 def unwrapped(columns: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Times [s] from the first reading on, and readings [deg] without jumps; equal stamps are spread evenly."""
+    """Times [s] from the first reading on, and readings [deg] without jumps.
+
+    Equal stamps are spread evenly; over rows that never arrived the shaft is taken to keep its speed.
+    """
     time, reading = columns["time_s"], columns["measured_deg"]
     values, first, count = np.unique(time, return_index=True, return_counts=True)
     if values.size < time.size:
-        place = np.interp(np.arange(time.size), first + 0.5 * (count - 1), values)
-        time = place
-    return time - time[0], np.degrees(np.unwrap(np.radians(reading)))
+        time = np.interp(np.arange(time.size), first + 0.5 * (count - 1), values)
+    lapse = np.maximum(np.diff(time), 1e-9)
+    step = np.mod(np.diff(reading) + 180.0, 360.0) - 180.0
+    near = np.flatnonzero(lapse < 1.5 * np.median(lapse))
+    middle = 0.5 * (time[1:] + time[:-1])
+    expected = lapse * np.interp(middle, middle[near], step[near] / lapse[near])
+    step = expected + np.mod(step - expected + 180.0, 360.0) - 180.0
+    return time - time[0], reading[0] + np.concatenate([[0.0], np.cumsum(step)])
 
 
 def tabulated(entries_deg: Array) -> Callable[[Array], Array]:

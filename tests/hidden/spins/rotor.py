@@ -66,7 +66,9 @@ class Rotor:
     quadratic: float = 0.0
     """1/rad."""
     drag_ripple: float = 0.0
-    """Share of all friction that comes and goes once a turn."""
+    """Share of the dry friction that comes and goes once a turn: a seal, a brush, a belt that rubs."""
+    viscous_ripple: float = 0.0
+    """The same of the viscous friction; no air drag does so: its response would not fall with the speed at all."""
     drag_phase: float = 0.0
     waves: tuple[Wave, ...] = ()
     """Cogging, and gravity on an unbalance."""
@@ -79,6 +81,12 @@ class Rotor:
         size = abs(speed)
         dry = self.coulomb * math.tanh(size / AT_REST)
         return math.copysign(dry + self.viscous * size + self.quadratic * size * size, speed)
+
+    def friction_ripple(self, speed: float) -> float:
+        """Amplitude of what of the friction comes and goes once a turn, signed as it."""
+        size = abs(speed)
+        dry = self.drag_ripple * self.coulomb * math.tanh(size / AT_REST)
+        return math.copysign(dry + self.viscous_ripple * self.viscous * size, speed)
 
     def fastest_order(self) -> float:
         """Cycles a turn of the finest torque."""
@@ -100,7 +108,7 @@ class Rotor:
             0j,
         )
         if order == 1:
-            drag = self.drag_ripple * abs(self.friction(speed))
+            drag = self.friction_ripple(abs(speed))
             total -= drag * complex(math.cos(self.drag_phase), math.sin(self.drag_phase)) * 1j
         return math.degrees(abs(total) / (order * speed) ** 2)
 
@@ -139,10 +147,7 @@ def acceleration(
     damping = 4.0 * math.pi * belt.frequency_Hz * belt.damping if belt else 0.0
 
     def found(time: float, angle: float, speed: float, far: float, far_speed: float) -> tuple[float, float]:
-        drag = rotor.friction(speed)
-        if rotor.drag_ripple:
-            drag *= 1.0 + rotor.drag_ripple * math.cos(angle + rotor.drag_phase)
-        total = -drag
+        total = -rotor.friction(speed) - rotor.friction_ripple(speed) * math.cos(angle + rotor.drag_phase)
         for order, size, phase in waves:
             total += size * math.sin(order * angle + phase)
         for turn, size, phase in hums:

@@ -82,11 +82,17 @@ def test_without_friction_the_energy_stays() -> None:
 
 def test_friction_takes_the_energy_that_is_lost() -> None:
     rotor = Rotor(
-        coulomb=10.0, viscous=0.4, quadratic=0.002, drag_ripple=0.1, drag_phase=0.7, waves=(Wave(4, 200.0, 0.2),)
+        coulomb=10.0,
+        viscous=0.4,
+        quadratic=0.002,
+        drag_ripple=0.1,
+        viscous_ripple=0.05,
+        drag_phase=0.7,
+        waves=(Wave(4, 200.0, 0.2),),
     )
     path = integrate(rotor, None, speed=100.0, duration_s=4.0, stop=20.0)
     power = [
-        rotor.friction(speed) * (1.0 + 0.1 * math.cos(angle + 0.7)) * speed
+        (rotor.friction(speed) + (1.0 + 0.02 * speed) * math.cos(angle + 0.7)) * speed
         for angle, speed in zip(path.angle.tolist(), path.speed.tolist(), strict=True)
     ]
     energy = energy_of(rotor, path)

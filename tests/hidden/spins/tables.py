@@ -53,25 +53,27 @@ def _accuracy(records: Sequence[Record]) -> Table:
     for head in heads:
         table.add_column(head, justify="left" if head == "spins" else "right")
     for label, ones in _by(records, "protocol").items():
-        done = [one for one in ones if "rms_deg" in one]
-        left = np.array([one["rms_deg"] for one in done])
-        hits = [
-            interval.miss == 0
-            for interval in pooled(
-                {name: Interval(**each) for name, each in one["intervals"].items()} for one in done
-            ).get("all measured", [])
-        ]
-        table.add_row(
-            label,
-            str(len(ones)),
-            f"{np.count_nonzero(left <= GOAL_DEG)}/{len(ones)}",
-            *(f"{np.quantile(left, share):.4f}" for share in (0.5, 0.95, 1.0)),
-            f"{np.median([one['factor'] for one in done]):.1f}",
-            f"{sum(hits)}/{len(hits)}",
-            str(len(ones) - len(done)),
-            f"{np.median([one['cpu_s'] for one in done]):.1f}",
-        )
+        table.add_row(label, *_figures(ones))
+        belted = [one for one in ones if one["truth"]["belt"]]
+        if any("rms_deg" in one for one in belted):
+            table.add_row("  with a belt", *_figures(belted))
     return table
+
+
+def _figures(records: Sequence[Record]) -> list[str]:
+    done = [one for one in records if "rms_deg" in one]
+    left = np.array([one["rms_deg"] for one in done])
+    each = ({name: Interval(**one) for name, one in record["intervals"].items()} for record in done)
+    hits = [interval.miss == 0 for interval in pooled(each).get("all measured", [])]
+    return [
+        str(len(records)),
+        f"{np.count_nonzero(left <= GOAL_DEG)}/{len(records)}",
+        *(f"{np.quantile(left, share):.4f}" for share in (0.5, 0.95, 1.0)),
+        f"{np.median([one['factor'] for one in done]):.1f}",
+        f"{sum(hits)}/{len(hits)}",
+        str(len(records) - len(done)),
+        f"{np.median([one['cpu_s'] for one in done]):.1f}",
+    ]
 
 
 def _beside(records: Sequence[Record]) -> Table:

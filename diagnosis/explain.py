@@ -32,6 +32,7 @@ def explain(
     mounting: Mounting | None = None,
     effects: OwnEffects = (),
     settings: DiscoverySettings | None = None,
+    pole_pairs: int | None = None,
     seed: int = 0,
     progress: Listener | None = None,
     on_interrupt: Literal["raise", "answer"] = "raise",
@@ -63,6 +64,10 @@ def explain(
         declare them, or :class:`twin.Effect` objects.
     settings : DiscoverySettings, optional
         Every threshold of the search, the probability of a false alarm first of all; the project's own if not given.
+    pole_pairs : int, optional
+        How often the field at the sensor turns in a turn of the shaft: a ring of so many pole pairs, a resolver of so
+        many speeds. ``measured_deg``, the reference or the channels may turn as often, and ``multipole`` is looked for
+        with this number alone. If not given, each angle turns once, and numbers from 3 up are searched.
     seed : int, optional
         Seed of everything random, 0 or more: the same sweep and seed give the same answer, bit for bit.
     progress : callable, optional
@@ -121,7 +126,9 @@ def explain(
     from diagnosis.discovery.pipeline import discover
     from diagnosis.discovery.settings import DiscoverySettings
     from diagnosis.discovery.watch import Watch, stopped_by_interrupt
+    from diagnosis.known_periods import check_periods, check_seen
     from diagnosis.report.provenance import Provenance
+    from twin.hall.multipole import with_periods
     from twin.log import LOG
 
     rng = np.random.default_rng(checked_seed(seed))
@@ -129,9 +136,14 @@ def explain(
     _check_settings(settings)
     _check_on_interrupt(on_interrupt)
     searched = _searched(effects, twin)
+    read = _read(sweep, mounting, pole_pairs)
+    if pole_pairs is not None and pole_pairs > 1:
+        check_seen(read, pole_pairs)
+        searched = with_periods(searched, pole_pairs, given=twin is not None)
     given = as_twin(twin, effects=searched)
+    if given is not None and pole_pairs is not None:
+        check_periods(given, pole_pairs)
     start = _start(searched, mounting, given)
-    read = _read(sweep, mounting)
     used = vars(settings or DiscoverySettings()).items()
     LOG.info("seed %d; settings: %s", seed, ", ".join(f"{name} {value}" for name, value in used))
     watch = Watch(progress)
@@ -142,14 +154,15 @@ def explain(
     return Explanation(found, made)
 
 
-def _read(sweep: SweepLike | Sequence[SweepLike], mounting: Mounting | None) -> list[Sweep]:
+def _read(sweep: SweepLike | Sequence[SweepLike], mounting: Mounting | None, pole_pairs: int | None) -> list[Sweep]:
     """The sweeps that are meant. Raises UserError for a list of none, or where more or fewer are mounted."""
     from typing import cast
 
     from twin.errors import UserError
 
     several = isinstance(sweep, list | tuple)
-    sweeps = as_sweeps(cast("Sequence[SweepLike]", sweep) if several else [cast("SweepLike", sweep)])
+    sources = cast("Sequence[SweepLike]", sweep) if several else [cast("SweepLike", sweep)]
+    sweeps = as_sweeps(sources, pole_pairs=pole_pairs)
     if not sweeps:
         raise UserError("found a list of no sweep; give one sweep, or several recordings of one device")
     gaps, angles = (1, 0) if mounting is None else (len(mounting.air_gap_mm), len(mounting.turned_deg))
@@ -194,7 +207,7 @@ def _begun(
     if len(sweeps) > 1:
         watch.told("error_model", ())
         together = joined(read.sweeps, (given or start).effects, mounting=mounting, given=given, rng=rng)
-        chain = together.start if given is not None else replace(together.start, magnet=start.magnet)
+        chain = together.start if given is not None else _known_alone(replace(together.start, magnet=start.magnet))
         state = State.of(together.sweep, chain, given=None if given is None else chain, settings=settings, rng=rng)
         return state.with_(suspects=together.suspects | read.lost, **in_words)
     sweep = read.sweeps[0]
@@ -237,7 +250,15 @@ def _error_model(
         for name, fault in told
         for number, values in enumerate((fault.values, *fault.also))
     }
-    return replace(fit.chain(), effects=start.effects, magnet=start.magnet), fit.outliers, begun
+    return _known_alone(replace(fit.chain(), effects=start.effects, magnet=start.magnet)), fit.outliers, begun
+
+
+def _known_alone(chain: Chain) -> Chain:
+    """The chain without parameters of effects that it cannot have."""
+    from twin.catalogue import base_name
+
+    known = {effect.name for effect in chain.effects}
+    return chain.without(*(key for key in chain.values if base_name(key) not in known))
 
 
 def _start(effects: tuple[Effect, ...], mounting: Mounting | None, given: Chain | None) -> Chain:

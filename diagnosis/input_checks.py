@@ -37,13 +37,13 @@ TwinLike: TypeAlias = "str | os.PathLike[str] | Chain"
 """What they take as a twin: a twin file, a preset's name, or a chain."""
 
 
-def as_sweeps(sources: Sequence[SweepLike]) -> list[Sweep]:
+def as_sweeps(sources: Sequence[SweepLike], *, pole_pairs: int | None = None) -> list[Sweep]:
     """Several sweeps, see :func:`as_sweep`; files that share a name bear as much of their paths as tells them apart."""
     from dataclasses import replace
 
     from twin.shown_name import distinct_names
 
-    sweeps = [as_sweep(source) for source in sources]
+    sweeps = [as_sweep(source, pole_pairs=pole_pairs) for source in sources]
     files = [place for place, source in enumerate(sources) if isinstance(source, str | os.PathLike)]
     names = distinct_names([os.fspath(sources[place]) for place in files])  # type: ignore[arg-type]
     for place, name in zip(files, names, strict=True):
@@ -51,7 +51,7 @@ def as_sweeps(sources: Sequence[SweepLike]) -> list[Sweep]:
     return sweeps
 
 
-def as_sweep(source: SweepLike) -> Sweep:
+def as_sweep(source: SweepLike, *, pole_pairs: int | None = None) -> Sweep:
     """The sweep that is meant.
 
     Parameters
@@ -61,6 +61,8 @@ def as_sweep(source: SweepLike) -> Sweep:
         gives a column for each: a dict of arrays, a pandas DataFrame (levels of its index count as columns where
         they bear the name of one), an xarray Dataset (coordinates count as columns). Names and units are those of
         the file format; other columns are ignored. A missing cell is NaN, None or what pandas puts there.
+    pole_pairs : int, optional
+        How often the field at the sensor turns in a turn of the shaft, where an angle or the channels do so too.
 
     Returns
     -------
@@ -78,9 +80,9 @@ def as_sweep(source: SweepLike) -> Sweep:
     from twin.sweep_columns import COLUMNS, REQUIRED
 
     if isinstance(source, Sweep):
-        return source
+        return _of_the_shaft(source, pole_pairs)
     if isinstance(source, str | os.PathLike):
-        return Sweep.read(os.fspath(source))
+        return Sweep.read(os.fspath(source), pole_pairs=pole_pairs)
     name = type(source).__name__
     if not (hasattr(source, "keys") and hasattr(source, "__getitem__")):
         raise SweepError(
@@ -101,7 +103,19 @@ def as_sweep(source: SweepLike) -> Sweep:
                 f"{name}: column {key} holds {values.size} values and {REQUIRED[0]} {rows}; "
                 "expected one for each reading, NaN where there is none"
             )
-    return Sweep.from_columns(columns, name=name)
+    return Sweep.from_columns(columns, name=name, pole_pairs=pole_pairs)
+
+
+def _of_the_shaft(sweep: Sweep, pole_pairs: int | None) -> Sweep:
+    """A sweep with the angles of the shaft, see :func:`twin.periods.of_the_shaft`."""
+    from dataclasses import replace
+
+    from twin.periods import checked_pole_pairs, of_the_shaft
+
+    periods = checked_pole_pairs(pole_pairs)
+    if periods is None:
+        return sweep
+    return replace(sweep, **{"vx": None, "vy": None, **of_the_shaft(sweep.columns, periods, name=sweep.name)})
 
 
 def _columns(table: Any, names: Sequence[str], *, name: str) -> dict[str, Array]:

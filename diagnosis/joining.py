@@ -218,4 +218,5 @@ def _one_sweep(sweeps: Sequence[Sweep], setups: Sequence[Setup]) -> Sweep:
         row_numbers=np.concatenate([s.numbers + first for s, first in placed]),
         set_aside=sum(sweep.set_aside for sweep in sweeps),
         recordings=Recordings(number, tuple(setups), _left_out(sweeps)),
+        senses=sweeps[0].senses,
     )

@@ -15,6 +15,7 @@ from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
 from twin.log import LOG
 from twin.motion import RPM, Motion
+from twin.periods import checked_pole_pairs, of_the_shaft
 from twin.reading_grid import step_of_grid_deg
 from twin.recordings import Recordings
 from twin.shown_name import shown_name
@@ -52,6 +53,8 @@ class Sweep:
         Usable rows of the recording that this part of it does not hold.
     recordings : Recordings or None
         Of several recordings of one device, joined: which one each row belongs to. None: all are of one.
+    senses : tuple of int or None
+        Who counts which way, (s, h) of :class:`twin.Chain`, where channels said it that were not kept.
     """
 
     reference_deg: Array
@@ -75,6 +78,7 @@ class Sweep:
     row_numbers: IntArray | None = None
     set_aside: int = 0
     recordings: Recordings | None = None
+    senses: tuple[int, int] | None = None
 
     def __repr__(self) -> str:
         left = "" if self.rows == len(self) else f" of {self.rows}"
@@ -128,7 +132,7 @@ class Sweep:
         return step_of_grid_deg(self.measured_deg, self.reference_deg)
 
     @classmethod
-    def from_columns(cls, columns: Mapping[str, Array], *, name: str = "sweep") -> Self:
+    def from_columns(cls, columns: Mapping[str, Array], *, name: str = "sweep", pole_pairs: int | None = None) -> Self:
         """Check the columns and leave out rows with missing cells.
 
         Parameters
@@ -138,6 +142,9 @@ class Sweep:
             Others are ignored.
         name : str, optional
             What messages call it.
+        pole_pairs : int, optional
+            How often the field at the sensor turns in a turn of the shaft, where an angle or the channels do so too:
+            see :mod:`twin.periods`.
 
         Returns
         -------
@@ -179,6 +186,8 @@ class Sweep:
             rejected.update({int(row) + 1: f"{key} missing or not finite" for row in bad})
         used: dict[str, Any] = {key: np.ascontiguousarray(values[keep]) for key, values in data.items()}
         check_usable(used, name=name, rejected=len(rejected))
+        if (periods := checked_pole_pairs(pole_pairs)) is not None:
+            used = of_the_shaft(used, periods, name=name)
         following_deg = check_follows(used["measured_deg"], used["reference_deg"], name=name)
         if "vx" in used:
             check_channels(used["vx"], used["vy"], following_deg, name=name)
@@ -210,6 +219,7 @@ class Sweep:
         max_bytes: int = LARGEST_SWEEP_BYTES,
         name: str | None = None,
         columns: str | None = None,
+        pole_pairs: int | None = None,
     ) -> Self:
         """Read a sweep file and check it.
 
@@ -223,6 +233,8 @@ class Sweep:
         columns : str, optional
             Which columns of a log are those of a sweep, in which unit, such as
             ``"reference_deg=enc_counts*360/40000, measured_deg=angle:rad"``; None: it has those of a sweep.
+        pole_pairs : int, optional
+            See :meth:`from_columns`.
 
         Returns
         -------
@@ -235,7 +247,8 @@ class Sweep:
             Where the file cannot be read or used: which line and column, what was found, expected, and to do.
         """
         called = name or shown_name(path)
-        found = read_sweep(Path(path), partial(cls.from_columns, name=called), columns=columns, max_bytes=max_bytes)
+        checked = partial(cls.from_columns, name=called, pole_pairs=pole_pairs)
+        found = read_sweep(Path(path), checked, columns=columns, max_bytes=max_bytes)
         used = ", ".join(found.columns)
         LOG.info("read %s: %d rows, %d rejected; %s", found.name, found.rows, len(found.rejected), used)
         return found

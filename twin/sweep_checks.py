@@ -9,6 +9,7 @@ import numpy as np
 from twin.angles import Array, radians, wrap_deg
 from twin.errors import SweepError
 from twin.following import FOLLOWS_DEG, distance_deg, follows, spread_deg, swing_deg
+from twin.periods import times_as_fast
 from twin.sweep_columns import OF_SETUP, PLAUSIBLE, SMALLEST_AMPLITUDE
 
 FEWEST_ROWS = 8
@@ -96,12 +97,13 @@ def check_follows(measured: Array, reference: Array, *, name: str) -> Array:
                 f"{name}: {wrong}: the two columns agree only if this is in radians (they span "
                 f"{np.ptp(reference):.4g} and {np.ptp(measured):.4g}); expected degrees: convert it"
             )
-    for pole_pairs in range(2, 13):
-        if follows(measured, pole_pairs * reference):
-            raise SweepError(
-                f"{name}: measured_deg turns {pole_pairs} times as fast as reference_deg; expected both in degrees of "
-                "the same shaft: unwrap and divide the faster one"
-            )
+    pole_pairs = times_as_fast(measured, reference)
+    if pole_pairs is not None:
+        raise SweepError(
+            f"{name}: measured_deg turns {pole_pairs} times as fast as reference_deg; expected both in degrees of the "
+            f"same shaft: unwrap and divide the faster one, or give --pole-pairs {pole_pairs} (pole_pairs="
+            f"{pole_pairs}) for a sensor of so many periods"
+        )
     raise SweepError(
         f"{name}: measured_deg does not follow reference_deg (typically {distance_deg(measured, reference):.0f} deg "
         f"off, in the better counting sense; expected below {FOLLOWS_DEG:g}); "
@@ -128,6 +130,8 @@ def check_channels(vx: Array, vy: Array, measured: Array, *, name: str) -> None:
     hint = "check the columns, or leave vx and vy out"
     if follows(np.degrees(np.arctan2(vy - middle[1], vx - middle[0])), measured):
         hint = f"the channels stand at about {middle[0]:.4g} and {middle[1]:.4g} in mid-range: take that off both"
+    elif (times := times_as_fast(np.degrees(np.arctan2(vy, vx)), measured)) is not None:
+        hint = f"it turns {times} times as fast: give --pole-pairs {times} (pole_pairs={times}) for a sensor of so many"
     raise SweepError(
         f"{name}: columns vx, vy: atan2(vy, vx) does not follow measured_deg; expected the two channels that the angle "
         f"is computed from, zero at zero field; {hint}"

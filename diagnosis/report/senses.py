@@ -20,7 +20,8 @@ def senses(found: Discovery) -> dict[str, Any]:
     fit = found.fit
     said: dict[str, Any] = {"sensor": fit.chain.sensor_sense, "output": fit.chain.output_sense, "decided": True}
     said |= {"log_odds": None, "mirrored": None}
-    if found.given is not None or fit.observations.observables == 2:
+    by_channels = fit.observations.observables == 2 or found.sweep.senses is not None
+    if found.given is not None or by_channels:
         return said
     other = solve(evaluate(fit.chain.mirrored(), fit.free, fit.observations, replace(fit.weighting, slopes=False)))
     same = evaluate(fit.chain, fit.free, fit.observations, replace(fit.weighting, slopes=False))

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from diagnosis.setup.finding import Finding
-from diagnosis.setup.ratio import pole_pairs
-from diagnosis.setup.record import Record
+from diagnosis.setup.ratio import POLE_PAIRS, pole_pairs
+from diagnosis.setup.record import FEWEST, Record
 from twin.angles import Array
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
@@ -20,8 +21,11 @@ from twin.logs.others import others
 from twin.logs.read import by_statement, read_table
 from twin.logs.statement import Column, Term, parsed, values_of
 from twin.logs.table import Table
+from twin.periods import of_the_shaft
 from twin.sweep_columns import COLUMNS
 
+_OF_PERIODS = frozenset({"reference_deg", "measured_deg", "vx", "vy"})
+"""Columns that may turn several times in a turn of the shaft."""
 _FEWEST_BITS = 12
 """Of a word whose values show no turn: shorter ones hardly leave a sensor any more."""
 
@@ -95,6 +99,28 @@ def read_record(
         if found is None:
             raise
         return found
+
+
+def with_pole_pairs(read: LogRecord, known: int) -> LogRecord:
+    """The record of a sensor that is known to have so many periods a turn: that it turns so often is no fault.
+
+    An angle that turns as often becomes that of the shaft; one that turns otherwise is left as it is.
+    """
+    record, findings = read.record, read.findings
+    if any(column.per == known for column in record.statement):
+        findings = tuple(finding for finding in findings if finding.kind != POLE_PAIRS)
+    if known > 1 and record.both.size >= FEWEST:
+        columns = {name: values.copy() for name, values in record.columns.items()}
+        with suppress(SweepError):
+            made = of_the_shaft(
+                {name: columns[name][record.both] for name in _OF_PERIODS & set(columns)}, known, name=""
+            )
+            for name in ("reference_deg", "measured_deg"):
+                columns[name][record.both] = made[name]
+            columns = {name: values for name, values in columns.items() if name in made or name not in _OF_PERIODS}
+        record = replace(record, columns=columns)
+    rest = tuple(with_pole_pairs(one, known) for one in read.otherwise)
+    return replace(read, record=record, findings=findings, otherwise=rest)
 
 
 def _with_mended(read: LogRecord, table: Table) -> LogRecord:

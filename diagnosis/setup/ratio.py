@@ -20,6 +20,8 @@ from twin.logs.angles import AngleUnit, Pair, units_of_pair
 from twin.logs.names import Meaning
 from twin.words import Words
 
+POLE_PAIRS = "pole_pairs"
+"""The kind of what :func:`pole_pairs` finds."""
 _LARGEST_TERM = 12
 """Of pole pairs and gears: a ratio of larger whole numbers is one of counts."""
 _MOST_PAIRS = 128
@@ -169,7 +171,7 @@ def pole_pairs(record: Record) -> Finding | None:
     else:
         what = f"the reading turns {p}/{q} times as fast: {p} pole pairs where {q} are assumed, or a {p}:{q} gear"
     return Finding(
-        kind="pole_pairs",
+        kind=POLE_PAIRS,
         what=what + (f"; or {named} pole pairs" if rivals else ""),
         evidence=f"{abs(relation.ratio):.4f} turns of the reading in one of the reference, over {relation.turns:.2g} "
         "of the latter" + (f"; {even_points(record)} even points a turn show {p} and {named} alike" if rivals else ""),

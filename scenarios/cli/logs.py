@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import Columns, Force, Json, MaxSize, fail_on_option, written
+from scenarios.cli.options import Columns, Force, Json, MaxSize, PolePairs, fail_on_option, written
 from scenarios.cli.reproduce import command_line
 
 
@@ -43,6 +43,7 @@ def doctor(
         typer.Argument(metavar="LOG", help="A sweep, or a log of any kind that halltwin import reads."),
     ],
     columns: Columns = None,
+    pole_pairs: PolePairs = None,
     json: Json = None,
     force: Force = False,
     fail_on: Annotated[
@@ -60,6 +61,7 @@ def doctor(
     run(
         log,
         columns=columns,
+        pole_pairs=pole_pairs,
         json=json,
         force=force,
         max_bytes=bytes_of(max_size),

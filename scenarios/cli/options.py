@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
+from twin.periods import MOST_PAIRS
+
 OUTPUTS = "What is written"
 RUNNING = "How it is run"
 """Groups of options in the help text: those in neither decide what the answer is."""
@@ -47,6 +49,18 @@ Columns = Annotated[
         metavar="TEXT",
         help="Which columns of a log are those of a sweep, by name or place, factor and unit, as halltwin import "
         "prints it: 'reference_deg=enc_counts*360/40000, measured_deg=angle:rad'.",
+    ),
+]
+
+PolePairs = Annotated[
+    int | None,
+    typer.Option(
+        "--pole-pairs",
+        min=1,
+        max=MOST_PAIRS,
+        metavar="P",
+        help="How often the field at the sensor turns in a turn of the shaft: a ring of P pole pairs, a resolver of P "
+        "speeds. An angle or the channels may turn as often.",
     ),
 ]
 

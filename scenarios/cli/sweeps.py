@@ -7,7 +7,18 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.options import Columns, EffectFiles, ErrorPlot, Force, Json, MaxSize, Seed, fail_on_option, written
+from scenarios.cli.options import (
+    Columns,
+    EffectFiles,
+    ErrorPlot,
+    Force,
+    Json,
+    MaxSize,
+    PolePairs,
+    Seed,
+    fail_on_option,
+    written,
+)
 from scenarios.cli.reproduce import command_line
 
 MagnetText = Annotated[
@@ -48,6 +59,7 @@ def explain(
             metavar="deg,...", help="By how much the sensor was turned about the shaft, in deg: one for each recording."
         ),
     ] = None,
+    pole_pairs: PolePairs = None,
     json: Json = None,
     report: Annotated[
         Path | None,
@@ -72,7 +84,7 @@ def explain(
     from twin.bounded_input import bytes_of
 
     run(
-        SweepFiles(sweeps, bytes_of(max_size), columns),
+        SweepFiles(sweeps, bytes_of(max_size), columns, pole_pairs),
         each=each,
         known=Known(twin=twin, magnet=magnet, air_gap=air_gap, turned=mounting),
         outputs=Outputs(json=json, report=report, extended=extended, plot=plot, force=force),

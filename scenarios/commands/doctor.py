@@ -13,7 +13,7 @@ from rich.text import Text
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.setup_words import setup_block
 from diagnosis.setup.checks import KINDS, Checked
-from diagnosis.setup.of_log import LogRecord, read_record
+from diagnosis.setup.of_log import LogRecord, read_record, with_pole_pairs
 from diagnosis.setup.several_readings import checked_log
 from scenarios.commands.fail_on import DOCTOR, asked, raise_found
 from scenarios.commands.outputs import JSON, OutputFiles, json_text
@@ -27,6 +27,7 @@ def run(
     log: Path,
     *,
     columns: str | None = None,
+    pole_pairs: int | None = None,
     json: Path | None = None,
     force: bool = False,
     max_bytes: int,
@@ -37,6 +38,8 @@ def run(
     words = asked(fail_on, (*DOCTOR, *KINDS))
     files = OutputFiles.checked([(json, JSON)], inputs=[log], force=force)
     read = read_record(log, name=shown_name(log), columns=columns, max_bytes=max_bytes)
+    if pole_pairs is not None:
+        read = with_pole_pairs(read, pole_pairs)
     answer = to_dict(read, checked_log(read), Provenance.today(seed=0, command=command))
     try:
         show(answer)

@@ -65,9 +65,9 @@ def run(
     )
     # Before a long recording is read: a name that is none needs no waiting for.
     held = None if known.twin is None else read_twin_or_preset(known.twin, effects=effects)
-    given = {"twin": held, "mounting": known.mounting(), "effects": effect_files, "seed": seed}
-    names = distinct_names(paths)
-    read = [sweeps.read_one(p, name=name) for p, name in zip(paths, names, strict=True)]
+    given: dict[str, Any] = {"twin": held, "mounting": known.mounting(), "effects": effect_files, "seed": seed}
+    given["pole_pairs"] = sweeps.pole_pairs
+    read = [sweeps.read_one(p, name=name) for p, name in zip(paths, distinct_names(paths), strict=True)]
     if one_by_one:
         _one_by_one(read, given, files=files, json=outputs.json, command=command, words=words)
         return

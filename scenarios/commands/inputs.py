@@ -104,12 +104,14 @@ def the_same(sweeps: Sequence[Sweep]) -> list[list[str]]:
 class SweepFiles:
     """Sweeps as they are named on the command line, and how each is read.
 
-    ``max_bytes``: how many bytes it may hold after decompression; ``columns``: what becomes of the columns of a log.
+    ``max_bytes``: how many bytes it may hold after decompression; ``columns``: what becomes of the columns of a log;
+    ``pole_pairs``: how often the field at the sensor turns in a turn of the shaft.
     """
 
     names: Sequence[str] = ()
     max_bytes: int = LARGEST_SWEEP_BYTES
     columns: str | None = None
+    pole_pairs: int | None = None
 
     def paths(self) -> list[Path]:
         """See :func:`sweep_paths`."""
@@ -129,7 +131,7 @@ class SweepFiles:
 
     def read_one(self, path: Path, *, name: str | None = None) -> Sweep:
         """One of the files, under the name that messages call it by. Raises SweepError."""
-        return Sweep.read(path, max_bytes=self.max_bytes, name=name, columns=self.columns)
+        return Sweep.read(path, max_bytes=self.max_bytes, name=name, columns=self.columns, pole_pairs=self.pole_pairs)
 
 
 def read_sweeps(

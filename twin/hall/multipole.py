@@ -18,7 +18,7 @@ from twin.hall.phase import PHASE
 from twin.motion import Motion
 
 MOST_PERIODS = 19
-"""Beyond it a line and its double are what a motor sets, unless somebody says how many periods the sensor has."""
+"""Beyond it a line and its double are what a motor sets, unless it is known how many periods the sensor has."""
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
@@ -37,6 +37,17 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     # Of two periods the line of the offset is that of gain and phase of a single one.
     return [{"periods": float(p)} for p in range(3, MOST_PERIODS + 1) if 6 * p < motion.points_per_turn]
+
+
+def with_periods(effects: Sequence[Effect], periods: int, *, given: bool) -> tuple[Effect, ...]:
+    """The effects for a sensor of a known number of periods: ``multipole`` has it, whatever the points of a turn are.
+
+    Left out are those of a single period whose lines are the same: gain and phase of one, where there are two; not
+    where a twin is ``given``, which may have them.
+    """
+    known = replace(MULTIPOLE, shapes=lambda motion: [{"periods": float(periods)}])
+    same = set() if given or periods != 2 else {GAIN_MISMATCH.name, PHASE.name}
+    return tuple(known if e.name == MULTIPOLE.name else e for e in effects if e.name not in same)
 
 
 def orders(values: Parameters) -> tuple[float, ...]:

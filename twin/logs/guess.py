@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NoReturn
 
 import numpy as np
@@ -19,7 +19,7 @@ from twin.logs.lookups import statements_of
 from twin.logs.names import Meaning
 from twin.logs.odd_factors import odd_factor
 from twin.logs.others import others
-from twin.logs.ratios import turned
+from twin.logs.ratios import Turned, turned
 from twin.logs.statement import Column, text_of
 from twin.logs.table import LARGEST, Table
 from twin.sweep_columns import COLUMNS
@@ -95,6 +95,9 @@ def guessed(table: Table) -> Guess:
         return _one_of(listed, (_ERROR_IS,), table)
     if pair is None:
         pair = _by_channels(table, said, angles, found.columns)
+        if any(column.per for column in pair):
+            # A radius that goes with a period is none of the turn.
+            found = replace(found, columns=())
     rest = others(table, said, usable, pair[0].of(table))
     columns = sorted((*pair, *found.columns, *rest.columns), key=lambda one: COLUMNS.index(one.target))
     unused = unused_by(tuple(columns), table, {**found.why, **rest.why})
@@ -252,6 +255,12 @@ def _by_name_alone(table: Table, said: tuple[Meaning, ...], angles: list[int]) -
     return _Candidate(*best[0], (units[0], units[1]), most).columns(table) if len(units) == _SIDES else None
 
 
+def _turned_pair(found: Turned, source: str, measured: Column) -> tuple[Column, Column]:
+    """A reference of this source and a sensor's angle, of which one turns several times in a turn of the other."""
+    per = [None if times == 1.0 else times for times in found.times]
+    return replace(found.units[0].column("reference_deg", source), per=per[0]), replace(measured, per=per[1])
+
+
 def _by_channels(
     table: Table, said: tuple[Meaning, ...], angles: list[int], found: tuple[Column, ...]
 ) -> tuple[Column, Column]:
@@ -266,6 +275,13 @@ def _by_channels(
             for k in angles
             for units in units_of_pair(table.values[k], values, said=(said[k], own))
             if units[1].name == "deg"
+        ]
+        # Of a ring of magnets, or a resolver of several speeds, the channels turn several times in a turn.
+        fitting = fitting or [
+            _turned_pair(units, table.sources[k], measured)
+            for k in angles
+            for units in turned(table.values[k], values, said=(said[k], own))
+            if units.units[1].name == "deg"
         ]
         if len(fitting) == 1:
             return fitting[0]

@@ -32,7 +32,7 @@ from twin.sweep import Sweep
 def senses_of_channels(sweep: Sweep) -> tuple[int, int] | None:
     """Who counts which way, (s, h), where the recorded channels say it: the reading follows h atan2(vy, vx)."""
     if sweep.vx is None or sweep.vy is None:
-        return None
+        return sweep.senses
     measured, reference = np.radians(sweep.measured_deg), np.radians(sweep.reference_deg)
     channel = np.arctan2(sweep.vy, sweep.vx)
 
@@ -52,9 +52,17 @@ def unfitted(observations: Observations, start: Chain, settings: DiscoverySettin
     return evaluate(start, (), observations, weighting)
 
 
+def baseline_of(chain: Chain) -> tuple[Free, ...]:
+    """The parameters of the error model that a chain can have: a sensor of two periods has no gain error of one."""
+    known = {effect.name for effect in chain.effects}
+    return tuple(free for free in BASELINE if free.key in known)
+
+
 def baseline_fit(fit: Fit) -> Fit:
     """The paper's error model, all six factors free."""
-    return solve(evaluate(awake(fit.chain), (*BASELINE, *own_zeros(fit.chain)), fit.observations, fit.weighting))
+    return solve(
+        evaluate(awake(fit.chain), (*baseline_of(fit.chain), *own_zeros(fit.chain)), fit.observations, fit.weighting)
+    )
 
 
 def senses_of_angles(observations: Observations) -> int:
@@ -100,7 +108,7 @@ def fit_of_given(fit: Fit) -> Fit:
 def awake(chain: Chain) -> Chain:
     """The chain with the whole baseline present, so that every one of its parameters can be fitted."""
     values: dict[str, dict[str, Any]] = {}
-    for free in BASELINE:
+    for free in baseline_of(chain):
         null = find(free.key).params[free.name].null
         values.setdefault(free.key, {})[free.name] = chain.values.get(free.key, {}).get(free.name, null)
     return chain.with_values(values)

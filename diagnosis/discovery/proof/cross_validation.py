@@ -6,7 +6,8 @@ from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, solve
+from diagnosis.discovery.fitting.initial_fit import baseline_of
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve
 from diagnosis.discovery.proof.whole_recordings import Split, are_halves, by_recordings, halves, of_recordings
 from twin.angles import TAU, Array, IntArray, wrap
 from twin.effect import BoolArray
@@ -53,7 +54,7 @@ def held_out_residual(
 
     ``at_once``: each fit goes from that of all rows by one step, which is all of it where the chain is linear.
     """
-    base_free = [f for f in fit.free if f.key not in keys] or list(BASELINE)
+    base_free = [f for f in fit.free if f.key not in keys] or list(baseline_of(fit.chain))
     free = (*base_free, *(f for f in fit.free if f.key in present))
     chain = fit.chain.without(*(key for key in keys if key not in present))
     splits = of_recordings(fit, free, fold) if are_halves(fit, fold) else _of_blocks(fit, free, fold)

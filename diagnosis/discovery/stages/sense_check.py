@@ -24,7 +24,8 @@ def sense_check(state: State) -> State:
     the words have told stay in either sense.
     """
     fit, baseline = state.fit, state.baseline
-    if state.given is not None or baseline is None or fit.observations.observables == 2:
+    told = fit.observations.observables == 2 or state.sweep.senses is not None
+    if state.given is not None or baseline is None or told:
         return state
     other = solve(evaluate(fit.chain.mirrored(), fit.free, fit.observations, fit.weighting))
     here = likelihood(fit) + state.settings.swap_log_odds

@@ -22,6 +22,10 @@ from .option_walk import ODD, Option, options
 BASE: dict[str, tuple[str, ...]] = {
     "explain": ("short.csv",),
     "simulate": ("--points", "16", "-o", "out/sweep.csv"),
+    **dict.fromkeys(
+        (f"simulate --{name}" for name in ("start-rpm", "stop-rpm", "coast-time", "dry-share", "rate")),
+        ("--coast", "-o", "out/sweep.csv"),
+    ),
     "diagnose": ("short.csv",),
     "spinning": ("-o", "out/spinning"),
     "hardware": ("-o", "out/hardware"),
@@ -61,6 +65,11 @@ RIGHT: dict[str, str] = {
     "--run-length": "36.9",
     "simulate --max-size": "36.9",
     "export --max-size": "36.9",
+    "--start-rpm": "36.9",
+    "--stop-rpm": "0 36.9",
+    "--coast-time": "36.9",
+    "--dry-share": "0",
+    "simulate --noise": "0 36.9",
     # A lag that is 0.1 deg at the preset's gap would be 22 deg there.
     "simulate --air-gap": "",
     "compensate --tolerance": "0",

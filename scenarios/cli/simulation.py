@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -35,7 +35,37 @@ def simulate(
     both_directions: BothDirections = False,
     speed_rpm: SpeedRpm = None,
     temperatures: Temperatures = "",
-    channels: Annotated[bool, typer.Option(help="Record vx and vy as well.")] = True,
+    coast: Annotated[
+        bool,
+        typer.Option("--coast", help="Let the shaft coast down instead, and log time_s and measured_deg alone."),
+    ] = False,
+    start_rpm: Annotated[
+        float | None, typer.Option(metavar="rpm", help="Speed in rpm at which the shaft is let go. Without: 3000.")
+    ] = None,
+    stop_rpm: Annotated[
+        float | None,
+        typer.Option(metavar="rpm", help="Speed in rpm at which the log ends. Without: a tenth of the start speed."),
+    ] = None,
+    coast_time: Annotated[
+        float | None, typer.Option(metavar="s", help="Time in s from one to the other. Without: 5.")
+    ] = None,
+    dry_share: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SHARE",
+            help="Share of the friction at the start that is dry; the rest falls with the speed. Without: 0.5.",
+        ),
+    ] = None,
+    rate: Annotated[
+        float | None, typer.Option(metavar="Hz", help="Readings a second of a coast. Without: 2000.")
+    ] = None,
+    reference: Annotated[
+        bool | None,
+        typer.Option(help="Record reference_deg and turn, which take a reference. Without: yes, except of a coast."),
+    ] = None,
+    channels: Annotated[
+        bool | None, typer.Option(help="Record vx and vy as well. Without: yes, except of a coast.")
+    ] = None,
     reference_lines: Annotated[
         int | None,
         typer.Option(metavar="N", help="Lines of the reference encoder (4 counts each). Without: as the twin says."),
@@ -54,6 +84,10 @@ def simulate(
             help="Turn of the sensor about the shaft in deg: its errors turn with it, the reference's do not.",
         ),
     ] = None,
+    noise: Annotated[
+        float | None,
+        typer.Option(metavar="deg", help="White noise of a reading in deg RMS, in place of the twin's."),
+    ] = None,
     trace: Annotated[Path | None, written("Write every intermediate signal with its unit as CSV.")] = None,
     plot: Annotated[Path | None, written("Draw the trace: .png, .svg or .pdf.")] = None,
     force: Force = False,
@@ -61,27 +95,53 @@ def simulate(
     max_size: MaxSize = "2GB",
     seed: Seed = 0,
 ) -> None:
-    """Simulate a sweep from a twin, on a protocol or on a recorded motion."""
+    """Simulate a sweep from a twin, on a protocol, on a recorded motion, or of a shaft that coasts down."""
+    from scenarios.commands.coast import Coast, refuse_protocol, refuse_without_coast
     from scenarios.commands.protocol import Protocol, numbers
     from scenarios.commands.simulate import Instead, Outputs, run
     from twin.bounded_input import bytes_of
 
-    protocol = Protocol(
-        turns=turns,
-        points=points,
-        both_directions=both_directions,
-        speeds_rpm=speed_rpm or [0.0],
-        temperatures_c=numbers("temperatures", temperatures),
-        channels=channels,
-    )
+    coasts: dict[str, Any] = {
+        "start_rpm": start_rpm,
+        "stop_rpm": stop_rpm,
+        "time_s": coast_time,
+        "dry_share": dry_share,
+        "rate_Hz": rate,
+    }
+    given = {name: value for name, value in coasts.items() if value is not None}
+    protocol: Protocol | Coast
+    if coast:
+        refuse_protocol(
+            {
+                "--motion": motion is not None,
+                "--turns": turns != 1,
+                "--points": points != 360,
+                "--both-directions": both_directions,
+                "--speed-rpm": bool(speed_rpm),
+                "--temperatures": bool(temperatures.strip()),
+            }
+        )
+        protocol = Coast(**given, channels=bool(channels))
+    else:
+        refuse_without_coast(given)
+        protocol = Protocol(
+            turns=turns,
+            points=points,
+            both_directions=both_directions,
+            speeds_rpm=speed_rpm or [0.0],
+            temperatures_c=numbers("temperatures", temperatures),
+            channels=channels is not False,
+        )
     run(
         twin,
-        Outputs(sweep=output, trace=trace, plot=plot, force=force),
+        Outputs(
+            sweep=output, trace=trace, plot=plot, reference=not coast if reference is None else reference, force=force
+        ),
         recorded=motion,
         max_bytes=bytes_of(max_size),
         protocol=protocol,
         seed=seed,
-        instead=Instead(reference_lines=reference_lines, air_gap_mm=air_gap, mounting_deg=mounting),
+        instead=Instead(reference_lines=reference_lines, air_gap_mm=air_gap, mounting_deg=mounting, noise_deg=noise),
         effect_files=effects or (),
     )
 

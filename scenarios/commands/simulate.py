@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from scenarios.commands.coast import Coast
 from scenarios.commands.outputs import PICTURE, SWEEP, TABLE, OutputFiles
 from scenarios.commands.protocol import Protocol
 from scenarios.commands.trace import trace, trace_text
@@ -17,6 +18,7 @@ from twin.air_gap import at_air_gap
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.chain import Chain
 from twin.extensions import effects_with
+from twin.hall.noise import NOISE
 from twin.motion import Motion
 from twin.presets import read_twin_or_preset
 from twin.reference.encoder import Encoder
@@ -30,23 +32,25 @@ from twin.turned_sensor import with_sensor_turned
 class Outputs:
     """Files to write: the sweep, and where asked for the intermediate signals as a table and as a picture.
 
-    ``force``: also in place of files of others.
+    Without ``reference``, the sweep is the log of a bench that has none. ``force``: also in place of files of others.
     """
 
     sweep: Path
     trace: Path | None = None
     plot: Path | None = None
+    reference: bool = True
     force: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
 class Instead:
     """What is other than the twin says: lines of the reference encoder, air gap [mm], the sensor's turn about the shaft
-    [deg]; None: as there."""
+    [deg], white noise of a reading [deg RMS]; None: as there."""
 
     reference_lines: int | None = None
     air_gap_mm: float | None = None
     mounting_deg: float | None = None
+    noise_deg: float | None = None
 
     def of(self, chain: Chain) -> Chain:
         """The twin as it is then: the same device at that gap."""
@@ -54,6 +58,9 @@ class Instead:
             chain = at_air_gap(chain, self.air_gap_mm)
         if self.reference_lines is not None:
             chain = replace(chain, encoder=replace(chain.encoder or Encoder(), lines=self.reference_lines))
+        if self.noise_deg is not None:
+            # Its colour and what it depends on go with it.
+            chain = chain.without(NOISE.name).with_effect(NOISE.name, rms_deg=self.noise_deg)
         return chain
 
     def turned(self, chain: Chain, motion: Motion) -> tuple[Chain, Motion]:
@@ -68,6 +75,8 @@ class Instead:
 
 
 _AS_IT_IS = Instead()
+_OF_A_REFERENCE = ("reference_deg", "turn")
+"""Columns that no bench without a reference has."""
 
 
 def run(
@@ -75,7 +84,7 @@ def run(
     outputs: Outputs,
     *,
     recorded: Path | None,
-    protocol: Protocol,
+    protocol: Protocol | Coast,
     seed: int,
     instead: Instead = _AS_IT_IS,
     effect_files: Sequence[Path] = (),
@@ -92,7 +101,10 @@ def run(
     motion = protocol.motion() if recorded is None else chain.shaft(Sweep.read(recorded, max_bytes=max_bytes).motion())
     chain, motion = instead.turned(chain, motion)
     sweep = instead.stated(chain.simulate(motion, seed=seed))
-    contents: dict[Path | None, Any] = {outputs.sweep: lambda: csv_text(sweep.columns)}
+    columns = {
+        name: values for name, values in sweep.columns.items() if outputs.reference or name not in _OF_A_REFERENCE
+    }
+    contents: dict[Path | None, Any] = {outputs.sweep: lambda: csv_text(columns)}
     if outputs.trace is not None or outputs.plot is not None:
         traced = trace(chain, motion, seed=seed)
         contents |= {

@@ -234,14 +234,14 @@ def _truth(
     near = rounding > 0.4 * sensor.noise.sigma_deg and "output_quantisation" not in named
     # orders below 4 of the magnet's own do what the factors do
     mixed = any(one.order <= 3 for one in sensor.orders) or "magnet_harmonic" in named
-    factors = {key: value for key, value in sensor.own.parameters().items() if key != "zero_deg"}
+    factors = sensor.own.parameters()
     return {
         "causes": [one.name for one in injected] + ["magnet_harmonic"] * len(harmonics),
         "tolerated": ["torque_ripple", "time_jitter", *(["output_quantisation"] if near else [])],
         "parameters": {key: _at_no_zero(values) for key, values in parameters.items()},
         "strength_deg": {one.name: one.strength_deg for one in injected},
         "factors": factors,
-        "baseline": {} if mixed else factors,
+        "baseline": {} if mixed else {key: value for key, value in factors.items() if key != "zero_deg"},
         "frame": {
             "amplitude_x": sensor.own.amplitude_x,
             "first_time_s": clock.start_s,

@@ -18,12 +18,13 @@ from . import study
 from .__main__ import main
 from .benches import PROTOCOLS, TURN, coast
 from .drives import Speeds
-from .generator import draw
+from .generator import Drawn, draw
 from .judging import left_by, names_verdict, open_orders, wrong_orders
-from .peers import PEERS
+from .peers import PEERS, unwrapped
 from .rotor import Belt, Hum, Rotor, Step, Trajectory, Wave, integrate
 from .sensor import AtRest, Order, at_rest, coefficients, rms_of_orders
 from .sets import NAMED, Job, clean, of_causes, of_protocols
+from .stamps import Clock
 
 HERE = Path(__file__).parent
 PERFECT = Baseline(
@@ -121,10 +122,37 @@ def test_response_to_a_torque_falls_as_speed_squared(order: int) -> None:
     assert slow / fast == pytest.approx(4.0, rel=0.03)
 
 
-def test_drag_that_comes_and_goes_once_a_turn_is_an_order_1() -> None:
+@pytest.mark.parametrize("dry", [True, False])
+def test_drag_that_comes_and_goes_once_a_turn_is_an_order_1(dry: bool) -> None:
+    """Of the dry friction its response falls as the speed squared, of the viscous one as the speed."""
+    friction = {"coulomb": 24.0, "drag_ripple": 0.1} if dry else {"viscous": 0.4, "viscous_ripple": 0.1}
+    rotor = Rotor(**friction, drag_phase=2.0)
+    found = []
+    for speed in (60.0, 120.0):
+        drive = Speeds((0.0,), (speed,), gain=0.0, feed=rotor.friction(speed))
+        found.append(response(rotor, 1, speed, drive))
+        assert found[-1] == pytest.approx(rotor.response_deg(1, speed), rel=0.05)
+    assert found[0] / found[1] == pytest.approx(4.0 if dry else 2.0, rel=0.05)
+
+
+def test_a_torque_adds_to_the_drag() -> None:
     rotor = Rotor(coulomb=20.0, drag_ripple=0.1, drag_phase=2.0, waves=(Wave(1, 1.0, 1.0),))
     drive = Speeds((0.0,), (60.0,), gain=0.0, feed=20.0)
     assert response(rotor, 1, 60.0, drive) == pytest.approx(rotor.response_deg(1, 60.0), rel=0.05)
+
+
+def test_between_the_steps_lies_the_cubic() -> None:
+    """Which a motion of constant jerk is."""
+    steps, between = np.array([0.0, 0.1, 0.35, 0.5]), np.array([0.0, 0.04, 0.2, 0.34, 0.5])
+
+    def angle(time: Array) -> Array:
+        return np.asarray(1.0 + 2.0 * time - 3.0 * time**2 + 4.0 * time**3)
+
+    def speed(time: Array) -> Array:
+        return np.asarray(2.0 - 6.0 * time + 12.0 * time**2)
+
+    path = Trajectory(steps, angle(steps), speed(steps), steps, steps)
+    np.testing.assert_allclose(path.at(between), [angle(between), speed(between)], rtol=1e-12)
 
 
 def test_mains_and_load_act_in_time() -> None:
@@ -191,17 +219,29 @@ def test_readings_are_the_shaft_and_the_error_at_rest(protocol: str) -> None:
 
 @pytest.mark.parametrize("cause", NAMED)
 def test_every_cause_shows_in_the_readings(cause: str) -> None:
-    """Against the same draw without it: another stream, so its scatter about its own shaft is held against noise."""
-    job = next(one for one in of_causes(draws=1, seed=2) if one.label == cause)
-    drawn = job.draw()
+    """Readings scatter about what the factors alone make of the shaft by more than noise and rounding."""
+    drawn = next(one for one in of_causes(draws=1, seed=2) if one.label == cause).draw()
     assert drawn.truth["causes"] == [cause]
+    assert scatter(drawn) > 1.3
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nothing_but_the_factors_shows_in_clean_readings(seed: int) -> None:
+    assert scatter(clean(draws=1, seed=seed)[0].draw()) == pytest.approx(1.0, abs=0.1)
+
+
+def scatter(drawn: Drawn) -> float:
+    """Of the readings about what the factors alone make of the shaft, over noise and rounding."""
     log = drawn.logs[0]
     off = np.angle(np.exp(1j * np.radians(log.columns["measured_deg"] - log.shaft_deg)))
     bare = at_rest(draw_baseline(drawn.truth), [], ())
     wanted = np.radians(np.interp(log.shaft_deg, bare.shaft_deg, bare.error_deg, period=360.0))
     left = np.angle(np.exp(1j * (off - wanted)))
     left = np.degrees(np.angle(np.exp(1j * (left - np.median(left)))))
-    assert np.std(left) > 1.3 * float(str(drawn.truth["noise_deg"]))
+    rounding = 360.0 / 2 ** int(str(drawn.truth["output_bits"])) / math.sqrt(12.0)
+    if drawn.truth["causes"] == ["output_quantisation"]:
+        rounding = 0.0
+    return float(np.std(left) / math.hypot(float(str(drawn.truth["noise_deg"])), rounding))
 
 
 def draw_baseline(truth: Mapping[str, Any]) -> Baseline:
@@ -209,6 +249,7 @@ def draw_baseline(truth: Mapping[str, Any]) -> Baseline:
     told = truth["factors"]
     return replace(
         PERFECT,
+        zero_deg=told["zero_deg"],
         offset_x=told["Vx_over_Ax"],
         offset_y=told["Vy_over_Ay"] * told["gain_ratio"],
         amplitude_y=told["gain_ratio"],
@@ -239,8 +280,12 @@ def test_stamps_through_usb_are_those_of_frames() -> None:
 
 
 def test_rows_are_dropped() -> None:
-    gaps = [np.diff(draw("coast", seed=seed).logs[0].time_s) for seed in range(4)]
-    assert any(gap.max() > 1.5 * np.median(gap) for gap in gaps)
+    even = Clock(period_s=1e-3, jitter_s=0.0, resolution_s=1e-6, dropped=0.0, gap_s=0.0, start_s=0.0)
+    rng = np.random.default_rng(0)
+    np.testing.assert_allclose(np.diff(even.instants(5.0, rng)), 1e-3)
+    assert replace(even, dropped=0.1).instants(5.0, rng).size == pytest.approx(4500, abs=100)
+    lapse = np.diff(replace(even, gap_s=0.2).instants(5.0, rng))
+    assert np.count_nonzero(lapse > 0.15) == np.count_nonzero(lapse > 1.1e-3) == 1
 
 
 # --- the judge ------------------------------------------------------------------------------------
@@ -254,7 +299,7 @@ def oracle(truth: AtRest) -> Callable[[Array], Array]:
     return lambda told: np.interp(np.mod(told - start, 360.0), reading, shaft)
 
 
-@pytest.mark.parametrize(("sense", "zero"), [(1.0, 0.0), (1.0, 130.0), (-1.0, 77.0)])
+@pytest.mark.parametrize(("sense", "zero"), [(1.0, 0.0), (1.0, 180.0), (-1.0, 77.0)])
 def test_neither_zero_nor_sense_of_a_correction_matters(sense: float, zero: float) -> None:
     truth = draw("coast", seed=3).at_rest
     perfect = oracle(truth)
@@ -299,6 +344,14 @@ def test_what_others_do_works_where_nothing_but_the_sensor_is_wrong(name: str) -
     torque = 0.2 * np.sin(np.radians(3.0 * shaft))
     fooled = left_by(PEERS[name]({"time_s": time, "measured_deg": np.mod(reading + torque, 360.0)}), truth)
     assert fooled.rms_deg == pytest.approx(0.2 / math.sqrt(2.0), rel=0.2)
+
+
+def test_turns_are_counted_over_rows_that_never_arrived() -> None:
+    time = np.concatenate([np.arange(2000), np.arange(2400, 4000)]) / 2000.0
+    path = 360.0 * (30.0 * time - 2.0 * time**2) + 0.3 * np.sin(TURN * 30.0 * time)
+    counted = unwrapped({"time_s": time + 5.0, "measured_deg": np.mod(path, 360.0)})
+    np.testing.assert_allclose(counted[0], time, atol=1e-9)
+    np.testing.assert_allclose(counted[1], path, atol=1e-6)
 
 
 def pretend(paths: Sequence[str]) -> tuple[Mapping[str, Any], Callable[[Array], Array], frozenset[int]]:

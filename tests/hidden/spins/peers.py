@@ -4,7 +4,7 @@
 sensor's and integrated into a table of 32 entries, as the encoder calibration of the moteus drives does.
 ``mean_speed``: a straight line in time through each turn is the reference (constant speed over a turn).
 ``harmonic_fit``: cubics in time are the motion, one for every four turns, and orders 1 to 16 of the reading are fitted
-beside them.
+beside them; ``weighted_fit`` is the same with turns weighted by what is left in them, which nobody is known to do.
 """
 
 from __future__ import annotations
@@ -101,10 +101,19 @@ def mean_speed(columns: Mapping[str, Array]) -> Callable[[Array], Array]:
 
 def harmonic_fit(columns: Mapping[str, Array]) -> Callable[[Array], Array]:
     """Least squares of the readings on orders 1 to 16 of the reading beside a cubic in time for every four turns."""
+    return _harmonics(columns, rounds=1)
+
+
+def weighted_fit(columns: Mapping[str, Array]) -> Callable[[Array], Array]:
+    """The same, but turns in which more is left (a row lost, a load come on, a torque at low speed) count less."""
+    return _harmonics(columns, rounds=8)
+
+
+def _harmonics(columns: Mapping[str, Array], rounds: int) -> Callable[[Array], Array]:
     time, reading = unwrapped(columns)
     orders = np.arange(1, 17)
     window = np.floor(np.abs(reading - reading[0]) / (4.0 * 360.0)).astype(np.int64)
-    normal, right = np.zeros((32, 32)), np.zeros(32)
+    parts = []
     for number in range(int(window.max()) + 1):
         rows = np.flatnonzero(window == number)
         if rows.size < 8:
@@ -112,11 +121,17 @@ def harmonic_fit(columns: Mapping[str, Array]) -> Callable[[Array], Array]:
         share = (time[rows] - time[rows].mean()) / max(float(np.ptp(time[rows])), 1e-9)
         basis = np.linalg.qr(np.vander(share, 4))[0]
         waves = np.radians(reading[rows])[:, None] * orders
-        columns_left = np.hstack([np.cos(waves), np.sin(waves)])
-        columns_left = columns_left - basis @ (basis.T @ columns_left)
-        normal += columns_left.T @ columns_left
-        right += columns_left.T @ reading[rows]
-    found = np.linalg.lstsq(normal, right, rcond=None)[0]
+        both = np.column_stack([np.cos(waves), np.sin(waves), reading[rows] - reading[rows].mean()])
+        both = both - basis @ (basis.T @ both)
+        parts.append((both.T @ both, rows.size))
+    found = np.zeros(32)
+    weights = np.ones(len(parts))
+    for _ in range(rounds):
+        total = np.tensordot(weights, np.array([product for product, _ in parts]), 1)
+        found = np.linalg.lstsq(total[:32, :32], total[:32, 32], rcond=None)[0]
+        signed = np.append(-found, 1.0)
+        left = np.array([signed @ product @ signed / rows for product, rows in parts])
+        weights = 1.0 / (left + 0.1 * np.median(left) + 1e-12)
 
     def corrected(reading_deg: Array) -> Array:
         angle = np.radians(np.asarray(reading_deg))[..., None] * orders
@@ -125,4 +140,9 @@ def harmonic_fit(columns: Mapping[str, Array]) -> Callable[[Array], Array]:
     return corrected
 
 
-PEERS: dict[str, Peer] = {"ripple_table": ripple_table, "mean_speed": mean_speed, "harmonic_fit": harmonic_fit}
+PEERS: dict[str, Peer] = {
+    "ripple_table": ripple_table,
+    "mean_speed": mean_speed,
+    "harmonic_fit": harmonic_fit,
+    "weighted_fit": weighted_fit,
+}

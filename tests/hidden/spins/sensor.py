@@ -17,6 +17,16 @@ from .rotor import Array
 AT_REST = frozenset({"saturation", "clipping", "multipole", "magnet_harmonic", "cordic_truncation", "adc_stuck_bit"})
 """Causes that are a function of the angle alone, whatever the time and the speed."""
 GRID = 7200
+PERFECT = Baseline(
+    zero_deg=40.0,
+    offset_x=0.0,
+    offset_y=0.0,
+    amplitude_x=1.0,
+    amplitude_y=1.0,
+    phase_deg=0.0,
+    quadratic=0.0,
+)
+"""A sensor without an error, with a zero of its own."""
 
 
 @dataclass(frozen=True)

@@ -91,7 +91,7 @@ def _beside(records: Sequence[Record]) -> Table:
 
 
 def _middle_and_most(values: Sequence[float]) -> str:
-    return f"{np.median(values):.4f} / {np.quantile(values, 0.95):.4f}" if values else ""
+    return f"{np.median(values):.3f} / {np.quantile(values, 0.95):.3f}" if values else ""
 
 
 def _print_open(console: Console, records: Sequence[Record]) -> None:

@@ -27,12 +27,15 @@ _OF_95_PERCENT = 1.96
 _GRID = "output_quantisation"
 _ALWAYS = (_GRID, "unnamed_burst")
 """Described of every sweep: the grid that its readings lie on, and where its noise is louder."""
+_FOUND_AS = {"motor_poles": ("magnet_harmonic", "drive_ripple", "unnamed_order")}
+"""Where a cause is known only by several lines together: those that its lines are found as, one by one."""
 
 
 def answer_with(name: str, hidden: Hidden) -> dict[str, Any]:
     """The answer to a sweep where the only cause that is looked for is this one."""
     sweep = Sweep.from_columns(dict(hidden.columns))
-    effects = tuple(effect for effect in CATALOGUE if effect.baseline or effect.name in (name, *_ALWAYS))
+    wanted = (name, *_FOUND_AS.get(name, ()), *_ALWAYS)
+    effects = tuple(effect for effect in CATALOGUE if effect.baseline or effect.name in wanted)
     rng = np.random.default_rng(0)
     fit = fit_baseline(
         np.radians(sweep.reference_deg),

@@ -20,19 +20,21 @@ WITH_CHANNELS = {
 }
 """Causes that are drawn with the channels recorded, and what an angle alone would leave open."""
 
-OTHERWISE = {
-    "motor_poles": "its lines are found as lines of other causes, which a fit of this cause alone lacks",
-    "motor_field": "its largest angle is that of the largest current: of the weakest draws too few readings tell it",
-    "time_jitter": "its interval is too narrow: one draw came out 10 % low, at five of its standard deviations",
-}
-"""Causes that no fit with them alone recovers to the bounds asked for here, and why; they have tests of their own."""
+LARGER = {"motor_field": 2.0}
+"""By how much a cause is drawn larger: its strength is the largest angle at the largest current, twice that of most."""
 
-each_cause = pytest.mark.parametrize("name", sorted(CAUSES.keys() - OTHERWISE.keys()))
+UNSEEN = {
+    ("motor_field", "hard"): "a field of 9 sigma at five levels of current is not told from coloured noise of 144 rows"
+}
+"""Causes that a bench may hide, and why."""
+
+each_cause = pytest.mark.parametrize("name", sorted(CAUSES))
 strengths = st.floats(0.05, 0.15)
 seeds = st.integers(0, 2**31 - 1)
 
 
 def recovered(name: str, seed: int, strength_deg: float, bench: str) -> None:
+    strength_deg *= LARGER.get(name, 1.0)
     hidden = draw([name], seed=seed, bench=bench, strength_deg=strength_deg, protocol=protocol_of(name, seed))
     answer = answer_with(name, hidden)
     figures = compared(name, answer, hidden.truth)
@@ -54,8 +56,10 @@ def test_what_was_put_in_comes_back(name: str, seed: int, strength_deg: float) -
 
 
 @pytest.mark.study
-@each_cause
-@pytest.mark.parametrize("bench", ["easy", "hard"])
+@pytest.mark.parametrize(
+    ("name", "bench"),
+    [(name, bench) for name in sorted(CAUSES) for bench in ("easy", "hard") if (name, bench) not in UNSEEN],
+)
 @given(seeds, strengths)
 @settings(max_examples=40, deadline=None, derandomize=True, database=None)
 def test_what_was_put_in_comes_back_over_many_draws(name: str, bench: str, seed: int, strength_deg: float) -> None:

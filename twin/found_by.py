@@ -74,12 +74,13 @@ def order_of(values: Mapping[str, Any]) -> tuple[float, ...]:
 class FindMarks(Protocol):
     """Finds the single readings that an effect of the footprint "sequence" has touched.
 
-    From readings and residual [rad] (n,), the RMS of the noise [rad], the step of the output's grid [rad] (0: none) and
-    the motion to a mask (n,) of the touched readings and the log probability that chance alone marks as many.
+    From readings and residual [rad] (n,), the RMS of the noise [rad], of each reading (n,) where some are louder than
+    others, the step of the output's grid [rad] (0: none) and the motion to a mask (n,) of the touched readings and the
+    log probability that chance alone marks as many.
     """
 
     def __call__(
-        self, measured: Array, residual: Array, noise: float, step: float, motion: Motion
+        self, measured: Array, residual: Array, noise: Array | float, step: float, motion: Motion
     ) -> tuple[BoolArray, float]: ...
 
 
@@ -106,7 +107,7 @@ class Marks:
     rows_listed: bool = False
 
     def __call__(
-        self, measured: Array, residual: Array, noise: float, step: float, motion: Motion
+        self, measured: Array, residual: Array, noise: Array | float, step: float, motion: Motion
     ) -> tuple[BoolArray, float]:
         """The touched rows (n,) and the log probability of as many by chance: see :class:`FindMarks`."""
         return self.find(measured, residual, noise, step, motion)

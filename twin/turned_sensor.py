@@ -19,8 +19,8 @@ LARGEST_TURN_DEG = 360.0
 def with_sensor_turned(chain: Chain, motion: Motion, turned_deg: float) -> tuple[Chain, Motion]:
     """The same device on the same motion, with its sensor turned about the shaft, with the angles that it counts.
 
-    Where the sensor sits, its tilt and all errors of its channels turn with it; reference, coupling and a stray field
-    stay where they are.
+    Where the sensor sits, its tilt and all errors of its channels turn with it; reference, coupling, a stray field
+    and the motor stay where they are.
 
     Parameters
     ----------

@@ -82,6 +82,27 @@ _MECHANISMS: tuple[Mutation, ...] = (
         ),
     ),
     Mutation(
+        "motor_field.turns_with_the_sensor",
+        "twin/magnet/motor_field.py",
+        "add(signal, *along_axes(bx, by, motion))",
+        "add(signal, bx, by)",
+        ("tests/twin/test_each_recording.py::test_a_motor_that_stays_where_it_is_is_seen_from_another_side",),
+    ),
+    Mutation(
+        "sequence.loud_rows_repeat_frames",
+        "diagnosis/discovery/marks/sequence.py",
+        "    scale = fit.observations.scale[fit.observations.group]\n",
+        "    scale = np.ones(fit.observations.group.size)\n",
+        (f"{_TESTS}/stages/test_repeated_frames.py::test_loud_noise_may_cancel_the_movement",),
+    ),
+    Mutation(
+        "radius_nuisance.masked_rows_keep_the_scale",
+        "diagnosis/discovery/fitting/radius_nuisance.py",
+        "np.linalg.pinv(factors.T) @ everywhere",
+        "np.linalg.pinv(factors.T) @ (everywhere * observations.usable)",
+        (f"{_TESTS}/stages/test_row_masks.py::test_a_row_that_is_in_its_place_comes_back",),
+    ),
+    Mutation(
         "spread.speed_is_an_angle",
         "twin/found_by.py",
         "isinstance(spread, OverSpeed)",

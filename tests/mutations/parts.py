@@ -43,6 +43,12 @@ PARTS: tuple[Mutation, ...] = (
             "stages/test_row_masks.py::test_channels_that_fall_out_are_masked",
         ),
         (
+            "row_masks.loud_rows_stand_alone",
+            "fit.residual[0] / scale",
+            "fit.residual[0]",
+            "stages/test_row_masks.py::test_a_loud_row_stands_alone_among_rows_as_loud",
+        ),
+        (
             "row_masks.claimed_rows_come_back",
             " & ~rows_of(fit.observations, also)",
             "",
@@ -116,9 +122,33 @@ PARTS: tuple[Mutation, ...] = (
         ),
         (
             "spread.judged_behind_the_scale",
-            "(fit.observations.scale / fit.observations.level)",
-            "1.0",
+            "    loud = fit.observations.scale / fit.observations.level\n",
+            "    loud = 1.0\n",
             "marks/test_spread.py::test_what_the_rows_scale_has_taken_out_is_put_back",
+        ),
+        (
+            "spread.six_times_the_mean_is_far_out",
+            "near = np.minimum(square, _FARTHEST * profile * float(np.mean(near / profile)))",
+            "pass",
+            "marks/test_spread.py::test_few_readings_at_the_highest_speed_tell_it_in_full",
+        ),
+        (
+            "spread.a_filter_shares_nothing",
+            " * both.inflation(float(np.mean(weights**2)) / white**2)",
+            "",
+            "marks/test_spread.py::test_beside_coloured_noise_an_uncertain_instant_is_as_large_as_it_is",
+        ),
+        (
+            "spread.the_fit_takes_nothing",
+            "(left + taken)",
+            "(left)",
+            "marks/test_spread.py::test_what_the_fit_has_taken_of_a_row_is_put_back",
+        ),
+        (
+            "spread.white_noise_passes_a_filter_unchanged",
+            "white = float(np.mean(weights))",
+            "white = 1.0",
+            "marks/test_spread.py::test_beside_coloured_noise_an_uncertain_instant_is_as_large_as_it_is",
         ),
     ),
     *of_one_file(

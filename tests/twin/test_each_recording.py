@@ -51,6 +51,15 @@ def test_a_stray_field_stays_where_it_is_when_the_sensor_is_turned() -> None:
     assert np.allclose(added[:, len(PART) :].T, np.array([0.0, -1.0]) * added[0, 0] * 2.0, rtol=0.6, atol=1e-12)
 
 
+def test_a_motor_that_stays_where_it_is_is_seen_from_another_side() -> None:
+    """Two amperes of half a millitesla each are the stray field of one millitesla, in both mountings."""
+    current = replace(BOTH, current_a=np.full(len(BOTH), 2.0))
+    motor = over_both("motor_field").with_effect("motor_field", bx_mT_per_A=0.5, by_mT_per_A=0.2)
+    stray = over_both("stray_field").with_effect("stray_field", bx_mT=1.0, by_mT=0.4)
+    assert np.allclose(motor.channels(current), stray.channels(current), atol=1e-12)
+    assert np.ptp(stray.channels(current) - over_both("").channels(current)) > 0.01
+
+
 def test_what_acts_in_one_recording_leaves_the_others_alone() -> None:
     slip = in_one(find("zero"), 1)
     assert (slip.name, acts_in(slip.name), everywhere(slip.name)) == ("zero@2", 1, "zero")

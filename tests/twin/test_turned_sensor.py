@@ -1,7 +1,9 @@
-"""A sensor turned about the shaft: its own errors turn with it, those of reference, coupling and stray field do not."""
+"""A sensor turned about the shaft: its own errors turn with it, those of reference, coupling, stray field and motor
+do not."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -56,6 +58,16 @@ def test_a_stray_field_stays(described: bool) -> None:
     before, after = errors(chain, MOTION), errors(turned, motion)
     np.testing.assert_allclose(after - np.mean(after), before - np.mean(before), atol=1e-6)
     assert np.ptp(before) == pytest.approx(0.4 / assembly.nominal_mT, rel=0.01)
+
+
+def test_a_motor_stays() -> None:
+    """As a stray field of as many millitesla does."""
+    running = replace(MOTION, current_a=np.full(len(MOTION), 2.0))
+    chain = Chain().with_effect("motor_field", bx_mT_per_A=0.1)
+    turned, motion = with_sensor_turned(chain, running, TURN_DEG)
+    before, after = errors(chain, running), errors(turned, motion)
+    np.testing.assert_allclose(after - np.mean(after), before - np.mean(before), atol=1e-5)
+    assert np.ptp(before) == pytest.approx(0.4 / 50.0, rel=0.01)
 
 
 def test_a_turn_out_of_range_is_refused() -> None:

@@ -28,14 +28,16 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return out
 
 
-def marks(measured: Array, residual: Array, noise: float, step: float, motion: Motion) -> tuple[BoolArray, float]:
+def marks(
+    measured: Array, residual: Array, noise: Array | float, step: float, motion: Motion
+) -> tuple[BoolArray, float]:
     """Rows whose residual stands far out of the noise and is 360/2^k deg within the noise.
 
     Chance: an outlier of any size lands as near to some 360/2^k with the probability of the share of the logarithmic
     axis that is as near (no nearer than half the noise counts). Those of all rows together: Fisher's method.
     """
     size = np.abs(residual)
-    sigma = max(noise, step / np.sqrt(12.0), 1e-9)
+    sigma = np.broadcast_to(np.maximum(noise, max(step / np.sqrt(12.0), 1e-9)), size.shape)
     far = size > 7.0 * sigma
     power = np.round(np.log2(TAU / np.maximum(size, 1e-12)))
     away = np.abs(size - TAU / 2.0**power)
@@ -43,7 +45,7 @@ def marks(measured: Array, residual: Array, noise: float, step: float, motion: M
     if not mask.any() or np.count_nonzero(mask) > 0.05 * mask.size:
         # So many are no rare event, whatever their size.
         return np.zeros_like(mask), 0.0
-    width = np.minimum(2.0 * np.maximum(away[mask], 0.5 * sigma) / size[mask] / np.log(2.0), 1.0)
+    width = np.minimum(2.0 * np.maximum(away[mask], 0.5 * sigma[mask]) / size[mask] / np.log(2.0), 1.0)
     # An outlier that is no power of two speaks as much against bit flips as one that is speaks for them.
     others = int(np.count_nonzero(far & ~mask))
     return mask, min(_together(float(-np.sum(np.log(width))), width.size) + 3.0 * others, 0.0)

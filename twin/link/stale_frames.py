@@ -21,7 +21,9 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return np.take_along_axis(signal, np.maximum.accumulate(source, axis=-1), axis=-1)
 
 
-def marks(measured: Array, residual: Array, noise: float, step: float, motion: Motion) -> tuple[BoolArray, float]:
+def marks(
+    measured: Array, residual: Array, noise: Array | float, step: float, motion: Motion
+) -> tuple[BoolArray, float]:
     """Rows that repeat the reading before bit for bit while the shaft moved on by more than grid and noise allow.
 
     A repeat by chance needs the noise to cancel the movement: with a movement of ``move`` and a difference of two
@@ -33,7 +35,7 @@ def marks(measured: Array, residual: Array, noise: float, step: float, motion: M
     on = (np.diff(motion.direction) == 0) & (np.diff(motion.turn) == 0)
     move = np.concatenate([[0.0], np.where(on, np.abs(np.diff(motion.shaft_rad)), 0.0)])
     grid = max(step, 1e-6)
-    sigma = np.sqrt(2.0) * max(noise, 0.3 * grid)
+    sigma = np.sqrt(2.0) * np.maximum(noise, 0.3 * grid)
     mask = repeat & (move > 1.5 * grid) & (move > 4.0 * sigma) & (np.abs(residual) > 0.5 * move)
     chance = grid / sigma * np.exp(-0.5 * (np.maximum(move - grid, 0.0) / sigma) ** 2)
     expected = float(np.sum(np.minimum(chance[(move > 1.5 * grid) & (move > 4.0 * sigma)], 1.0)))

@@ -9,13 +9,14 @@ import numpy as np
 from twin.angles import Array
 from twin.effect import Effect, Param, Parameters
 from twin.hall.offset import add
-from twin.magnet.stray_field import FIELD_MT, OWN_FIELD, beside
+from twin.magnet.stray_field import FIELD_MT, OWN_FIELD, along_axes, beside
 from twin.motion import Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     share = motion.current_a / np.asarray(values.get("field_mT", FIELD_MT))
-    return add(signal, np.asarray(values["bx_mT_per_A"]) * share, np.asarray(values["by_mT_per_A"]) * share)
+    bx, by = np.asarray(values["bx_mT_per_A"]) * share, np.asarray(values["by_mT_per_A"]) * share
+    return add(signal, *along_axes(bx, by, motion))
 
 
 def at_magnet(assembly: Any) -> Effect:

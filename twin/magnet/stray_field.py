@@ -30,12 +30,16 @@ OWN_FIELD = Param(
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     scale = 1.0 / values.get("field_mT", FIELD_MT)
-    bx, by = values["bx_mT"] * scale, values["by_mT"] * scale
-    if motion.recordings is not None:
-        # A sensor that was turned sees a field that stays turn back.
-        c, s = np.cos(motion.recordings.turned_rad), np.sin(motion.recordings.turned_rad)
-        bx, by = c * bx + s * by, c * by - s * bx
-    return add(signal, bx, by)
+    return add(signal, *along_axes(values["bx_mT"] * scale, values["by_mT"] * scale, motion))
+
+
+def along_axes(bx: Array | float, by: Array | float, motion: Motion) -> tuple[Array | float, Array | float]:
+    """A field fixed in the stator along the sensor's axes, given along those of the first recording."""
+    if motion.recordings is None:
+        return bx, by
+    # A sensor that was turned sees a field that stays turn back.
+    c, s = np.cos(motion.recordings.turned_rad), np.sin(motion.recordings.turned_rad)
+    return c * bx + s * by, c * by - s * bx
 
 
 def beside(effect: Effect, assembly: Any) -> Effect:

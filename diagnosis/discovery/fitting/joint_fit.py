@@ -14,6 +14,7 @@ from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import NoiseFamily
 from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.fitting.projection import projected
+from diagnosis.discovery.fitting.radius_nuisance import without_nuisance
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
 from twin.baseline import FACTORS
@@ -21,7 +22,6 @@ from twin.catalogue import find
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.mechanics.zero import ZERO
-from twin.motion import NOMINAL_C
 from twin.param import Param
 
 
@@ -196,20 +196,14 @@ def evaluate(
     linear = Linear(chain, observations.motion, blur=weighting.blur, observables=observables, slopes=weighting.slopes)
     residual = np.empty((observations.observables, len(observations)))
     residual[0] = wrap(observations.measured - linear.angle)
-    nuisance: list[Array] = []
     if observations.log_radius is not None:
         residual[1] = observations.log_radius - linear.log_radius
-        nuisance = radius_nuisance(observations)
     jacobian = np.empty((len(free), observations.observables, len(observations)))
     for key in dict.fromkeys(f.key for f in free):
         own = [place for place, f in enumerate(free) if f.key == key]
         moved = [(free[place].name, free[place].turn) for place in own]
         jacobian[own] = linear.derivatives(key, find(key, chain.effects), moved)
-    if nuisance:
-        # The channels' common scale and its drift with temperature tell nothing about an angle: projected out.
-        basis = np.linalg.qr(np.stack(nuisance).T)[0].T
-        residual[1] -= (residual[1] @ basis.T) @ basis
-        jacobian[:, 1] -= (jacobian[:, 1] @ basis.T) @ basis
+    residual, jacobian = without_nuisance(observations, residual), without_nuisance(observations, jacobian)
     fit = Fit(
         chain=chain,
         free=free,
@@ -223,17 +217,6 @@ def evaluate(
         strengths=np.zeros(len(free)) if strengths is None else strengths,
     )
     return fit if strengths is not None else replace(fit, strengths=_prior_strengths(fit))
-
-
-def radius_nuisance(observations: Observations) -> list[Array]:
-    """What the radius may do for reasons of its own: a scale, and a quadratic in temperature. Masked rows are zero."""
-    usable = observations.usable.astype(np.float64)
-    recordings = observations.motion.recordings
-    columns = [usable] if recordings is None else [usable * (recordings.number == k) for k in range(len(recordings))]
-    if "two temperatures" in observations.motion.provides:
-        warm = (observations.motion.temperature_c - NOMINAL_C) / 50.0
-        columns += [usable * warm, usable * warm**2]
-    return columns
 
 
 def _prior_strengths(fit: Fit) -> Array:

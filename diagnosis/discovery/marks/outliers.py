@@ -51,11 +51,12 @@ def far_out(residual: Array, settings: DiscoverySettings) -> float:
     return far * max(local_rms(residual), 1e-9)
 
 
-def spikes(residual: Array, motion: Motion, step: float, settings: DiscoverySettings) -> BoolArray:
+def spikes(residual: Array, motion: Motion, step: Array | float, settings: DiscoverySettings) -> BoolArray:
     """Rows (n,) that stand alone, far out of their neighbours.
 
-    Readings on a grid of ``step`` [rad] jump by a whole step where noise moves them by much less.
-    Five or more neighbours off together are structure, not spikes; so is what comes again at the same angle.
+    Readings on a grid of ``step``, which is in the unit of the residual, for all or each of the rows (n,), jump by a
+    whole step where noise moves them by much less. Five or more neighbours off together are structure, not spikes; so
+    is what comes again at the same angle.
     """
     away = local_residual(residual)
     mask = np.abs(away) > far_out(residual, settings) + step

@@ -26,7 +26,9 @@ def mask_spikes(fit: Fit, step: float, also: BoolArray) -> Fit:
     """
     settings, motion = fit.settings, fit.observations.motion
     for _ in range(_PASSES):
-        mask = spikes(fit.residual[0] / fit.observations.level, motion, max(step, coarsest_stair(fit.chain)), settings)
+        # Where the noise is louder a reading has to be farther out.
+        scale, grid = fit.observations.scale, max(step, coarsest_stair(fit.chain))
+        mask = spikes(fit.residual[0] / scale, motion, grid / scale, settings)
         mask |= gross_of_few(fit)
         usable = ~mask & fit.observations.sure & ~rows_of(fit.observations, also)
         if fit.observations.observables == 2:

@@ -25,7 +25,11 @@ def touched_rows(
     residual = np.where(spoken_for, 0.0, raw_residual(fit, sweep))
     # What a CORDIC's uneven stairs leave stands out of the noise too.
     stairs = coarsest_stair(fit.chain) / np.sqrt(12.0)
-    sigma = max(local_rms(residual), stairs)
+    scale = fit.observations.scale[fit.observations.group]
+    # Where the noise is louder a reading has to do more to be no noise.
+    sigma = (
+        np.maximum(local_rms(residual / scale) * scale, stairs) if np.ptp(scale) else max(local_rms(residual), stairs)
+    )
     mask, log_p = effect.marks(np.radians(sweep.measured_deg), residual, sigma, step, sweep.motion())
     if log_p > fit.settings.effect_log_p(family) or not mask.any():
         return None

@@ -11,12 +11,14 @@ from diagnosis.discovery.fitting.coefficients import to_rows
 from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
 from diagnosis.discovery.fitting.noise.rounding import stairs_rule
 from diagnosis.discovery.fitting.observations import Observations
+from diagnosis.discovery.marks.two_variances import TwoVariances
 from twin.angles import Array
 from twin.effect import BoolArray, Effect
 from twin.empirical.spread import UNNAMED_BURST
 from twin.found_by import added_variance
 
-_T95 = 1.959964
+_FARTHEST = 36.0
+"""Squares, in variances, beyond which a reading counts as one at six sigma: what is no noise does not tell its size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +38,28 @@ def white_rows(fit: Fit) -> Array:
 
     What the rows' scale has taken out of them is put back: this is what the spread is judged on.
     """
-    root = root_weights(fit.weighting, fit.observations.observables)[0]
-    rows = to_rows(fit.observations, fit.cosine_residual[0] * root) * (fit.observations.scale / fit.observations.level)
+    rows = _whitened(fit, fit.cosine_residual[0])
     sigma = float(np.sqrt(np.mean(rows[fit.observations.usable] ** 2)))
     return np.where(fit.observations.usable, rows / max(sigma, 1e-300), 0.0)
+
+
+def _whitened(fit: Fit, coefficients: Array) -> Array:
+    """Cosine coefficients (..., n) [rad] of angles over the rows, whitened, each as loud as in its recording."""
+    root = root_weights(fit.weighting, fit.observations.observables)[0]
+    loud = fit.observations.scale / fit.observations.level
+    return np.asarray(to_rows(fit.observations, coefficients * root) * loud)
+
+
+def squares(fit: Fit) -> Array:
+    """Squares [rad^2] of the whitened rows in use, with what the fit has taken out of each of them.
+
+    Of uneven rows it follows the quiet ones, which it takes more of.
+    """
+    covariance = fit.covariance()
+    slopes = _whitened(fit, fit.cosine_jacobian[:, 0])
+    taken = np.sum(slopes * (np.where(np.isfinite(covariance), covariance, 0.0) @ slopes), axis=0)
+    left = _whitened(fit, fit.cosine_residual[0]) ** 2
+    return np.asarray((left + taken)[fit.observations.usable])
 
 
 def _scatter_tells(fit: Fit) -> bool:
@@ -53,9 +73,8 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
     """Which declared shapes of the variance gain over constant variance, each at its best strength."""
     if not _scatter_tells(fit):
         return []
-    use = fit.observations.usable
-    square = np.clip(white_rows(fit)[use] ** 2, 0.0, 36.0)
-    expected = _expected_variance(fit, square)
+    square = squares(fit)
+    expected = _expected_variance(fit, np.minimum(square, _FARTHEST * np.mean(square)))
     found = [_spread_shape(fit, effect, square, expected) for effect in effects if effect.spread is not None]
     return [finding for finding in found if finding is not None]
 
@@ -66,23 +85,33 @@ def _spread_shape(fit: Fit, effect: Effect, square: Array, expected: Array) -> S
     use, angle, motion = fit.observations.usable, fit.linear.sensor_angle, fit.observations.motion
     name = effect.roles("random")[0]
     typical = effect.params[name].typical
-    shape = added_variance(effect.spread, angle, motion, {name: typical})[use]
-    if np.ptp(shape) <= 1e-3 * np.mean(shape):
+    # A row that averages several readings has a share of what each of them has.
+    readings = np.bincount(fit.observations.group) * fit.observations.level**2
+    every = added_variance(effect.spread, angle, motion, {name: typical}) / readings
+    unit = float(np.mean(every[use]))
+    if np.ptp(every[use]) <= 1e-3 * unit:
         return None
-    gain, ratio = _variance_gain(square, shape / np.mean(shape), expected)
+    shape = every[use] / unit
+    near = np.minimum(square, _FARTHEST * expected * np.mean(square))
+    gain, ratio = _variance_gain(near, shape, expected)
+    if ratio > 0.0:
+        # How far out a reading is, its own variance says: where few rows are loud, theirs is far above the mean.
+        profile = expected + ratio * shape
+        near = np.minimum(square, _FARTHEST * profile * float(np.mean(near / profile)))
+        gain, ratio = _variance_gain(near, shape, expected)
     if ratio <= 0.0:
         return None
-    (base, added), deviation = _variances(square, expected, shape / np.mean(shape), ratio)
-    # The fit has taken its share out of the mean square.
-    sigma2 = float(np.mean(fit.residual[0][use] ** 2))
-    unit = sigma2 * fit.rows / max(fit.rows - len(fit.free), 1) / float(np.mean(shape))
+    both = TwoVariances(near, expected, shape).fitted(ratio)
+    tails = _inflation(near / both.variance)
+    # Whitening makes what is white already larger, by the mean of its weights, and a reading of it several.
+    weights = fit.weighting.family.weights[fit.weighting.member]
+    white = float(np.mean(weights))
+    inflation = tails * both.inflation(float(np.mean(weights**2)) / white**2)
     low, value, high = (
-        typical * float(np.sqrt(max(v, 0.0) * unit))
-        for v in (added - _T95 * deviation, added, added + _T95 * deviation)
+        typical * float(np.sqrt(part / white / unit)) for part in np.insert(both.interval(inflation), 1, both.added)
     )
-    full = added_variance(effect.spread, angle, motion, {name: value}) + sigma2 * base
-    log_p = _half_chi_square(gain / _inflation(square / full[use]))
-    return SpreadFinding(effect.name, {name: value}, gain, log_p, full, {name: (low, high)})
+    full = every * (value / typical) ** 2 + both.base
+    return SpreadFinding(effect.name, {name: value}, gain, _half_chi_square(gain / tails), full, {name: (low, high)})
 
 
 def _expected_variance(fit: Fit, square: Array) -> Array:
@@ -114,24 +143,6 @@ def _variance_gain(square: Array, shape: Array, expected: Array) -> tuple[float,
     return float(gains[best]), float(ratios[best])
 
 
-def _variances(square: Array, expected: Array, shape: Array, ratio: float) -> tuple[tuple[float, float], float]:
-    """Maximum likelihood of variance ``base expected + added shape`` from a first ratio: (base, added), sd of added.
-
-    Both are free: where the shape is all there is, what it adds is known as well as the variance itself, no better.
-    """
-    parts = np.stack([expected, shape])
-    found: Array = np.array([1.0, ratio]) * float(np.mean(square / (expected + ratio * shape)))
-    inverse: Array = np.eye(2)
-    for _ in range(4):
-        variance = found @ parts
-        relative = parts / variance
-        # Fisher scoring: the information of a square about its variance is half of one over the variance squared.
-        inverse = np.asarray(np.linalg.inv(0.5 * relative @ relative.T), dtype=np.float64)
-        step = inverse @ (0.5 * relative @ (square / variance - 1.0))
-        found = np.asarray(np.maximum(found + step, 0.1 * found), dtype=np.float64)
-    return (float(found[0]), float(found[1])), float(np.sqrt(inverse[1, 1]))
-
-
 def _inflation(square: Array) -> float:
     """By how much likelihood ratios of a variance are too large, from squares (n,) over their expected variance.
 
@@ -154,7 +165,7 @@ def bursts(fit: Fit) -> SpreadFinding | None:
     if not _scatter_tells(fit):
         return None
     use = fit.observations.usable
-    stretch = _loudest_stretch(np.where(use, np.clip(white_rows(fit) ** 2, 0.0, 36.0), 0.0), use)
+    stretch = _loudest_stretch(np.where(use, np.minimum(white_rows(fit) ** 2, _FARTHEST), 0.0), use)
     if stretch is None or stretch.ratio < fit.settings.burst_ratio:
         return None
     sigma = float(np.sqrt(np.mean(fit.residual[0][use] ** 2)))
@@ -166,7 +177,7 @@ def bursts(fit: Fit) -> SpreadFinding | None:
         "last_row": float(stretch.last),
         "rms_deg": float(np.degrees(base * np.sqrt(stretch.ratio - 1.0))),
     }
-    square = np.clip(white_rows(fit)[use] ** 2, 0.0, 36.0)
+    square = np.minimum(white_rows(fit)[use] ** 2, _FARTHEST)
     log_p = _half_chi_square(stretch.gain / _inflation(square / share[use])) + float(np.log(max(stretch.looks, 1)))
     return SpreadFinding(UNNAMED_BURST.name, values, stretch.gain, log_p, base**2 * share, {})
 

@@ -15,9 +15,9 @@ import numpy as np
 
 from diagnosis.discovery.fitting.coefficients import observables_to_cosine, to_rows
 from diagnosis.discovery.fitting.f_test import log_probability
-from diagnosis.discovery.fitting.joint_fit import Fit, radius_nuisance, root_weights
+from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
 from diagnosis.discovery.fitting.linearised_chain import Term
-from diagnosis.discovery.fitting.observations import Observations
+from diagnosis.discovery.fitting.radius_nuisance import without_nuisance
 from diagnosis.discovery.search.periodogram import line_shapes
 from twin.angles import Array, IntArray
 from twin.effect import BoolArray, Effect
@@ -222,21 +222,11 @@ def gains_of(base: Base, effect: Effect, shapes: Sequence[Mapping[str, float]]) 
     return np.concatenate(gains, axis=1), np.concatenate(coefficients, axis=1)
 
 
-def project_radius(observations: Observations, columns: Array) -> Array:
-    """Columns (..., O, n) with the radius' nuisances taken out, as the fit's Jacobian has them."""
-    if observations.observables == 1:
-        return columns
-    basis = np.linalg.qr(np.stack(radius_nuisance(observations)).T)[0].T
-    columns = np.array(columns)
-    columns[..., 1, :] -= (columns[..., 1, :] @ basis.T) @ basis
-    return columns
-
-
 def _gains_of_columns(base: Base, effect: Effect, columns: Array) -> tuple[Array, Array]:
     fit = base.fit
     count, terms = columns.shape[:2]
     batch = len(base.likelihood)
-    cosine = observables_to_cosine(fit.observations, project_radius(fit.observations, columns))
+    cosine = observables_to_cosine(fit.observations, without_nuisance(fit.observations, columns))
     best_gain = np.full((batch, count), -np.inf)
     best_coefficient = np.zeros((batch, count, terms))
     top = base.likelihood.max(axis=1)

@@ -17,11 +17,10 @@ def variance(state: State) -> State:
     if state.looked_at or several:
         # What common factors leave in one of several recordings is loud, and is what tells the causes from each other.
         return state
-    fit, limit = state.fit, state.settings.beyond_doubt_log_p
-    burst = bursts(fit)
-    if burst is not None and burst.log_p < limit:
-        return state.with_(scaled(fit, burst.variance))
-    uneven = [shape for shape in spread_shapes(fit, state.effects) if shape.log_p < limit]
-    if not uneven:
+    fit = state.fit
+    shapes, burst = spread_shapes(fit, state.effects), bursts(fit)
+    # A shape by the speed is louder in one stretch too, where the shaft was fastest.
+    louder = min([*shapes, *([burst] if burst is not None else [])], key=lambda one: one.log_p, default=None)
+    if louder is None or louder.log_p >= state.settings.beyond_doubt_log_p:
         return state
-    return state.with_(scaled(fit, min(uneven, key=lambda shape: shape.log_p).variance))
+    return state.with_(scaled(fit, louder.variance))

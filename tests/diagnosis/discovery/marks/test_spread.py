@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,13 +11,16 @@ from scipy.stats import binom
 
 from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.marks.row_masks import scaled
-from diagnosis.discovery.marks.spread import bursts, row_scale, spread_shapes, white_rows
+from diagnosis.discovery.marks.spread import bursts, row_scale, spread_shapes, squares, white_rows
+from diagnosis.discovery.marks.two_variances import TwoVariances
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.variance import variance
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.spreads import Loud, handed
 from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
+from twin.adc.reference_jitter import spread as jitter_variance
 from twin.catalogue import find
+from twin.noise.description import Noise
 
 JITTER = find("reference_jitter")
 DRAWS = 200
@@ -129,6 +133,70 @@ def test_an_uncertain_instant_scatters_by_the_speed() -> None:
     (slow,) = {float(one) for one in np.round(found.variance[np.abs(speed) < 10.0], 12)}
     (fast,) = {float(one) for one in np.round(found.variance[np.abs(speed) > 10.0], 12)}
     assert fast > 4.0 * slow
+
+
+def test_few_readings_at_the_highest_speed_tell_it_in_full() -> None:
+    """One in fifteen is fifty times as loud: beyond six times the RMS of all, yet no farther out than noise goes."""
+    state = before(variance, Made(points=120, turns=2, bits=30, rpm=(30.0,) * 14 + (3000.0,)))
+    speed = state.fit.observations.motion.speed_rad_s
+    residual = noise(speed.size, 1.0) * (0.02 + np.degrees(50e-6 * np.abs(speed)))
+    (found,) = spread_shapes(with_residual(state, residual).fit, [find("time_jitter")])
+    assert found.values["rms_us"] == pytest.approx(50.0, rel=0.1)
+
+
+def test_beside_coloured_noise_an_uncertain_instant_is_as_large_as_it_is() -> None:
+    """It is white where the noise is not: what makes the noise white makes it larger, and shares it among readings."""
+    state = before(variance, Made(points=90, turns=3, bits=30, rpm=(60.0, 600.0)))
+    speed = state.fit.observations.motion.speed_rad_s
+    rng, found = np.random.default_rng(5), []
+    for _ in range(DRAWS):
+        unit, slow = np.radians(0.02) * rng.standard_normal(speed.size), np.zeros(speed.size)
+        for row in range(speed.size):
+            slow[row] = 0.75 * slow[row - 1] + 0.66 * unit[row]
+        residual = slow + 12e-6 * speed * rng.standard_normal(speed.size)
+        fit = with_residual(state, residual).fit
+        coloured = replace(fit.weighting, member=3)
+        (one,) = spread_shapes(evaluate(fit.chain, fit.free, fit.observations, coloured), [find("time_jitter")])
+        found.append((one.values["rms_us"], *one.intervals["rms_us"]))
+    value, low, high = np.array(found).T
+    assert fit.weighting.family.members[3] == Noise(correlation=0.75)
+    # The mean of so many draws is known to a tenth of their scatter, and that to a twentieth.
+    assert np.mean(value) == pytest.approx(12.0, abs=0.3 * np.std(value))
+    assert np.mean(high - low) / (2.0 * 1.96) == pytest.approx(np.std(value), rel=0.12)
+
+
+def test_what_the_fit_has_taken_of_a_row_is_put_back() -> None:
+    """Of 24 quiet rows beside as many loud ones it takes a quarter, of the loud ones next to nothing."""
+    state = before(variance, Made(points=24, bits=30, rpm=(60.0, 600.0)))
+    loud = np.where(np.arange(48) < 24, 1.0, 25.0)
+    rng, left = np.random.default_rng(6), np.zeros((DRAWS, 48))
+    for draw in left:
+        unlike = with_residual(state, np.radians(0.02) * np.sqrt(loud) * rng.standard_normal(48))
+        draw += squares(scaled(unlike.fit, loud)) / (np.radians(0.02) ** 2 * loud)
+    assert np.mean(left[:, :24]) == pytest.approx(1.0, abs=0.06)
+    assert np.mean(left[:, 24:]) == pytest.approx(1.0, abs=0.06)
+
+
+def test_intervals_of_few_loud_readings_hold_the_truth() -> None:
+    """Of twelve loud readings among two hundred, 95 %: a parabola's would hold it in 88 %, and reach below none."""
+    rng, shape = np.random.default_rng(9), np.where(np.arange(200) < 12, 200.0 / 12.0, 0.0)
+    held = 0
+    for _ in range(DRAWS):
+        square = (1.0 + shape) * rng.standard_normal(200) ** 2
+        both = TwoVariances(square, np.ones(200), shape).fitted(1.0)
+        low, high = both.interval(1.0)
+        held += low < 1.0 < high
+    assert binom.ppf(0.005, DRAWS, 0.95) <= held <= binom.ppf(0.995, DRAWS, 0.95)
+
+
+def test_what_several_readings_make_together_is_told_of_a_single_one() -> None:
+    """Four readings at each angle, of 0.4 % each."""
+    fit = before(variance, Made(points=180, turns=2, bits=30, repeats=4)).fit
+    jitter = np.sqrt(jitter_variance(fit.linear.sensor_angle, {"percent_rms": 0.4}) / 4.0) * noise(360, 1.0, seed=4)
+    measured = fit.linear.angle + noise(360, 0.01) + jitter / np.radians(1.0)
+    unlike = evaluate(fit.chain, fit.free, replace(fit.observations, measured=measured), fit.weighting)
+    (found,) = spread_shapes(unlike, [JITTER])
+    assert found.values["percent_rms"] == pytest.approx(0.4, rel=0.1)
 
 
 def test_at_one_speed_there_is_no_shape_of_it() -> None:

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from diagnosis.discovery.finding import Finding
-from diagnosis.discovery.marks.row_masks import without_rows
+from diagnosis.discovery.marks.row_masks import scaled, without_rows
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.repeated_frames import repeated_frames
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.claims import claiming, with_effects
-from tests.diagnosis.discovery.sweeps import Made, before, planted_of
+from tests.diagnosis.discovery.sweeps import Made, before, noise, planted_of, with_residual
 from twin.link.stale_frames import STALE_FRAMES
 from twin.motion import Motion
 
@@ -67,6 +67,19 @@ def test_a_repeat_that_the_expected_reading_repeats_is_none() -> None:
     touched, log_p = STALE_FRAMES.marks(measured, noise, np.radians(0.02), 0.0, motion)
     assert not touched.any()
     assert log_p == 0.0
+
+
+def test_loud_noise_may_cancel_the_movement() -> None:
+    """Two readings alike, two degrees apart: among readings of 1 deg by chance, among those of 0.02 deg hardly ever."""
+    state = before(repeated_frames, CLEAN)
+    angle = state.fit.linear.angle
+    loud = np.where(np.arange(angle.size) < 60, 50.0, 1.0)
+    residual = loud * noise(angle.size)
+    residual[50] = residual[49] + angle[49] - angle[50]
+    alike = with_residual(state, residual)
+    assert repeated_frames(alike) is not alike
+    weighed = alike.with_(scaled(alike.fit, loud**2))
+    assert repeated_frames(weighed) is weighed
 
 
 def test_without_them_the_fit_is_that_of_the_other_readings() -> None:

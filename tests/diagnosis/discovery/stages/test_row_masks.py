@@ -14,6 +14,7 @@ import pytest
 
 from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.marks.outliers import local_rms, robust_rms
+from diagnosis.discovery.marks.row_masks import scaled
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
@@ -86,6 +87,20 @@ def test_which_rows_are_masked(case: Case) -> None:
     assert tuple(np.flatnonzero(~state.fit.observations.usable)) == case.masked
 
 
+def test_a_loud_row_stands_alone_among_rows_as_loud() -> None:
+    """A twelfth of the rows is ten times as loud as the others: by their scatter many of them would be far out."""
+    state = before(row_masks, FINE)
+    loud = np.where(np.arange(len(state.sweep)) < 15, 10.0, 1.0)
+    residual = loud * noise(loud.size)
+    residual[5] = 60.0 * local_rms(noise(loud.size))
+    plain = with_residual(state, residual)
+    weighed = plain.with_(scaled(plain.fit, loud**2))
+    assert np.count_nonzero(~row_masks(plain).fit.observations.usable) > 1
+    assert row_masks(weighed).fit.observations.usable.all()
+    far = with_residual(weighed, np.where(np.arange(loud.size) == 5, 2.0 * residual, residual))
+    assert tuple(np.flatnonzero(~row_masks(far).fit.observations.usable)) == (5,)
+
+
 @pytest.mark.parametrize("steepest", [0.5, 2.0, 4.0])
 def test_structure_that_rises_by_more_than_the_noise_masks_no_row(steepest: float) -> None:
     """A row between two neighbours is their median, however loud it is; of 180 rows none lies beyond seven sigma."""
@@ -145,3 +160,12 @@ def test_what_most_readings_do_is_no_falling_out() -> None:
     turn = np.radians(recorded().sweep.reference_deg)
     state = row_masks(with_radius(recorded(), 3.0 * np.cos(2.0 * turn)))
     assert np.mean(state.fit.observations.usable) > 0.9
+
+
+def test_a_row_that_is_in_its_place_comes_back() -> None:
+    """Its radius is held against the common scale of the others, here volts of half the amplitude."""
+    in_volts = with_radius(recorded(), np.full(len(recorded().sweep), np.log(0.5)))
+    out = np.arange(len(in_volts.sweep)) == 40
+    fit = in_volts.fit
+    masked = evaluate(fit.chain, fit.free, fit.observations.masked(~out), fit.weighting)
+    assert row_masks(in_volts.with_(masked)).fit.observations.usable.all()

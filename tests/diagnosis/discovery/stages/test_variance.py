@@ -72,6 +72,16 @@ def test_the_rows_weigh_by_the_shape_where_that_stands_out_more() -> None:
     assert np.max(np.abs(np.log(after.fit.observations.scale / expected))) < 0.3
 
 
+def test_a_loud_speed_is_a_shape_and_no_stretch() -> None:
+    """The readings at each of three speeds weigh alike, where a stretch would end short of the turn's last ones."""
+    state = before(variance, Made(points=120, turns=2, bits=30, rpm=(60.0, 300.0, 1500.0)))
+    speed = np.abs(state.fit.observations.motion.speed_rad_s)
+    residual = noise(speed.size, 0.02) + 15e-6 * speed * noise(speed.size, 1.0, seed=4) / np.radians(1.0)
+    scale = variance(with_residual(state, residual)).fit.observations.scale
+    assert [np.ptp(scale[np.round(speed) == rad_s]) < 1e-9 for rad_s in (6.0, 31.0, 157.0)] == [True] * 3
+    assert scale[-1] > 5.0 * scale[0]
+
+
 def test_even_noise_is_left_as_it_is() -> None:
     state = handed(variance, Loud())
     assert variance(state) is state

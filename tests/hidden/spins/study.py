@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ..coverage import held
+from .bound import least_rms_deg
 from .generator import Drawn
 from .judging import Corrected, left_by, names_verdict, open_orders, wrong_orders
 from .peers import PEERS
@@ -23,6 +24,8 @@ Answerer = Callable[[Sequence[str]], tuple[Mapping[str, Any], Corrected, frozens
 DEFAULT_ANSWERER = "tests.spin_answerer:explained"
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 Record = dict[str, Any]
+SPUN = frozenset({"coast", "both_ways", "two_speeds", "two_logs", "several_speeds"})
+"""Protocols in which the response to a torque falls as the speed squared, and that show it."""
 
 
 def answerer_of(name: str) -> Answerer:
@@ -36,6 +39,7 @@ def carry_out(job: Job, answerer: str) -> Record:
     """Draw, write, ask and judge; whatever the tool raises is kept as a failure. An empty ``answerer`` asks nobody."""
     drawn = job.draw()
     record: Record = {**job.record(), "key": job.key, "truth": drawn.truth, "peers": _peers(drawn)}
+    record["least_rms_deg"] = least_rms_deg(drawn) if job.protocol in SPUN else None
     record["open_orders"] = open_orders(drawn.truth) if job.protocol == "one_speed" else ()
     if not answerer:
         return record

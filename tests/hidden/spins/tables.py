@@ -22,7 +22,8 @@ def print_all(console: Console, records: Sequence[Record]) -> None:
     accuracy = [one for one in records if one["causes"] is None]
     if accuracy:
         asked = {label for label, ones in _by(accuracy, "protocol").items() if any("rms_deg" in one for one in ones)}
-        console.print(_accuracy([one for one in accuracy if one["protocol"] in asked]))
+        if asked:
+            console.print(_accuracy([one for one in accuracy if one["protocol"] in asked]))
         console.print(_beside(accuracy))
         _print_open(console, [one for one in accuracy if one["protocol"] == "one_speed" and "rms_deg" in one])
     named = [one for one in records if one["causes"] is not None]
@@ -49,7 +50,19 @@ def _by(records: Sequence[Record], key: str) -> dict[str, list[Record]]:
 
 def _accuracy(records: Sequence[Record]) -> Table:
     table = Table(title="Error left over orders 1 to 16, RMS in degrees", title_justify="left")
-    heads = ("spins", "draws", f"<= {GOAL_DEG:g}", "median", "95 %", "worst", "factor", "intervals", "failed", "CPU s")
+    heads = (
+        "spins",
+        "draws",
+        f"<= {GOAL_DEG:g}",
+        "median",
+        "95 %",
+        "worst",
+        "bound 95 %",
+        "factor",
+        "intervals",
+        "failed",
+        "CPU s",
+    )
     for head in heads:
         table.add_column(head, justify="left" if head == "spins" else "right")
     for label, ones in _by(records, "protocol").items():
@@ -65,10 +78,12 @@ def _figures(records: Sequence[Record]) -> list[str]:
     left = np.array([one["rms_deg"] for one in done])
     each = ({name: Interval(**one) for name, one in record["intervals"].items()} for record in done)
     hits = [interval.miss == 0 for interval in pooled(each).get("all measured", [])]
+    bounds = [one["least_rms_deg"] for one in records if one.get("least_rms_deg") is not None]
     return [
         str(len(records)),
         f"{np.count_nonzero(left <= GOAL_DEG)}/{len(records)}",
         *(f"{np.quantile(left, share):.4f}" for share in (0.5, 0.95, 1.0)),
+        f"{np.quantile(bounds, 0.95):.4f}" if bounds else "",
         f"{np.median([one['factor'] for one in done]):.1f}",
         f"{sum(hits)}/{len(hits)}",
         str(len(records) - len(done)),

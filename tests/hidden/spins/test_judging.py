@@ -13,7 +13,8 @@ import pytest
 from . import study
 from .__main__ import main
 from .benches import TURN
-from .generator import draw
+from .bound import least_rms_of
+from .generator import Log, draw
 from .judging import left_by, names_verdict, open_orders, wrong_orders
 from .peers import PEERS, unwrapped
 from .sensor import PERFECT, AtRest, Order, at_rest, rms_of_orders
@@ -47,6 +48,19 @@ def test_what_is_left_is_measured() -> None:
     assert left.raw_rms_deg == pytest.approx(0.2 / math.sqrt(2.0), rel=1e-3)
     assert wrong_orders(left, frozenset()) == (5,)
     assert wrong_orders(left, frozenset({5})) == ()
+
+
+def test_the_bound_is_that_of_two_speeds() -> None:
+    """At speeds of 1 and 2, readings y tell s + t and s + t / 4: s = (4 y2 - y1) / 3, each y as of its own log."""
+    time = np.arange(8000) / 2000.0
+    logs = [Log({}, 360.0 * speed * time, time) for speed in (20.0, 40.0)]
+    each = 2.0 * 0.05**2 / 8000
+    wanted = math.sqrt(32.0 * (16.0 + 1.0) / 9.0 * each / 2.0)
+    assert least_rms_of(logs, noise_deg=0.05, jitter_s=0.0) == pytest.approx(wanted, rel=0.03)
+    assert least_rms_of(logs[:1], noise_deg=0.05, jitter_s=0.0) == math.inf
+    # an uncertain stamp is worth what the shaft turns meanwhile
+    late = math.sqrt(32.0 * (16.0 * 4.0 + 1.0) / 9.0 * 2.0 * 0.072**2 / 8000 / 2.0)
+    assert least_rms_of(logs, noise_deg=0.0, jitter_s=1e-5) == pytest.approx(late, rel=0.03)
 
 
 def test_open_orders_are_those_a_torque_moves() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.mutations.mutation import Mutation
 
 _SEARCH = "tests/diagnosis/discovery/search/test_parts.py"
+_FALLING = "tests/diagnosis/discovery/search/test_falling_lines.py"
 _SEAM = "tests/diagnosis/discovery/test_seam_and_current.py"
 _FORMS = "tests/diagnosis/discovery/test_forms.py"
 _STAGES = "tests/diagnosis/discovery/stages/test_one_source.py"
@@ -46,6 +47,27 @@ PERIODS: tuple[Mutation, ...] = tuple(
             "return state.with_(joint, keys",
             "state.with_(joint, keys",
             f"{_STAGES}::test_the_lines_of_a_motor_are_one_cause_and_others_stay[slots, poles and their doubles]",
+        ),
+        (
+            "periods.a_magnet_has_no_lines_between",
+            "diagnosis/discovery/stages/one_source.py",
+            "        if effect.comb is not None and effect.comb.falling:\n",
+            "        if False:\n",
+            f"{_FALLING}::test_lines_with_others_between_them_are_a_magnets",
+        ),
+        (
+            "periods.known_ones_are_asked_for",
+            "diagnosis/discovery/search/falling_lines.py",
+            "not chosen or ",
+            "",
+            f"{_FALLING}::test_lines_with_others_between_them_are_a_magnets",
+        ),
+        (
+            "periods.a_magnet_may_lack_no_order",
+            "diagnosis/discovery/search/falling_lines.py",
+            "_ABSENT = 0.5\n",
+            "_ABSENT = 1e-9\n",
+            f"{_FALLING}::test_which_lines_belong_together",
         ),
         (
             "periods.lines_of_a_motor_are_entries_of_their_own",

@@ -71,6 +71,7 @@ MAGNET_HARMONIC = Effect(
             "mechanics",
             "from mechanics (a pulley, gear or coupling): turn the magnet on its shaft: its own line follows",
         ),
+        falling=True,
     ),
     repeatable=True,
     drawing=drawing,

@@ -12,6 +12,7 @@ from . import (
     placed,
     plays,
     references,
+    rim,
     rotor,
     shaken,
     swings,
@@ -37,6 +38,7 @@ NAMED: dict[str, Kind] = {
     "cubic_1": Kind(magnetisation.cubic_axes(1.0), SATURATION),
     "cubic_2": Kind(magnetisation.cubic_axes(2.0), SATURATION),
     "cubic_3.3": Kind(magnetisation.cubic_axes(3.3), SATURATION, channels=False),
+    "falling_harmonics": Kind(rim.falling_harmonics, (("magnet_harmonic",),), ("magnet_harmonic",), channels=False),
     "hysteresis_vector": Kind(plays.vector_stack, HYSTERESIS, protocols=BOTH_WAYS),
     # on each axis the lag ripples four times a turn
     "hysteresis_axes": Kind(plays.scalar_stack, HYSTERESIS, SEVERAL, protocols=BOTH_WAYS),

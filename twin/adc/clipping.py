@@ -7,10 +7,12 @@ from typing import Literal
 
 import numpy as np
 
+from twin.adc.square_wave import find
 from twin.angles import Array, channels_of
 from twin.drawing import YARDSTICK_DEG
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
+from twin.words import InWords
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
@@ -49,6 +51,11 @@ def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str,
     return {"level_percent": 100.0 - 2.0 * (strength_deg / YARDSTICK_DEG) ** (2.0 / 3.0)}
 
 
+def said(values: Mapping[str, float]) -> str:
+    """Where the channels are cut off."""
+    return f"both channels stop at {values['level_percent']:.3g} % of their amplitude"
+
+
 CLIPPING = Effect(
     name="clipping",
     stage="adc",
@@ -71,6 +78,7 @@ CLIPPING = Effect(
     needs=frozenset({"one turn"}),
     shapes=shapes,
     zoomed=("level_percent",),
+    in_words=InWords(find=find, said=said),
     fitted_shapes=("level_percent",),
     drawing=drawing,
     source="definition: full scale of the converter below the signal's amplitude",

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, value_of
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, root_weights, value_of
 from diagnosis.discovery.fitting.profile import Profile
 from diagnosis.discovery.fitting.projection import projected
 from twin.catalogue import find
@@ -125,8 +125,16 @@ def _within_joint_region(fit: Fit, key: str, away: Mapping[str, float], terms: i
 
     _, jacobian = fit.whitened()
     does = np.zeros(jacobian.shape[1])
-    for column, one in zip(jacobian, fit.free, strict=True):
-        if one.key == key and one.name in away:
-            does = does + away[one.name] * column
-    alone = projected(does, jacobian[[one.key != key for one in fit.free]])
+    others = np.array([one.key != key for one in fit.free])
+    if find(key, fit.chain.effects).whole:
+        # Where channels are cut off to a square wave, a slope at the limit tells nothing of an uncut sensor.
+        rest = tuple(one for one in fit.free if one.key != key)
+        without = evaluate(fit.chain.without(key), rest, fit.observations, fit.weighting)
+        change = without.cosine_residual - fit.cosine_residual
+        does[: change.size] = (change * root_weights(fit.weighting, fit.observations.observables)).ravel()
+    else:
+        for column, one in zip(jacobian, fit.free, strict=True):
+            if one.key == key and one.name in away:
+                does = does + away[one.name] * column
+    alone = projected(does, jacobian[others])
     return float(alone @ alone) <= terms * float(fdtri(terms, fit.freedom, _JOINT_95)) * fit.variance

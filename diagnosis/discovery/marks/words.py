@@ -12,7 +12,7 @@ from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array
 from twin.catalogue import base_name
 from twin.chain import Chain
-from twin.decoded import Decoded, decoded
+from twin.decoded import Decoded, decoded, finders_of
 from twin.effect import BoolArray, Effect, Parameters
 from twin.sweep import Sweep
 
@@ -75,7 +75,8 @@ def _findings(one: Decoded, family: int, start: int) -> list[Finding]:
 
 
 def _in_words(key: str, effects: Sequence[Effect]) -> bool:
-    return any(effect.name == base_name(key) and effect.in_words is not None for effect in effects)
+    finders = finders_of(effects)
+    return base_name(key) in finders
 
 
 def _same(found: Parameters, known: Parameters | None) -> bool:

@@ -74,7 +74,10 @@ def explain(
     seed: Seed = 0,
     fail_on: Annotated[
         list[str] | None,
-        fail_on_option("cause, the NAME of one, unexplained, changed or other-device (--twin), or rejected (rows)"),
+        fail_on_option(
+            "cause, the NAME of one, unexplained, changed or other-device (--twin), rejected (rows), fault or note "
+            "(of the set-up), or the KIND of one such as pole_pairs"
+        ),
     ] = None,
 ) -> None:
     """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""

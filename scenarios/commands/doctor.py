@@ -15,7 +15,7 @@ from diagnosis.report.setup_words import setup_block
 from diagnosis.setup.checks import KINDS, Checked
 from diagnosis.setup.of_log import LogRecord, read_record, with_pole_pairs
 from diagnosis.setup.several_readings import checked_log
-from scenarios.commands.fail_on import DOCTOR, asked, raise_found
+from scenarios.commands.fail_on import DOCTOR, asked, in_setup, raise_found
 from scenarios.commands.outputs import JSON, OutputFiles, json_text
 from twin.logs.others import target_of
 from twin.shown_name import shown_name
@@ -111,13 +111,3 @@ def _lacking(not_checked: Mapping[str, Sequence[str]], not_used: Sequence[str]) 
         why = f"{', '.join(unread)} not used, see above" if unread else f"no {', '.join(lacking)}"
         by_column.setdefault(why, []).append(kind)
     return "; ".join(f"{', '.join(kinds)} ({why})" for why, kinds in by_column.items())
-
-
-def in_setup(answer: Mapping[str, Any]) -> dict[str, str]:
-    """What an answer holds, for ``--fail-on``."""
-    found = {finding["kind"]: finding["what"] for finding in answer["setup"]}
-    for level in DOCTOR:
-        kinds = [finding["kind"] for finding in answer["setup"] if finding["level"] == level]
-        if kinds:
-            found[level] = ", ".join(kinds)
-    return found

@@ -10,7 +10,8 @@ from typing import Any
 from diagnosis import Explanation, explain
 from diagnosis.report.console import show
 from diagnosis.report.page import page
-from scenarios.commands.fail_on import EXPLAIN, asked, in_explanation, raise_found
+from diagnosis.setup.checks import KINDS
+from scenarios.commands.fail_on import DOCTOR, EXPLAIN, asked, in_explanation, raise_found
 from scenarios.commands.inputs import SweepFiles, the_same
 from scenarios.commands.interrupt import INTERRUPTED
 from scenarios.commands.known import Known
@@ -137,9 +138,9 @@ def _one_by_one(
 
 
 def _asked(given: Sequence[str], effects: Sequence[Effect]) -> tuple[str, ...]:
-    """What is to be failed on: kinds of findings, and causes by name, one's own among them."""
+    """What is to be failed on: kinds of findings, causes by name, one's own among them, and those of the set-up."""
     causes = [effect.name for effect in effects if not effect.baseline and not unnamed(effect.name)]
-    return asked(given, (*EXPLAIN, *causes))
+    return asked(given, (*EXPLAIN, *causes, *DOCTOR, *KINDS))
 
 
 def _explained(sweep: Sweep | Sequence[Sweep], **given: Any) -> Explanation:

@@ -38,14 +38,14 @@ def raise_found(words: Iterable[str], found: Mapping[str, str]) -> None:
 # ---- what the answers hold --------------------------------------------------------------------------------------
 
 EXPLAIN = ("cause", "unexplained", "changed", "other-device", "rejected")
-"""Beside these the name of any cause."""
+"""Beside these the name of any cause, and those of the set-up."""
 DIAGNOSE = ("undetermined", "gross-errors", "rejected")
 MONITOR = ("drift",)
 """Beside it the name of any factor."""
 COMPENSATE = ("worse",)
 EXPORT = ("worse",)
 DOCTOR = ("fault", "note")
-"""Beside these the kind of any finding."""
+"""Of the set-up; beside these the kind of any finding."""
 BENCH = ("missed",)
 
 
@@ -66,7 +66,19 @@ def in_explanation(answer: Mapping[str, Any]) -> dict[str, str]:
         found["changed"] = ", ".join(change["parameter"] for change in answer["changed"])
     if answer["other_device"]:
         found["other-device"] = "the twin is another device's"
+    # A word that is a cause too, as time_jitter, is found where either is.
+    found = in_setup(answer) | found
     return found | _rejected(answer["sweep"]["name"], answer["sweep"]["rejected"])
+
+
+def in_setup(answer: Mapping[str, Any]) -> dict[str, str]:
+    """What an answer holds, for ``--fail-on``."""
+    found = {finding["kind"]: finding["what"] for finding in answer["setup"]}
+    for level in DOCTOR:
+        kinds = [finding["kind"] for finding in answer["setup"] if finding["level"] == level]
+        if kinds:
+            found[level] = ", ".join(kinds)
+    return found
 
 
 def in_diagnoses(answer: Mapping[str, Any]) -> dict[str, str]:

@@ -14,7 +14,15 @@ from pathlib import Path
 
 from tests.fuzz.batch import Failure, batch, plain_mb
 
-KINDS = {"sweeps": 20_000, "explain": 2_000, "twins": 5_000, "logs": 1_000, "options": 500}
+KINDS = {
+    "sweeps": 20_000,
+    "explain": 2_000,
+    "doctor": 5_000,
+    "export": 500,
+    "twins": 5_000,
+    "logs": 1_000,
+    "options": 500,
+}
 """How many of each are tried unless told otherwise."""
 _BATCH = 25
 _TOLD = 1000

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import json
 import tempfile
 from collections.abc import Callable, Mapping
@@ -14,7 +15,13 @@ import numpy as np
 
 from diagnosis import diagnose, explain
 from diagnosis.correction.compensation import correction_of
+from diagnosis.correction.targets.known import TARGETS
+from diagnosis.report.provenance import Provenance
+from diagnosis.setup.of_log import read_record
+from diagnosis.setup.several_readings import checked_log
 from scenarios.bench.replay import replay
+from scenarios.commands import doctor, export
+from scenarios.commands.export_made import Asked
 from scenarios.commands.protocol import Protocol
 from tests.fuzz import logs, options, sweeps, twins
 from tests.fuzz.trial import ANSWERED, FAILED, LONGEST_S, REFUSED, Ended, tried, within
@@ -95,9 +102,28 @@ def readable(rng: Generator) -> tuple[str, bytes]:
     raise AssertionError("none of a hundred broken sweeps can be read")
 
 
+def log_checked(path: Path) -> None:
+    """The set-up of a log, whether it is a sweep or not, and what is said of it."""
+    read = read_record(path, name=path.name)
+    answer = doctor.to_dict(read, checked_log(read), Provenance.today(seed=0))
+    _as_json(answer)
+    with contextlib.redirect_stdout(io.StringIO()):
+        doctor.show(answer)
+
+
+def exported(path: Path) -> None:
+    """The correction of a sweep as a table of each target, by the command."""
+    for target in TARGETS:
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            wish = Asked.checked(target.name, "worst", 25.0, "fuzz")
+            export.run([path], wish=wish, outputs=export.Outputs(table=Path(folder) / f"table{target.ending}"))
+
+
 KINDS: Mapping[str, Kind] = {
     "sweeps": Kind(lambda rng: (".csv", sweeps.mutated(rng)), read_and_diagnosed),
     "explain": Kind(readable, explained),
+    "doctor": Kind(lambda rng: (".csv", sweeps.mutated(rng)), log_checked),
+    "export": Kind(readable, exported),
     "twins": Kind(lambda rng: (".toml", twins.mutated(rng)), twin_used),
     "logs": Kind(logs.mutated, replayed),
     "options": Kind(lambda rng: (".txt", options.drawn(rng)), options.run),

@@ -30,7 +30,7 @@ def cause(name: str, *rivals: str) -> dict[str, object]:
 
 def test_what_an_explanation_holds() -> None:
     sweep = {"name": "s.csv", "rejected": 0}
-    same = {"changed": [], "other_device": None}
+    same: dict[str, Any] = {"changed": [], "other_device": None, "setup": []}
     assert in_explanation({"sweep": sweep, "causes": [], **same}) == {}
     found = in_explanation(
         {"sweep": sweep | {"rejected": 1}, "causes": [cause("latency", "xy_skew"), cause("unnamed")], **same}
@@ -42,6 +42,18 @@ def test_what_an_explanation_holds() -> None:
         "unexplained": "structure without a name",
         "rejected": "1 row of s.csv",
     }
+
+
+def test_an_explanation_holds_what_is_wrong_with_the_set_up() -> None:
+    answer = {"sweep": {"name": "s.csv", "rejected": 0}, "causes": [], "changed": [], "other_device": None}
+    setup = [
+        {"kind": "off_centre", "level": "fault", "what": "the magnet is off the axis"},
+        {"kind": "time_jitter", "level": "note", "what": "the clock jitters"},
+    ]
+    told = {"off_centre": "the magnet is off the axis", "fault": "off_centre", "note": "time_jitter"}
+    assert in_explanation({**answer, "setup": setup}) == told | {"time_jitter": "the clock jitters"}
+    both = in_explanation({**answer, "setup": setup, "causes": [cause("time_jitter")]})
+    assert both["time_jitter"] == "time_jitter"
 
 
 def test_what_diagnoses_hold() -> None:
@@ -94,6 +106,7 @@ def asked_once(monkeypatch: pytest.MonkeyPatch) -> None:
         (SWEEP, ("unexplained,rejected",), 0),
         (GEAR, ("unexplained",), 1),
         (SWEEP, ("lost",), 2),
+        (SWEEP, ("fault,note,axial_magnet",), 0),
     ],
 )
 @pytest.mark.usefixtures("asked_once")

@@ -107,3 +107,21 @@ def test_a_reading_with_a_wrong_factor_is_multiplied_itself() -> None:
 def test_a_reference_with_a_wrong_factor_is_multiplied_itself() -> None:
     (found,) = findings(TURN_DEG * 4096.0 / 4000.0, reading())
     assert found.columns.startswith("reference_deg=reference_deg*0.976")
+
+
+@pytest.mark.parametrize("rows", [5, 12, 25, 40])
+def test_a_zero_that_slides_over_some_rows_is_no_slip(rows: int) -> None:
+    assert "turn_not_closed" not in _kinds_of_zero(rows)
+
+
+@pytest.mark.parametrize("rows", [0.1, 1.0, 2.0])
+def test_a_slip_from_one_row_to_the_next_is_told(rows: float) -> None:
+    assert "turn_not_closed" in _kinds_of_zero(rows)
+
+
+def _kinds_of_zero(rows: float) -> list[str]:
+    """What is found in four turns in which the zero goes by 3 deg within so many rows."""
+    turn = np.radians(SHAFT_DEG)
+    error = 0.8 * np.cos(turn - 0.7) + 0.3 * np.cos(2.0 * turn) + 3.0 * np.clip((ROWS - 800) / rows, 0.0, 1.0)
+    error += 0.05 * np.random.default_rng(3).normal(size=ROWS.size)
+    return [finding.kind for finding in findings(SHAFT_DEG % 360.0, (SHAFT_DEG + error) % 360.0)]

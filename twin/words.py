@@ -128,8 +128,10 @@ class Words:
     @property
     def follow(self) -> bool:
         """Whether the readings in use go round with the reference at all, but for a few."""
+        if not self.usable.any():
+            return False
         near = np.abs(self.expected.residual[self.usable]) < NEAR_RAD
-        return near.size > 0 and float(np.mean(near)) >= 1.0 - 2.0 * MISSED
+        return float(np.mean(near)) >= 1.0 - 2.0 * MISSED
 
     def without(self, fault: WordFault) -> Words:
         """What is left to be told once a fault is known: its readings decoded, or set aside where they say nothing."""

@@ -19,27 +19,29 @@ _CORNER_RAD = np.radians(2.0)
 """Readings within this of an odd multiple of 45 deg count as held there: a sensor that is not cut off has 4 x 4 of its
 360 degrees there."""
 _ZEROS, _LEVELS, _ROUNDS = 61, 25, 5
+_ROWS = 1500
+"""Rows that the grids are held against; of more, one in so many."""
 _FIRST_RAD, _FIRST_SHARE = np.radians(12.0), 0.6
 _NARROWER = 0.25
 
 
-def reading(angle: Array, level: Array) -> Array:
-    """The reading (..., n) [rad] of cosine and sine of an angle, both cut off at a level, in amplitudes."""
-    return np.arctan2(np.clip(np.sin(angle), -level, level), np.clip(np.cos(angle), -level, level))
+def reading(angle: Array, level: float) -> Array:
+    """The reading (n,) [rad] of cosine and sine of an angle, both cut off at a level, in amplitudes."""
+    return np.asarray(np.arctan2(np.clip(np.sin(angle), -level, level), np.clip(np.cos(angle), -level, level)))
 
 
 def find(words: Words) -> WordFault | None:
     """The limit where the channels are cut off to nearly a square wave, and the readings as they would be without."""
     held = np.abs(wrap(4.0 * words.measured - 0.5 * TAU)) < 4.0 * _CORNER_RAD
     held &= words.usable
-    share = float(np.count_nonzero(held)) / max(np.count_nonzero(words.usable), 1)
+    share = float(np.mean(held[words.usable])) if words.usable.any() else 0.0
     corners = np.unique(np.round((words.measured[held] - 0.125 * TAU) / (0.25 * TAU)).astype(np.int64) % 4)
     if share < _LEAST_HELD or corners.size < 4:
         return None
     fits = [_fitted(words, sense, share) for sense in (1.0, -1.0)]
     angle, level, off = min(fits, key=lambda one: float(np.sum(np.abs(one[2][words.usable]))))
     before = words.expected.residual[words.usable]
-    ratio = float(np.mean(np.abs(off[words.usable])) / max(np.mean(np.abs(before)), 1e-12))
+    ratio = float(np.mean(np.abs(off[words.usable])) / max(float(np.mean(np.abs(before))), 1e-12))
     if ratio > 0.5:
         return None
     values = {"level_percent": 100.0 * level, "x_side": 0.0, "y_side": 0.0}
@@ -58,6 +60,7 @@ def _fitted(words: Words, sense: float, share: float) -> tuple[Array, float, Arr
     level = float(np.sin(0.125 * TAU * np.clip(1.0 - share, 1e-3, 1.0)))
     wide, factor = _FIRST_RAD, _FIRST_SHARE
     rows = np.flatnonzero(words.usable)
+    rows = rows[:: max(rows.size // _ROWS, 1)]
     turn, read = sense * words.reference[rows], words.measured[rows]
     for _ in range(_ROUNDS):
         zeros = zero + wide * np.linspace(-1.0, 1.0, _ZEROS)
@@ -67,4 +70,4 @@ def _fitted(words: Words, sense: float, share: float) -> tuple[Array, float, Arr
         zero, level = float(zeros[i]), float(min(levels[j], 1.0))
         wide, factor = wide * _NARROWER, factor * _NARROWER
     angle = sense * words.reference + zero
-    return angle, level, wrap(words.measured - reading(angle, np.asarray(level)))
+    return angle, level, wrap(words.measured - reading(angle, level))

@@ -122,7 +122,8 @@ def _expected_variance(fit: Fit, square: Array) -> Array:
     """
     if fit.linear.stair_variance is None:
         return np.ones(square.size)
-    stairs = fit.linear.stair_variance[fit.observations.usable]
+    # A difference of two moments, which rounding may leave below zero.
+    stairs = np.maximum(fit.linear.stair_variance[fit.observations.usable], 0.0)
     if not np.mean(stairs) > 0.0:
         return np.ones(square.size)
     stairs = stairs / np.mean(stairs)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from diagnosis.factors.mounting import Mounting
     from twin.chain import Chain
     from twin.effect import BoolArray, Effect, Parameters
+    from twin.spin import Spin
     from twin.sweep import Sweep
 
 OwnEffects: TypeAlias = "str | os.PathLike[str] | Effect | Sequence[str | os.PathLike[str] | Effect]"
@@ -26,7 +27,7 @@ OwnEffects: TypeAlias = "str | os.PathLike[str] | Effect | Sequence[str | os.Pat
 
 
 def explain(
-    sweep: SweepLike | Sequence[SweepLike],
+    sweep: SweepLike | Spin | Sequence[SweepLike | Spin],
     *,
     twin: TwinLike | None = None,
     mounting: Mounting | None = None,
@@ -49,6 +50,8 @@ def explain(
         arrays, or an xarray Dataset. Columns bear the names of the file format, with their units:
         ``reference_deg`` and ``measured_deg``, and where recorded ``time_s``, ``direction``, ``speed_rpm``, ``turn``,
         ``temperature_c``, ``vx`` and ``vy``; one value for each reading, in the order in which they were taken.
+        Without ``reference_deg`` the shaft's motion is estimated from ``time_s`` and the readings together with their
+        errors.
         A list or tuple of several: recordings of one device, explained together. The device's parameters are common to
         them; each has its own zero and its own noise, and a cause is held out by whole recordings.
     twin : str, os.PathLike, or Chain, optional
@@ -154,14 +157,16 @@ def explain(
     return Explanation(found, made)
 
 
-def _read(sweep: SweepLike | Sequence[SweepLike], mounting: Mounting | None, pole_pairs: int | None) -> list[Sweep]:
+def _read(
+    sweep: SweepLike | Spin | Sequence[SweepLike | Spin], mounting: Mounting | None, pole_pairs: int | None
+) -> list[Sweep]:
     """The sweeps that are meant. Raises UserError for a list of none, or where more or fewer are mounted."""
     from typing import cast
 
     from twin.errors import UserError
 
     several = isinstance(sweep, list | tuple)
-    sources = cast("Sequence[SweepLike]", sweep) if several else [cast("SweepLike", sweep)]
+    sources = cast("Sequence[SweepLike | Spin]", sweep) if several else [cast("SweepLike | Spin", sweep)]
     sweeps = as_sweeps(sources, pole_pairs=pole_pairs)
     if not sweeps:
         raise UserError("found a list of no sweep; give one sweep, or several recordings of one device")

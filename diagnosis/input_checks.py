@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from twin.angles import Array
     from twin.chain import Chain
     from twin.effect import Effect
+    from twin.spin import Spin
     from twin.sweep import Sweep
 
 _MISSING = frozenset({"NoneType", "NAType", "NaTType"})
@@ -37,13 +38,18 @@ TwinLike: TypeAlias = "str | os.PathLike[str] | Chain"
 """What they take as a twin: a twin file, a preset's name, or a chain."""
 
 
-def as_sweeps(sources: Sequence[SweepLike], *, pole_pairs: int | None = None) -> list[Sweep]:
-    """Several sweeps, see :func:`as_sweep`; files that share a name bear as much of their paths as tells them apart."""
+def as_sweeps(sources: Sequence[SweepLike | Spin], *, pole_pairs: int | None = None) -> list[Sweep]:
+    """Several sweeps, see :func:`as_sweep`; files that share a name bear as much of their paths as tells them apart.
+
+    A log without a reference is one with the motion that is estimated from its readings
+    (:func:`diagnosis.spin.of_log.with_motion`).
+    """
     from dataclasses import replace
 
+    from diagnosis.spin.of_log import with_motion
     from twin.shown_name import distinct_names
 
-    sweeps = [as_sweep(source, pole_pairs=pole_pairs) for source in sources]
+    sweeps = with_motion([_recording(source, pole_pairs, spin=True) for source in sources])
     files = [place for place, source in enumerate(sources) if isinstance(source, str | os.PathLike)]
     names = distinct_names([os.fspath(sources[place]) for place in files])  # type: ignore[arg-type]
     for place, name in zip(files, names, strict=True):
@@ -75,14 +81,28 @@ def as_sweep(source: SweepLike, *, pole_pairs: int | None = None) -> Sweep:
         A ``ValueError``: where it cannot be used as a sweep. The message says in one line which column and row,
         what was found, what was expected and what to do.
     """
-    from twin.errors import SweepError
     from twin.sweep import Sweep
-    from twin.sweep_columns import COLUMNS, REQUIRED
+
+    found = _recording(source, pole_pairs, spin=False)
+    assert isinstance(found, Sweep)
+    return found
+
+
+def _recording(source: SweepLike | Spin, pole_pairs: int | None, *, spin: bool) -> Sweep | Spin:
+    """The sweep that is meant, or where ``spin`` is allowed and there is no reference, the spin. Raises SweepError."""
+    from twin.errors import SweepError
+    from twin.recording_file import read_recording
+    from twin.spin import Spin
+    from twin.sweep import Sweep
+    from twin.sweep_columns import COLUMNS, REQUIRED, is_spin
 
     if isinstance(source, Sweep):
         return _of_the_shaft(source, pole_pairs)
+    if spin and isinstance(source, Spin):
+        return source
     if isinstance(source, str | os.PathLike):
-        return Sweep.read(os.fspath(source), pole_pairs=pole_pairs)
+        read = read_recording if spin else Sweep.read
+        return read(os.fspath(source), pole_pairs=pole_pairs)
     name = type(source).__name__
     if not (hasattr(source, "keys") and hasattr(source, "__getitem__")):
         raise SweepError(
@@ -91,18 +111,22 @@ def as_sweep(source: SweepLike, *, pole_pairs: int | None = None) -> Sweep:
         )
     table = _with_index(source, COLUMNS)
     names = _names(table)
+    spin = spin and is_spin(set(map(str, names)))
     for needed in REQUIRED:
-        if needed not in names:
+        if needed not in names and not spin:
             found = ", ".join(map(str, names)) or "no column"
             raise SweepError(f"{name}: column {needed} is missing; found {found}; rename the column or add it")
     columns = _columns(table, [key for key in COLUMNS if key in names], name=name)
-    rows = columns[REQUIRED[0]].size
+    first = next(key for key in columns if key in (*REQUIRED, "vx"))
+    rows = columns[first].size
     for key, values in columns.items():
         if values.size != rows:
             raise SweepError(
-                f"{name}: column {key} holds {values.size} values and {REQUIRED[0]} {rows}; "
+                f"{name}: column {key} holds {values.size} values and {first} {rows}; "
                 "expected one for each reading, NaN where there is none"
             )
+    if spin:
+        return Spin.from_columns(columns, name=name, pole_pairs=pole_pairs)
     return Sweep.from_columns(columns, name=name, pole_pairs=pole_pairs)
 
 

@@ -24,5 +24,5 @@ def explained(paths: Sequence[str]) -> tuple[Mapping[str, Any], Callable[[Array]
 
 def open_orders(answer: Mapping[str, Any]) -> frozenset[int]:
     """Orders that an answer gives to the sensor or to the torque, as one likes: one speed cannot tell."""
-    told = answer.get("motion", {}).get("not_separable", [])
+    told = (answer.get("motion") or {}).get("not_separable", [])
     return frozenset(int(entry["order"] if isinstance(entry, Mapping) else entry) for entry in told)

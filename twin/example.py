@@ -74,7 +74,7 @@ def full_motion(points: int = 120) -> Motion:
 
 def permuted(motion: Motion, order: np.ndarray[Any, Any]) -> Motion:
     """The same readings in another order."""
-    arrays = [item.name for item in fields(motion) if item.name not in ("columns", "recordings")]
+    arrays = [item.name for item in fields(motion) if item.name not in ("columns", "recordings", "estimated")]
     return replace(motion, **{name: getattr(motion, name)[order] for name in arrays})
 
 

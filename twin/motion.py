@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from twin.angles import TAU, Array, IntArray, wrap
+from twin.estimated_motion import EstimatedMotion
 from twin.recordings import Recordings, Setup
 
 STOP_AND_MEASURE_S = 0.02
@@ -51,6 +52,9 @@ class Motion:
         Of several recordings one behind the other: which one each reading belongs to. None: all are of one.
     current_a : ndarray
         Current of the motor that turns the shaft [A], (n,); without one given, zero.
+    estimated : EstimatedMotion or None
+        Where no reference was recorded and the motion is estimated from the sensor's readings: how freely the shaft
+        may have moved beside that. None: a reference was recorded.
     """
 
     shaft_rad: Array
@@ -62,6 +66,7 @@ class Motion:
     columns: frozenset[str] = frozenset()
     recordings: Recordings | None = None
     current_a: Array = field(default_factory=lambda: np.zeros(0))
+    estimated: EstimatedMotion | None = None
 
     def __post_init__(self) -> None:
         if not self.current_a.size:
@@ -155,6 +160,7 @@ class Motion:
             turn=np.unique(self.turn[rows], return_inverse=True)[1].astype(np.int64),
             temperature_c=self.temperature_c[rows],
             current_a=self.current_a[rows],
+            estimated=None if self.estimated is None else self.estimated.part(rows),
             recordings=None if self.recordings is None else self.recordings.part(rows),
         )
 
@@ -191,6 +197,7 @@ class Motion:
             temperature_c=np.concatenate([part.temperature_c for part in parts]),
             columns=frozenset.intersection(*(part.columns for part in parts)),
             current_a=np.concatenate([part.current_a for part in parts]),
+            estimated=EstimatedMotion.joined([part.estimated for part in parts], [len(part) for part in parts]),
             recordings=Recordings(number, tuple(setups)),
         )
 
@@ -268,6 +275,8 @@ class Motion:
         found |= self._levels()
         if self.turn.max(initial=0) > 0:
             found.add("two turns")
+        if self.estimated is None:
+            found.add("a reference")
         return frozenset(found)
 
     def _levels(self) -> set[str]:

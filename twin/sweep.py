@@ -13,6 +13,7 @@ import numpy as np
 from twin.angles import Array, IntArray, radians
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
+from twin.estimated_motion import EstimatedMotion
 from twin.log import LOG
 from twin.motion import RPM, Motion
 from twin.periods import checked_pole_pairs, of_the_shaft
@@ -55,6 +56,9 @@ class Sweep:
         Of several recordings of one device, joined: which one each row belongs to. None: all are of one.
     senses : tuple of int or None
         Who counts which way, (s, h) of :class:`twin.Chain`, where channels said it that were not kept.
+    estimated : EstimatedMotion or None
+        Where no reference was recorded: ``reference_deg`` is the motion that was estimated from the readings, and this
+        how freely the shaft may have moved beside it.
     """
 
     reference_deg: Array
@@ -79,6 +83,7 @@ class Sweep:
     set_aside: int = 0
     recordings: Recordings | None = None
     senses: tuple[int, int] | None = None
+    estimated: EstimatedMotion | None = None
 
     def __repr__(self) -> str:
         left = "" if self.rows == len(self) else f" of {self.rows}"
@@ -113,7 +118,15 @@ class Sweep:
         columns: dict[str, Any] = {name: values[rows] for name, values in self.columns.items()}
         aside = self.set_aside + len(self) - rows.size
         recordings = None if self.recordings is None else self.recordings.part(rows)
-        return replace(self, **columns, row_numbers=self.numbers[rows], set_aside=aside, recordings=recordings)
+        estimated = None if self.estimated is None else self.estimated.part(rows)
+        return replace(
+            self,
+            **columns,
+            row_numbers=self.numbers[rows],
+            set_aside=aside,
+            recordings=recordings,
+            estimated=estimated,
+        )
 
     @property
     def columns(self) -> dict[str, Array]:
@@ -280,7 +293,7 @@ class Sweep:
             rows, alone = np.arange(len(self)), replace(self, recordings=None)
             parts = [alone.part(rows[one]).motion() for one in self.recordings.slices]
             return Motion.joined(parts, self.recordings.setups)
-        return Motion.from_angle(
+        motion = Motion.from_angle(
             radians(self.reference_deg),
             time_s=self.time_s,
             direction=self.direction,
@@ -290,3 +303,4 @@ class Sweep:
             current_a=self.current_a,
             has_channels=self.vx is not None,
         )
+        return replace(motion, estimated=self.estimated)

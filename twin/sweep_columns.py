@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 COLUMNS = (
     "time_s",
     "reference_deg",
@@ -22,6 +24,14 @@ COLUMNS = (
 )
 """Every column that the project knows, in the order of the file format."""
 REQUIRED = ("reference_deg", "measured_deg")
+
+
+def is_spin(names: Collection[str]) -> bool:
+    """Whether columns are those of a log without a reference: the sensor's readings over time, or its channels."""
+    channels = "vx" in names and "vy" in names
+    return "reference_deg" not in names and (channels or ("measured_deg" in names and "time_s" in names))
+
+
 OF_SETUP = ("air_gap_mm", "mounting_deg")
 """Columns that hold one number for a whole recording: how the bench was set up for it."""
 TOLD_BY_SENSOR = ("magnitude", "agc", "status", "frame")

@@ -27,9 +27,11 @@ def read_sweep(
     *,
     columns: str | None = None,
     max_bytes: int = LARGEST_SWEEP_BYTES,
+    spin: bool = False,
 ) -> _Checked:
     """The columns of a file, checked: those of a sweep as they are, or a log's by the statement ``columns``.
 
+    ``spin``: a log without a reference will do, see :func:`twin.sweep_columns.is_spin`.
     The message for a file that is refused ends with the statement that would read it, if any. Raises SweepError.
     """
     if columns is not None:
@@ -37,17 +39,18 @@ def read_sweep(
 
         return checked(read_log(path, columns=columns, max_bytes=max_bytes).columns)
     try:
-        return checked(read_columns(path, max_bytes=max_bytes))
+        return checked(read_columns(path, max_bytes=max_bytes, spin=spin))
     except SweepError as error:
         from twin.logs.read import refused
 
         raise SweepError(refused(path, str(error))) from None
 
 
-def read_columns(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> dict[str, Array]:
+def read_columns(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES, spin: bool = False) -> dict[str, Array]:
     """All columns of the file that the project knows, each (n,); missing cells are NaN.
 
-    ``max_bytes``: most bytes after decompression. Raises SweepError.
+    ``max_bytes``: most bytes after decompression; ``spin``: those of a log without a reference will
+    do. Raises SweepError.
     """
     try:
         max_bytes = checked_bytes(max_bytes)
@@ -55,7 +58,7 @@ def read_columns(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES) -> dict[st
         first = next(content, b"")
         if first[:4] == _PARQUET:
             return _read_parquet(path, max_bytes=max_bytes)
-        return parse_csv(itertools.chain((first,), content), name=path.name)
+        return parse_csv(itertools.chain((first,), content), name=path.name, spin=spin)
     except SweepError:
         raise
     except UserError as error:

@@ -14,7 +14,7 @@ import numpy as np
 
 from twin.angles import Array
 from twin.errors import SweepError
-from twin.sweep_columns import COLUMNS, REQUIRED, TOLD_BY_SENSOR
+from twin.sweep_columns import COLUMNS, REQUIRED, TOLD_BY_SENSOR, is_spin
 from twin.text_input import MISSING, cells_of, no_text, utf8_or_latin1
 
 LONGEST_LINE_BYTES = 1_000_000
@@ -36,10 +36,10 @@ class _Header:
         return {cell: place for place, cell in enumerate(self.names) if cell in COLUMNS}
 
 
-def parse_csv(content: Iterable[bytes], *, name: str) -> dict[str, Array]:
+def parse_csv(content: Iterable[bytes], *, name: str, spin: bool = False) -> dict[str, Array]:
     """The known columns (n,) of a CSV file, handed over in blocks of bytes; lines that begin with # are comments.
 
-    Raises SweepError.
+    ``spin``: those of a log without a reference will do. Raises SweepError.
     """
     header: _Header | None = None
     tables: list[Array] = []
@@ -49,7 +49,7 @@ def parse_csv(content: Iterable[bytes], *, name: str) -> dict[str, Array]:
         lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
         told = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
         if header is None and told:
-            header = _header_of(lines[told[0]], first + told[0], name=name)
+            header = _header_of(lines[told[0]], first + told[0], name=name, spin=spin)
             told = told[1:]
         if header is not None and told:
             tables.append(_table(lines, told, header, where=(name, first)))
@@ -112,14 +112,14 @@ def _refuse_binary(text: str, before: int, *, name: str) -> None:
         raise SweepError(f"{name}: {said}; expected CSV: export the sweep as text")
 
 
-def _header_of(text: str, line: int, *, name: str) -> _Header:
+def _header_of(text: str, line: int, *, name: str, spin: bool) -> _Header:
     delimiter = ";" if ";" in text else "\t" if "\t" in text else ","
     names = tuple(cell.strip() for cell in cells_of(text, delimiter))
-    _check_header(names, where=f"{name}: line {line}")
+    _check_header(names, where=f"{name}: line {line}", required=() if spin and is_spin(names) else REQUIRED)
     return _Header(line, delimiter, names)
 
 
-def _check_header(header: tuple[str, ...], *, where: str) -> None:
+def _check_header(header: tuple[str, ...], *, where: str, required: tuple[str, ...]) -> None:
     found = _shown(",".join(header), 200)
     if all(_is_number(cell) for cell in header):
         raise SweepError(
@@ -129,7 +129,7 @@ def _check_header(header: tuple[str, ...], *, where: str) -> None:
     for cell in COLUMNS:
         if header.count(cell) > 1:
             raise SweepError(f"{where}: column {cell} stands {header.count(cell)} times; expected it once: keep one")
-    for needed in REQUIRED:
+    for needed in required:
         if needed not in header:
             raise SweepError(f"{where}: column {needed} is missing; found {found}; rename the column or add it")
 

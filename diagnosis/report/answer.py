@@ -25,6 +25,7 @@ from diagnosis.discovery.result import Discovery
 from diagnosis.report.as_well import as_well
 from diagnosis.report.facts import facts
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
+from diagnosis.report.motion import motion_answer
 from diagnosis.report.over_class import over_class
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.recordings import in_recordings, recordings_answer
@@ -90,7 +91,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "cut_short": _cut_short(found),
             "twin": to_dict(found.device),
         }
-        | (recordings_answer(found) | _setup(found))
+        | (motion_answer(found) | recordings_answer(found) | _setup(found))
     )
     return answer
 

@@ -10,6 +10,7 @@ import numpy as np
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.result import Discovery
+from diagnosis.report.motion import may_be_torque
 from twin.catalogue import find
 from twin.each_recording import everywhere
 from twin.effect import Effect, Parameters
@@ -45,7 +46,7 @@ def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     """Such stages, each with what would tell it apart; none where rivals were not looked for.
 
     And causes of which a fault of the words says that they do the same on this record; and the same cause with other
-    numbers.
+    numbers; and without a reference a torque locked to the angle.
     """
     if found.cut_short is not None:
         return []
@@ -54,6 +55,7 @@ def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     if effect.comb is not None and effect.comb.also is not None and observations.observables == 1:
         beside.append(effect.comb.also)
     values = found.fit.chain.values
+    beside += may_be_torque(found, cause)
     beside += _other_makers(effect, [values[key] for key in cause.keys if key in values])
     also = effect.in_words.also if effect.in_words is not None else None
     if also is not None and also.where(observations.measured, observations.motion, cause.rows):

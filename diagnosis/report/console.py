@@ -14,6 +14,7 @@ from rich.text import Text
 
 from diagnosis.report import statements
 from diagnosis.report.change_words import change_line, change_name, change_rivals_words
+from diagnosis.report.motion import motion_words
 from diagnosis.report.over_class import in_factors_words, open_words
 from diagnosis.report.recordings import recordings_notes, recordings_table, where_words
 from diagnosis.report.rivals_words import rivals_words
@@ -42,6 +43,7 @@ def show(answer: Mapping[str, Any], console: Console | None = None) -> None:
     console = console or Console(highlight=False)
     parts = [
         _sweep(answer["sweep"]),
+        _motion(answer),
         _setup(answer),
         _baseline(answer, beside=3 if console.width >= _WIDE else 2 if console.width >= _NARROW else 1),
         _changes(answer, width=min(console.width, _WIDE)),
@@ -66,6 +68,12 @@ def text(answer: Mapping[str, Any], *, width: int) -> str:
 def _sweep(sweep: Mapping[str, Any]) -> RenderableType:
     said = f"{', '.join(statements.sweep_facts(sweep))}; {explained_rows(sweep)}"
     return Text.assemble((sweep["name"], "bold"), "   ", said)
+
+
+def _motion(answer: Mapping[str, Any]) -> RenderableType | None:
+    """How the motion was come by where no reference was recorded; None where one was."""
+    said = motion_words(answer)
+    return Group(*(_indented(f"{words}.") for words in said)) if said else None
 
 
 def _setup(answer: Mapping[str, Any]) -> RenderableType | None:

@@ -27,6 +27,7 @@ from diagnosis.report.wording import (
 )
 
 _LACKS = {
+    "a reference": ("no reference", "record a reference encoder beside it"),
     "both directions": ("one direction", "turn in both directions"),
     "moving shaft": ("the shaft stood still at each reading", "record while the shaft moves, with time_s or speed_rpm"),
     "one turn": ("less than a turn", "cover a whole turn"),
@@ -61,7 +62,6 @@ _ALSO_SAYS = {
     "two speeds|both directions": "moving shaft",
 }
 """A want that goes without saying where the second one is wanted too."""
-
 _UNEXPLAINED = "Structure is there that no cause of the catalogue explains"
 UNCHANGED = (
     "Beside zero and noise, which each sweep has of its own, nothing of the given twin has changed beyond chance"

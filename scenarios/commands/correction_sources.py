@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from diagnosis.report.row_counts import counts_of, rejected_words
+from diagnosis.spin.of_log import with_motion
 from scenarios.commands.inputs import SweepFiles, SweepsRead, sweep_paths
 from twin.decoded import Decoded, decoded
 from twin.effect import Effect
@@ -35,7 +36,9 @@ def files_of(sources: Sequence[str | Path]) -> list[Path]:
 
 def read_files(paths: Sequence[Path], how: SweepFiles) -> SweepsRead:
     """The sweeps, read as those that the correction is checked on."""
-    return SweepsRead((how.read_one(paths[0]),)) if len(paths) == 1 else how.read(paths)
+    if len(paths) > 1:
+        return how.read(paths, spins=True)
+    return SweepsRead(tuple(with_motion([how.recording(paths[0])])))
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,6 +24,7 @@ from twin.extensions import effects_with
 from twin.files import twin_text
 from twin.presets import read_twin_or_preset
 from twin.shown_name import distinct_names
+from twin.spin import Spin
 from twin.sweep import Sweep
 
 EACH = "halltwin.explain_each/1"
@@ -68,7 +69,7 @@ def run(
     held = None if known.twin is None else read_twin_or_preset(known.twin, effects=effects)
     given: dict[str, Any] = {"twin": held, "mounting": known.mounting(), "effects": effect_files, "seed": seed}
     given["pole_pairs"] = sweeps.pole_pairs
-    read = [sweeps.read_one(p, name=name) for p, name in zip(paths, distinct_names(paths), strict=True)]
+    read = [sweeps.recording(p, name=name) for p, name in zip(paths, distinct_names(paths), strict=True)]
     if one_by_one:
         _one_by_one(read, given, files=files, json=outputs.json, command=command, words=words)
         return
@@ -103,14 +104,14 @@ def _check_one_by_one(outputs: Outputs, known: Known) -> None:
         raise UserError("mounting: says how recordings that are explained together differ; leave it out with --each")
 
 
-def _check_different(sweeps: Sequence[Sweep]) -> None:
+def _check_different(sweeps: Sequence[Sweep | Spin]) -> None:
     """Refuse the very same readings given twice: they would count as evidence twice. Raises UserError."""
     for names in the_same(sweeps):
         raise UserError(f"{', '.join(names)}: the same readings; expected several recordings: give each once")
 
 
 def _one_by_one(
-    sweeps: Sequence[Sweep],
+    sweeps: Sequence[Sweep | Spin],
     given: Mapping[str, Any],
     *,
     files: OutputFiles,
@@ -143,7 +144,7 @@ def _asked(given: Sequence[str], effects: Sequence[Effect]) -> tuple[str, ...]:
     return asked(given, (*EXPLAIN, *causes, *DOCTOR, *KINDS))
 
 
-def _explained(sweep: Sweep | Sequence[Sweep], **given: Any) -> Explanation:
+def _explained(sweep: Sweep | Spin | Sequence[Sweep | Spin], **given: Any) -> Explanation:
     """The answer, with a line that says where the search stands; Ctrl-C gives the answer so far, twice none."""
     with progress_line("Ctrl-C: the answer so far") as listener:
         return explain(sweep, **given, progress=listener, on_interrupt="answer")

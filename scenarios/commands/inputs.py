@@ -8,11 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from diagnosis.spin.of_log import with_motion
 from scenarios.commands.fail_on import FoundError
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.ending import ending_of
 from twin.errors import SweepError, UserError
+from twin.recording_file import read_recording
 from twin.shown_name import distinct_names
+from twin.spin import Spin
 from twin.sweep import Sweep
 
 ENDINGS = (".csv", ".csv.gz", ".parquet")
@@ -91,11 +94,12 @@ class SweepsRead:
             raise FoundError(f"{count} of {count + len(self.sweeps)} files could not be used: {names}")
 
 
-def the_same(sweeps: Sequence[Sweep]) -> list[list[str]]:
+def the_same(sweeps: Sequence[Sweep | Spin]) -> list[list[str]]:
     """Names of sweeps that hold the very same readings, group by group."""
     groups: dict[bytes, list[str]] = {}
     for sweep in sweeps:
-        key = hashlib.sha256(sweep.reference_deg.tobytes() + sweep.measured_deg.tobytes()).digest()
+        beside = sweep.reference_deg if isinstance(sweep, Sweep) else sweep.time_s
+        key = hashlib.sha256((b"" if beside is None else beside.tobytes()) + sweep.measured_deg.tobytes()).digest()
         groups.setdefault(key, []).append(sweep.name)
     return [names for names in groups.values() if len(names) > 1]
 
@@ -125,28 +129,43 @@ class SweepFiles:
             return None
         return path
 
-    def read(self, paths: Sequence[Path]) -> SweepsRead:
+    def read(self, paths: Sequence[Path], *, spins: bool = False) -> SweepsRead:
         """See :func:`read_sweeps`."""
-        return read_sweeps(paths, max_bytes=self.max_bytes, columns=self.columns)
+        return read_sweeps(paths, max_bytes=self.max_bytes, columns=self.columns, spins=spins)
 
     def read_one(self, path: Path, *, name: str | None = None) -> Sweep:
         """One of the files, under the name that messages call it by. Raises SweepError."""
         return Sweep.read(path, max_bytes=self.max_bytes, name=name, columns=self.columns, pole_pairs=self.pole_pairs)
 
+    def recording(self, path: Path, *, name: str | None = None) -> Sweep | Spin:
+        """The same; one without a reference as the spin that it is."""
+        return read_recording(
+            path, max_bytes=self.max_bytes, name=name, columns=self.columns, pole_pairs=self.pole_pairs
+        )
+
 
 def read_sweeps(
-    paths: Sequence[Path], *, max_bytes: int = LARGEST_SWEEP_BYTES, columns: str | None = None
+    paths: Sequence[Path],
+    *,
+    max_bytes: int = LARGEST_SWEEP_BYTES,
+    columns: str | None = None,
+    spins: bool = False,
 ) -> SweepsRead:
-    """Read these files; one that is no sweep is left out and listed. Raises SweepError where none can be used."""
-    sweeps, unusable = [], []
+    """Read these files; one that is no sweep is left out and listed. Raises SweepError where none can be used.
+
+    ``spins``: logs without a reference will do, with the motion that is estimated from all of them.
+    """
+    sweeps: list[Sweep | Spin] = []
+    unusable = []
+    read = read_recording if spins else Sweep.read
     first: SweepError | None = None
     for path, name in zip(paths, distinct_names(paths), strict=True):
         try:
-            sweeps.append(Sweep.read(path, max_bytes=max_bytes, name=name, columns=columns))
+            sweeps.append(read(path, max_bytes=max_bytes, name=name, columns=columns))
         except SweepError as error:
             first = first or error
             unusable.append(Unusable(name, str(error).removeprefix(f"{path}: ").removeprefix(f"{name}: ")))
     if first is not None and not sweeps:
         more = f" (and none of the other {len(paths) - 1} files can be used)" if len(paths) > 1 else ""
         raise SweepError(f"{first}{more}")
-    return SweepsRead(tuple(sweeps), tuple(unusable))
+    return SweepsRead(tuple(with_motion(sweeps)), tuple(unusable))

@@ -162,7 +162,9 @@ def _sense_open(answer: Mapping[str, Any], truth: Mapping[str, Any]) -> bool:
     told, own = answer.get("senses"), truth["baseline"]
     if told is None or told["decided"]:
         return False
-    return bool((told["sensor"], told["output"]) != (own["sense"], own["channel_sense"]))
+    return bool(
+        (told["sensor"], told["output"]) != (own.get("sense", told["sensor"]), own.get("channel_sense", told["output"]))
+    )
 
 
 def measured(label: str) -> bool:

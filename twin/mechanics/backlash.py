@@ -68,7 +68,7 @@ BACKLASH = Effect(
         )
     },
     forward=forward,
-    needs=frozenset({"both directions"}),
+    needs=frozenset({"a reference", "both directions"}),
     source="play operator: Brokate and Sprekels, Hysteresis and Phase Transitions, Springer 1996, section 2.1",
     signature="-b d, taken up linearly right after a reversal",
 )

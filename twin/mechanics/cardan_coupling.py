@@ -22,7 +22,7 @@ CARDAN_COUPLING = Effect(
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="its phase", role="phase"),
     },
     forward=forward,
-    needs=frozenset({"vx|two mountings", "one turn"}),
+    needs=frozenset({"a reference", "vx|two mountings", "one turn"}),
     # It is told from the radius alone, which a saturating disk and a misplaced magnet change too (400 to 1).
     handicap=6.0,
     source="Cardan joint at angle b: tan(out) = cos(b) tan(in), so the amplitude is tan^2(b/2) to leading order",

@@ -45,7 +45,7 @@ LOAD_TORSION = Effect(
         ),
     },
     forward=forward,
-    needs=frozenset({"varying speed|two currents"}),
+    needs=frozenset({"a reference", "varying speed|two currents"}),
     record_wide=True,
     source="torsion of a shaft of stiffness c under the torque J dw/dt of the inertia J beyond it: J/c dw/dt; "
     "a motor's torque in proportion to its current",

@@ -19,7 +19,7 @@ THERMAL_ZERO_SHIFT = Effect(
     acts_on="shaft",
     params={"deg_per_K": Param(unit="deg/K", null=0.0, lower=-1.0, upper=1.0, doc="turn of the zero", typical=0.002)},
     forward=forward,
-    needs=frozenset({"temperature_c", "two temperatures"}),
+    needs=frozenset({"a reference", "temperature_c", "two temperatures"}),
     source="thermal expansion of a mount whose halves differ: (difference of coefficients) x length / lever arm",
     signature="order 0 times (T - 25)",
 )

@@ -53,7 +53,7 @@ ZERO_DRIFT = Effect(
         ),
     },
     forward=forward,
-    needs=frozenset({"time_s"}),
+    needs=frozenset({"a reference", "time_s"}),
     shapes=shapes,
     zoomed=("time_constant_s",),
     fitted_shapes=("time_constant_s",),

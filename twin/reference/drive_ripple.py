@@ -63,7 +63,7 @@ DRIVE_RIPPLE = Effect(
     ),
     repeatable=True,
     drawing=drawing,
-    needs=frozenset({"one turn"}),
+    needs=frozenset({"a reference", "one turn"}),
     source="a 2-phase stepper of 200 steps has 50 electrical periods a turn; a BLDC motor 6 x pole pairs torque ripple",
     signature="lines at p >= 20 and its multiples",
 )

@@ -143,7 +143,7 @@ INDEX_SLIP = Effect(
     in_words=InWords(find=find, said=said),
     repeatable=True,
     drawing=drawing,
-    needs=frozenset({"time_s"}),
+    needs=frozenset({"a reference", "time_s"}),
     source="definition: an incremental encoder that loses or gains counts",
     signature="a step in order 0, or several",
 )

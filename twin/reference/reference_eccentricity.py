@@ -22,7 +22,7 @@ REFERENCE_ECCENTRICITY = Effect(
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase", role="phase"),
     },
     forward=forward,
-    needs=frozenset({"vx|two mountings|two air gaps", "one turn"}),
+    needs=frozenset({"a reference", "vx|two mountings|two air gaps", "one turn"}),
     # Every magnet is misplaced a little; that the reference errs as well is a second assumption (400 to 1).
     handicap=6.0,
     source="geometry: a graduation of radius R centred e off the axis reads e/R sin(theta + psi) too much",

@@ -61,7 +61,7 @@ REFERENCE_REZERO = Effect(
     derived=derived,
     record_wide=True,
     drawing=drawing,
-    needs=frozenset({"turn", "two turns"}),
+    needs=frozenset({"a reference", "turn", "two turns"}),
     source="definition: an incremental encoder counts from where it was switched on",
     signature="order 0, constant within a turn",
 )

@@ -46,4 +46,4 @@ def step_within(system: Array, gradient: Array, lower: Array, upper: Array) -> A
 
 def eased(share: float) -> float:
     """What becomes of the damping behind a step that gained this share, maybe beyond all bounds, of the expected."""
-    return max(1.0 / 3.0, 1.0 - (2.0 * min(share, 1.0) - 1.0) ** 3)
+    return max(1.0 / 3.0, 1.0 - (2.0 * min(max(share, 0.0), 1.0) - 1.0) ** 3)

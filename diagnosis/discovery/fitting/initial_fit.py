@@ -47,7 +47,9 @@ def unfitted(observations: Observations, start: Chain, settings: DiscoverySettin
     """A chain held against the observations as it is, nothing fitted."""
     weight = 1.0 if observations.observables == 2 else 0.0
     weighting = Weighting(
-        noise_family(observations.lengths, settings.colour_log_odds), radius_weight=weight, settings=settings
+        noise_family(observations.lengths, settings.colour_log_odds, motion=observations.motion_spectrum),
+        radius_weight=weight,
+        settings=settings,
     )
     return evaluate(start, (), observations, weighting)
 

@@ -168,6 +168,8 @@ class Fit:
         return np.concatenate([rows, whitened[..., size:]], axis=-1)
 
 
+_HELD = 1e9
+"""Strength of a prior that lets a parameter go nowhere: a billionth of a degree weighs as much as a radian of noise."""
 SMALL_GAIN = 1e-3
 """Gain in chi-square below which a fit is at its optimum: a parameter that means nothing gains 1 by chance."""
 
@@ -204,6 +206,9 @@ def evaluate(
         moved = [(free[place].name, free[place].turn) for place in own]
         jacobian[own] = linear.derivatives(key, find(key, chain.effects), moved)
     residual, jacobian = without_nuisance(observations, residual), without_nuisance(observations, jacobian)
+    if observations.loose is not None:
+        residual[0] = observations.loose.whitened(residual[0])
+        jacobian[:, 0] = observations.loose.whitened(jacobian[:, 0])
     fit = Fit(
         chain=chain,
         free=free,
@@ -235,6 +240,10 @@ def _prior_strengths(fit: Fit) -> Array:
     rms = np.sqrt(np.mean(fit.residual[0][observations.usable] ** 2))
     unit = float(np.hypot(rms, fit.weighting.to_come_rad))
     strengths = np.array([unit / param.prior_sd if param.prior_sd > 0.0 else 0.0 for param in params])
+    if observations.motion.estimated is not None:
+        # A motion that no reference recorded counts from where the readings do: a convention, and no unknown.
+        zeros = [place for place, f in enumerate(free) if f.name == ZERO_ANGLE.name]
+        strengths[zeros] = _HELD
     turns = [place for place, f in enumerate(free) if f.turn is not None]
     if turns:
         strengths[turns] = unit / _scatter(fit, turns, unit)

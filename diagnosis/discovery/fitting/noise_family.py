@@ -71,7 +71,10 @@ def log_determinant(spectrum: Array, rows: int) -> float:
     return float(np.sum(np.log(spectrum))) * (rows / spectrum.size)
 
 
-def noise_family(lengths: Sequence[int], colour_log_odds: float) -> NoiseFamily:
-    """The family for sequences of so many readings, one behind the other and independent of each other."""
-    spectra = [np.concatenate([noise.spectrum(n) for n in lengths]) for noise in MEMBERS]
+def noise_family(lengths: Sequence[int], colour_log_odds: float, *, motion: Array | float = 0.0) -> NoiseFamily:
+    """The family for sequences of so many readings, one behind the other and independent of each other.
+
+    ``motion`` (n,) is the spectrum of what the shaft may have done beside the noise, where no reference was recorded.
+    """
+    spectra = [np.concatenate([noise.spectrum(n) for n in lengths]) + motion for noise in MEMBERS]
     return NoiseFamily(MEMBERS, np.stack(spectra), colour_log_odds)

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from diagnosis.discovery.fitting.repeats import Repeats
+from diagnosis.spin.torques import Loose, torque_columns
 from twin.angles import Array, IntArray, wrap
 from twin.effect import BoolArray
 from twin.motion import Motion
@@ -57,13 +58,36 @@ class Observations:
 
     @cached_property
     def lengths(self) -> tuple[int, ...]:
-        """Rows of each recording: noise is not correlated from one to the next."""
+        """Rows of each recording, or stretch of one: noise is not correlated from one to the next."""
+        if self.motion.estimated is not None:
+            return self.motion.estimated.lengths
         recordings = self.motion.recordings
         return (len(self),) if recordings is None else recordings.lengths
 
-    def spectrum(self, noise: Noise) -> Array:
-        """Spectrum (n,) of a noise over the cosine coefficients of the rows, recording by recording."""
+    @cached_property
+    def motion_spectrum(self) -> Array | float:
+        """What the shaft may have done beside the motion, against the noise, over the cosine coefficients (n,).
+
+        0 where a reference was recorded.
+        """
+        return 0.0 if self.motion.estimated is None else self.motion.estimated.spectrum
+
+    def noise_spectrum(self, noise: Noise) -> Array:
+        """Spectrum (n,) of a noise over the cosine coefficients of the rows, sequence by sequence."""
         return np.concatenate([noise.spectrum(length) for length in self.lengths])
+
+    def spectrum(self, noise: Noise) -> Array:
+        """The same with what the shaft may have done beside the motion."""
+        return self.noise_spectrum(noise) + self.motion_spectrum
+
+    @cached_property
+    def loose(self) -> Loose | None:
+        """What torques locked to the angle may have done to an estimated motion; None: nothing."""
+        columns = torque_columns(self.motion)
+        if not len(columns):
+            return None
+        assert self.motion.estimated is not None
+        return Loose(columns, self.usable, self.motion.estimated.noise_rad)
 
     def masked(self, usable: BoolArray) -> Observations:
         """The same rows with another mask."""
@@ -168,6 +192,8 @@ def _repeats(motion: Motion) -> IntArray:
         # A block ends where the direction, the turn or the pace changes.
         pace = np.abs(np.diff(motion.speed_rad_s)) > 0.05 * max(float(np.max(np.abs(motion.speed_rad_s))), 1e-9)
         ends = (np.diff(motion.turn) != 0) | (np.diff(motion.direction) != 0) | pace
+        if motion.estimated is not None:
+            ends |= np.diff(motion.estimated.stretch) != 0
         part = np.concatenate([[0], np.cumsum(ends)])
         start = np.concatenate([[0], np.flatnonzero(ends) + 1])
         inside = (np.arange(n) - start[part]) // block
@@ -198,5 +224,6 @@ def _averaged(motion: Motion, group: IntArray, count: IntArray, first: IntArray)
         turn=motion.turn[first],
         temperature_c=mean(motion.temperature_c),
         current_a=mean(motion.current_a),
+        estimated=None if motion.estimated is None else motion.estimated.averaged(group),
         recordings=None if motion.recordings is None else motion.recordings.part(first),
     )

@@ -11,16 +11,16 @@ from twin.sweep import Sweep
 
 LONGEST = 24_000
 """Rows, after averaging, that are searched in full: at 0.03 deg of noise 0.001 deg is five sigma of them."""
+LONGEST_SPIN = 8_000
+"""The same of a log without a reference, which is of many turns: at 0.03 deg of noise 0.002 deg is five sigma."""
 STRETCHES = 12
 
 
 def searched_part(sweep: Sweep) -> Sweep:
     """The sweep, or where it is too long to be searched in full twelve stretches of it, spread over the record."""
     motion = sweep.motion()
-    block = block_length(motion)
-    if len(sweep) <= LONGEST * block:
-        return sweep
-    return sweep.part(stretches(motion, LONGEST * block))
+    most = (LONGEST if sweep.estimated is None else LONGEST_SPIN) * block_length(motion)
+    return sweep if len(sweep) <= most else sweep.part(stretches(motion, most))
 
 
 def stretches(motion: Motion, most: int) -> IntArray:

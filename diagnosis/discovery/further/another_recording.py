@@ -42,7 +42,8 @@ def planned(fit: Fit, motion: Motion) -> Planned:
     in it as in the first; its zero is turned with the sensor.
     """
     turns = int(motion.turn.max(initial=0)) + 1
-    known = len(fit.observations.lengths)
+    recordings = fit.observations.motion.recordings
+    known = 1 if recordings is None else len(recordings)
     if motion.recordings is None:
         return Planned(_with_turns(fit.chain, turns), {key: key for key in fit.chain.values}, np.ones(len(motion)))
     setups = motion.recordings.setups
@@ -99,7 +100,8 @@ def _with_turns(chain: Chain, turns: int) -> Chain:
 
 def _levels(fit: Fit, setups: tuple[Setup, ...]) -> Array:
     """Noise of each recording against the fitted readings', as they show it, or as it grows in a weaker field."""
-    first = np.cumsum([0, *fit.observations.lengths[:-1]])
+    recordings = fit.observations.motion.recordings
+    first = [0] if recordings is None else [rows.start for rows in recordings.slices]
     seen = fit.observations.level[first].tolist()
     weaker = (
         NOISE.field_factor("rms_deg", NOISE.null(), field_ratio=one.field / setups[0].field, distance_ratio=1.0)

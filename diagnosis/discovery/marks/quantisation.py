@@ -147,5 +147,5 @@ def independent_rows(fit: Fit) -> float:
     With a spectrum S of mean 1 over the cosine coefficients the sum of squares has the variance ``2 sum(S^2)`` (in
     units of the noise's variance squared), where independent readings have 2 each.
     """
-    spectrum = fit.weighting.family.spectra[fit.weighting.member]
+    spectrum = fit.observations.noise_spectrum(fit.weighting.family.members[fit.weighting.member])
     return max(fit.rows / float(np.mean(spectrum**2)), 1.0)

@@ -1,0 +1,150 @@
+"""A motion that was estimated from the readings: what an answer says of it, and what it leaves open."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from diagnosis.discovery.finding import Finding
+from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.result import Discovery
+from diagnosis.report.wording import plain
+from twin.angles import TAU, Array
+from twin.catalogue import find
+from twin.estimated_motion import EstimatedMotion, Torque
+
+TORQUE = "torque_ripple"
+"""What a torque locked to the angle is called where a cause may as well be one."""
+SECOND_SPEED = "a log at a second speed, or coasting down: what a torque does falls as 1/speed^2"
+IN_TIME = "a log at another speed: a wave that the motor's supply or its drive makes in the torque keeps its frequency"
+_T95 = 1.959964
+_BEYOND_CHANCE = 4.0
+"""Standard deviations from which on a torque is listed: one of sixteen orders, of two components each, passes it by
+chance in one log of 200 (16 exp(-8))."""
+
+
+def motion_answer(found: Discovery) -> dict[str, Any]:
+    """What the JSON says of an estimated motion; nothing where a reference was recorded."""
+    estimated = found.sweep.estimated
+    if estimated is None:
+        return {}
+    speed = np.abs(found.sweep.motion().speed_rad_s) / TAU
+    return {
+        "motion": {
+            "estimated_from": "readings",
+            "turns_per_s": [float(speed.min()), float(speed.max())],
+            "stretches": len(estimated.lengths),
+            "rows_aside": estimated.rows_aside,
+            "even_clock": estimated.even_clock,
+            "slowest_turns_per_s": _knee_turns_per_s(found),
+            "torque_ripple": [_torque(one) for one in _listed(estimated)],
+            "not_separable": not_separable(estimated),
+        }
+    }
+
+
+def _knee_turns_per_s(found: Discovery) -> float:
+    """Frequency below which the motion is freer than the readings are noisy [1/s]."""
+    estimated, time = found.sweep.estimated, found.sweep.time_s
+    assert estimated is not None
+    assert time is not None
+    return float(np.median(estimated.knee_rad) / np.median(np.diff(time)) / TAU)
+
+
+def not_separable(estimated: EstimatedMotion) -> list[int]:
+    """Orders whose error is the sensor's or a torque's: the log's speeds do not tell."""
+    told = {one.order for one in estimated.torques if one.separable}
+    return sorted({one.order for one in estimated.torques} - told)
+
+
+def _listed(estimated: EstimatedMotion) -> list[Torque]:
+    found = {one.order: one for one in estimated.torques if one.separable}
+    return [one for one in found.values() if _amplitude(one) > _BEYOND_CHANCE * one.sd_rad_s2]
+
+
+def _amplitude(torque: Torque) -> float:
+    return float(np.hypot(torque.cos_rad_s2, torque.sin_rad_s2))
+
+
+def _torque(torque: Torque) -> dict[str, Any]:
+    amplitude, away = _amplitude(torque), _T95 * torque.sd_rad_s2
+    return {
+        "order": torque.order,
+        "acceleration_rad_s2": amplitude,
+        "low": max(amplitude - away, 0.0),
+        "high": amplitude + away,
+    }
+
+
+def may_be_torque(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
+    """The torque that does what a cause does, where the log's speeds do not tell them apart; else nothing."""
+    fit, estimated = found.fit, found.sweep.estimated
+    if estimated is not None and _in_time(fit, cause):
+        return [(TORQUE, IN_TIME)]
+    open_orders = [] if estimated is None else not_separable(estimated)
+    keys = [key for key in cause.keys if key in fit.chain.values]
+    if not open_orders or not keys:
+        return []
+    beyond = _beyond(fit, keys, open_orders)
+    rows = fit.rows
+    # What no torque can do stands out of the noise as any cause has to.
+    told = float(np.sum(beyond[fit.observations.usable] ** 2)) / max(fit.variance, 1e-300)
+    return [] if told > -2.0 * fit.settings.effect_log_p(rows) else [(TORQUE, SECOND_SPEED)]
+
+
+def _in_time(fit: Fit, cause: Finding) -> bool:
+    """Whether a cause is a wave in time that is added to the angle, as a torque of that frequency adds it."""
+    lines = [find(key, fit.chain.effects).line for key in cause.keys]
+    return cause.name == "unnamed" and any(line is not None and line.clock == "time" for line in lines)
+
+
+def _beyond(fit: Fit, keys: Sequence[str], orders: Sequence[int]) -> Array:
+    """What causes do to the reading (n,) [rad] that waves of these orders cannot."""
+    motion = fit.linear.motion
+    does = fit.chain.readings(motion) - fit.chain.without(*keys).readings(motion)
+    angle = motion.shaft_rad
+    waves = [np.ones_like(angle), *(wave(order * angle) for order in orders for wave in (np.cos, np.sin))]
+    basis = np.linalg.qr(np.stack(waves).T)[0]
+    does = np.angle(np.exp(1j * does))
+    return np.asarray(does - basis @ (basis.T @ does))
+
+
+def motion_words(answer: Mapping[str, Any]) -> list[str]:
+    """The same for a reader, sentence by sentence; none where a reference was recorded."""
+    motion = answer.get("motion")
+    if motion is None:
+        return []
+    slow, fast = motion["turns_per_s"]
+    said = [
+        "No reference: the shaft's motion is estimated from the readings together with their errors, at "
+        f"{plain(slow, 3)} to {plain(fast, 3)} turns/s"
+        + (f" in {motion['stretches']} stretches" if motion["stretches"] > 1 else "")
+        + (f"; {motion['rows_aside']} rows without an even turning are left out" if motion["rows_aside"] else "")
+    ]
+    if motion["even_clock"]:
+        said.append("The readings are taken to be evenly spaced in time: their stamps are coarser than their spacing")
+    if motion["torque_ripple"]:
+        listed = ", ".join(
+            f"order {one['order']}: {plain(one['acceleration_rad_s2'], 3)} rad/s^2" for one in motion["torque_ripple"]
+        )
+        said.append(f"Torques locked to the angle, told from the sensor by the speeds: {listed}")
+    if motion["not_separable"]:
+        said.append(
+            f"Not told from a torque locked to the angle: orders {_ranges(motion['not_separable'])}. Here all of these "
+            f"orders counts as the sensor's; to part them: {SECOND_SPEED}"
+        )
+    said.append("Not seen without a reference: the zero, what drifts slower than a turn, and what a reversal leaves")
+    return said
+
+
+def _ranges(orders: Sequence[int]) -> str:
+    """Whole numbers, runs of them by their ends."""
+    runs: list[list[int]] = []
+    for order in orders:
+        if runs and order == runs[-1][1] + 1:
+            runs[-1][1] = order
+        else:
+            runs.append([order, order])
+    return ", ".join(f"{a} to {b}" if b > a + 1 else f"{a}, {b}" if b > a else f"{a}" for a, b in runs)

@@ -1,0 +1,181 @@
+"""From logs without a reference to sweeps: the shaft's motion estimated, and how freely it may have moved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from diagnosis.spin.clock import even_clock
+from diagnosis.spin.smoother import HIGHEST_OF_GROWING, HIGHEST_ORDER, MotionFit, fitted_motion
+from diagnosis.spin.spline import stretch_ends
+from diagnosis.spin.stretches import FEWEST_ROWS, Turning, turning
+from twin.angles import TAU, Array, IntArray
+from twin.effect import BoolArray
+from twin.errors import SweepError
+from twin.estimated_motion import EstimatedMotion, Torque
+from twin.spin import Spin
+from twin.sweep import Sweep
+
+_TWO_SPEEDS = 0.2
+"""Difference of two speeds, as a share of the faster, from which on torques show: as for all that follows a speed."""
+CHANNELS_TELL = 4
+"""Order up to which offset, gain, phase and saturation of the channels show in their radius."""
+_FREE = 3.0
+"""Times the usual: where the motion is freer than that, as in a jerk, readings tell of it and not of the sensor."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Log:
+    """A spin, the times (n,) [s] of its readings, whether they are those of an even clock, and where it turns."""
+
+    spin: Spin
+    time_s: Array
+    even: bool
+    found: Turning
+
+    @classmethod
+    def of(cls, spin: Spin) -> _Log:
+        """Raises SweepError where no stretch shows a turning shaft."""
+        even = None if spin.time_s is None else even_clock(spin.time_s)
+        stamps = np.arange(len(spin), dtype=np.float64) if spin.time_s is None else spin.time_s
+        time = stamps if even is None else even
+        found = _checked(turning(np.radians(spin.measured_deg), time), spin)
+        return cls(spin, time, even is not None or spin.time_s is None, found)
+
+
+def with_motion(recordings: Sequence[Sweep | Spin]) -> list[Sweep]:
+    """Recordings of one device as sweeps: those without a reference with the motion estimated from all of them."""
+    spins = [one for one in recordings if isinstance(one, Spin)]
+    made = iter(sweeps_of(spins) if spins else [])
+    return [next(made) if isinstance(one, Spin) else one for one in recordings]
+
+
+def sweeps_of(spins: Sequence[Spin]) -> list[Sweep]:
+    """The sweeps whose reference is the motion estimated from the readings themselves.
+
+    Parameters
+    ----------
+    spins : sequence of Spin
+        Logs of one device's readings alone: their speeds together tell torques from errors of the sensor.
+
+    Returns
+    -------
+    list of Sweep
+        Of each the rows in which the shaft turns, ``reference_deg`` being the estimated motion; ``estimated`` says how
+        freely the shaft may have moved beside it. The other rows are counted in ``set_aside``.
+
+    Raises
+    ------
+    SweepError
+        Where no stretch of a log shows a turning shaft.
+    """
+    logs = [_Log.of(spin) for spin in spins]
+    fit = _fitted(logs)
+    jerks = fit.knee_rad_s > _FREE * float(np.median(fit.knee_rad_s))
+    if jerks.any():
+        parts = np.split(jerks, np.cumsum([log.found.rows.size for log in logs])[:-1])
+        calmer = [replace(log, found=_without(log.found, out)) for log, out in zip(logs, parts, strict=True)]
+        if all(log.found.rows.size >= FEWEST_ROWS for log in calmer):
+            logs = calmer
+            fit = _fitted(logs)
+    channels = all("vx" in log.spin.others for log in logs)
+    torques = _torques(fit, told_by_channels=CHANNELS_TELL if channels else 0)
+    ends = np.cumsum([0, *(log.found.rows.size for log in logs)])
+    return [_sweep(log, fit, slice(a, b), torques) for log, a, b in zip(logs, ends[:-1], ends[1:], strict=True)]
+
+
+def _checked(found: Turning, spin: Spin) -> Turning:
+    turns = sum(np.ptp(found.readings_rad[found.stretch == k]) for k in np.unique(found.stretch)) / TAU
+    if found.rows.size < FEWEST_ROWS or turns < 1.0:
+        raise SweepError(
+            f"{spin.name}: no reference_deg, and the shaft turns evenly in {found.rows.size} of {len(spin)} rows "
+            f"({turns:.2g} turns); without a reference expected a shaft that coasts or turns steadily for some turns, "
+            f"at least {FEWEST_ROWS} readings one after another; or add reference_deg"
+        )
+    return found
+
+
+def _without(found: Turning, out: BoolArray) -> Turning:
+    """The rows that are not ``out`` (m,), in stretches that are long enough."""
+    run = np.concatenate([[0], np.cumsum((np.diff(found.stretch) != 0) | (np.diff(out.astype(int)) != 0))])
+    keep = ~out & (np.bincount(run)[run] >= FEWEST_ROWS)
+    stretch = np.unique(run[keep], return_inverse=True)[1].astype(np.int64)
+    return Turning(found.rows[keep], found.readings_rad[keep], stretch)
+
+
+def _fitted(logs: Sequence[_Log]) -> MotionFit:
+    """The motion in all logs, one behind the other."""
+    times, stretches, begins, number = [], [], 0.0, 0
+    for log in logs:
+        own = log.time_s[log.found.rows]
+        times.append(own - own[0] + begins)
+        stretches.append(log.found.stretch + number)
+        begins, number = float(times[-1][-1]) + 1.0, int(stretches[-1][-1]) + 1
+    time, stretch = np.concatenate(times), np.concatenate(stretches)
+    readings = np.concatenate([log.found.readings_rad for log in logs])
+    speed = np.abs(np.diff(readings) / np.diff(time))[np.diff(stretch) == 0]
+    slow, fast = np.quantile(speed, [0.1, 0.9])
+    return fitted_motion(readings, time, stretch_ends(stretch), torque=bool(fast - slow > _TWO_SPEEDS * fast))
+
+
+def _sweep(log: _Log, fit: MotionFit, own: slice, torques: tuple[Torque, ...]) -> Sweep:
+    spin, rows = log.spin, log.found.rows
+    told = ("speed_rpm", "direction")
+    columns: dict[str, Any] = {name: values[rows] for name, values in spin.others.items() if name not in told}
+    time, speed = log.time_s[rows], fit.speed_rad_s[own]
+    return Sweep(
+        reference_deg=np.degrees(fit.shaft_rad[own]),
+        measured_deg=spin.measured_deg[rows],
+        time_s=time,
+        direction=np.sign(speed),
+        speed_rpm=np.degrees(speed) / 6.0,
+        rejected=spin.rejected,
+        name=spin.name,
+        row_numbers=spin.row_numbers[rows],
+        set_aside=len(spin) - rows.size,
+        estimated=EstimatedMotion(
+            stretch=log.found.stretch,
+            knee_rad=fit.knee_rad_s[own] * float(np.median(np.diff(time))),
+            noise_rad=fit.noise_rad,
+            torques=torques,
+            damping_per_s=fit.damping_per_s,
+            rows_aside=len(spin) - rows.size,
+            even_clock=log.even,
+        ),
+        **columns,
+    )
+
+
+def _torques(fit: MotionFit, *, told_by_channels: int) -> tuple[Torque, ...]:
+    """What was found of the torques of each order.
+
+    Up to the order ``told_by_channels`` a torque that the speeds do not tell may be any: the channels' radius tells
+    what of the error is theirs.
+    """
+    terms, first, dry = fit.terms, 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
+    usual = float(np.median(np.abs(fit.speed_rad_s)))
+    error = np.sqrt(np.diag(terms.covariance))
+    torques = []
+    for place, order in enumerate(range(1, HIGHEST_ORDER + 1)):
+        pair: IntArray = first + 2 * place + np.arange(2)
+        separable = bool(fit.separable[place])
+        if not separable:
+            # One radian: further than any torque turns a shaft to and fro that goes round.
+            scatter = (order * usual) ** 2 if order <= told_by_channels else 0.0
+            torques.append(Torque(order=order, scatter_rad_s2=scatter))
+            continue
+        torques.append(
+            Torque(
+                order=order,
+                cos_rad_s2=float(terms.values[pair[0]]),
+                sin_rad_s2=float(terms.values[pair[1]]),
+                sd_rad_s2=float(np.max(error[pair])),
+                scatter_rad_s2=float(terms.sd[pair[0]]),
+                growing_rad_s=float(terms.sd[dry + 2 * place]) if order <= HIGHEST_OF_GROWING else 0.0,
+                separable=True,
+            )
+        )
+    return tuple(torques)

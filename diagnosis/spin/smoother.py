@@ -1,0 +1,271 @@
+"""The shaft's motion out of the sensor's own readings, estimated together with what is locked to the angle.
+
+A reading is the shaft's angle with the sensor's error. The angle is a smooth motion (:mod:`diagnosis.spin.spline`)
+with what torques locked to the angle add to it, which falls as 1/speed^2
+(:mod:`twin.mechanics.torque_ripple`), the error a Fourier series of the angle, which does not. All are coefficients of
+one generalised least-squares problem: the error's are free, the torques' scatter about zero, as do the motion's third
+differences; how much is what makes the readings likeliest (restricted maximum likelihood).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from diagnosis.spin.problem import Problem, Reduced, likeliest, solution
+from diagnosis.spin.spline import PENALISED, Spline, pieces
+from diagnosis.spin.variance_components import Drawn, drawn, solved
+from twin.angles import Array
+from twin.effect import BoolArray
+from twin.mechanics.torque_ripple import response
+
+HIGHEST_ORDER = 16
+"""Of the sensor's error and of the torques: what correction tables of 32 entries hold."""
+HIGHEST_OF_GROWING = 4
+"""Of torques that grow with the speed: what rubs is modulated by what runs out or is bent, not by teeth."""
+_TOLD = 0.5
+"""Share of a coefficient that the readings tell, from which on its scatter is told by them too."""
+_ROUNDS = 5
+_FAR_OUT = 6.0
+_WINDOW = 15
+"""Third differences over whose mean square the motion's roughness is taken to be even."""
+_BEYOND_CHANCE = 4.0
+"""A mean of so many squares of one spread exceeds four times its expectation in one of 10^9."""
+
+
+@dataclass(frozen=True, eq=False)
+class MotionFit:
+    """A motion (n,), and what was found with it.
+
+    ``smooth_rad`` is the part that is smooth in time, ``shaft_rad`` that with what the torques do. ``knee_rad`` (n,)
+    is the angular frequency a second below which the motion is freer than the readings' noise is loud. ``noise_rad``
+    is the RMS of a reading about it all. ``terms`` are the coefficients: cosine and sine of each order of the error
+    [rad], of each order's torque [rad/s^2], and of what of it grows with the speed [rad/s^2 for each rad/s] up to the
+    order 4. ``separable`` (orders,): whether a torque that makes all that is seen of an order would be told.
+    """
+
+    smooth_rad: Array
+    shaft_rad: Array
+    speed_rad_s: Array
+    acceleration_rad_s2: Array
+    knee_rad_s: Array
+    noise_rad: float
+    terms: Drawn
+    usable: BoolArray
+    damping_per_s: float
+    separable: BoolArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Estimate:
+    """Where the rounds stand: the problem, the shaft's angle (n,) [rad], and how much everything scatters."""
+
+    problem: Problem
+    ends: list[int]
+    shaft_rad: Array
+    sd: Array
+    log_penalty: float | None = None
+    variance: float = 1e-6
+    damping_per_s: float = 0.0
+    terms: Drawn | None = None
+    separable: BoolArray = field(default_factory=lambda: np.zeros(HIGHEST_ORDER, dtype=bool))
+
+    @property
+    def smooth_rad(self) -> Array:
+        """The motion (n,) without what torques do."""
+        return np.asarray(self.problem.spline.design @ self.problem.start)
+
+    @property
+    def rates(self) -> tuple[Array, Array]:
+        """Speed and acceleration (n,)."""
+        return _rates(self.smooth_rad, self.problem.time_s, self.ends)
+
+    @property
+    def with_torques(self) -> bool:
+        """Whether torques are among the columns."""
+        return len(self.sd) > 2 * HIGHEST_ORDER
+
+    def next(self) -> _Estimate:
+        """One round: damping, penalty, coefficients, and which readings count, one after the other."""
+        made = self._with_columns()
+        log_penalty, variance = likeliest(made.problem, made.sd, made.variance, around=self.log_penalty)
+        reduced, usual = made.problem.reduced(log_penalty), float(np.median(np.abs(made.rates[0])))
+        separable = _separable(reduced, variance, usual)
+        terms = _drawn(reduced, made.sd, variance, usual, separable)
+        start = made.problem.start + reduced.step - reduced.pulled @ terms.values
+        smooth, first = made.problem.spline.design @ start, 2 * HIGHEST_ORDER
+        left = made.problem.readings - smooth - terms.values @ made.problem.columns
+        usual_left = 1.4826 * float(np.median(np.abs(left[made.problem.weights > 0.0])))
+        problem = replace(
+            made.problem,
+            start=start,
+            weights=(np.abs(left) < _FAR_OUT * usual_left).astype(np.float64),
+            stiffness=_stiffness(made.problem.spline.rough @ start),
+        )
+        return replace(
+            made,
+            problem=problem,
+            shaft_rad=smooth + terms.values[first:] @ made.problem.columns[first:],
+            sd=terms.sd,
+            log_penalty=log_penalty,
+            variance=variance,
+            terms=terms,
+            separable=separable,
+        )
+
+    def _with_columns(self) -> _Estimate:
+        """With the waves of the angle as it stands, and what torques at this speed and damping do to it."""
+        waves = _waves(self.shaft_rad)
+        if not self.with_torques:
+            return replace(self, problem=replace(self.problem, columns=waves))
+        motion = (self.shaft_rad, *self.rates)
+        damping = 0.0 if self.log_penalty is None or self.terms is None else _damping(self, motion)
+        columns = np.concatenate([waves, *_torques(*motion, damping)])
+        return replace(self, damping_per_s=damping, problem=replace(self.problem, columns=columns))
+
+
+def fitted_motion(readings_rad: Array, time_s: Array, ends: list[int], *, torque: bool) -> MotionFit:
+    """Estimate the motion behind unwrapped readings.
+
+    Parameters
+    ----------
+    readings_rad, time_s : ndarray
+        Readings (n,) [rad], continuous within each stretch, and their times [s], rising.
+    ends : list of int
+        One past the last row of each stretch.
+    torque : bool
+        Whether torques locked to the angle are to be told from the error of the sensor: one speed does not.
+    """
+    spline = Spline.over(time_s, ends)
+    problem = Problem(
+        spline,
+        readings_rad,
+        time_s,
+        np.ones(readings_rad.size),
+        np.ones(spline.rough.shape[0]),
+        np.zeros(spline.size),
+    )
+    problem = replace(problem, start=solution(problem, 0.0))
+    found = _Estimate(problem, ends, np.asarray(spline.design @ problem.start), np.full(2 * HIGHEST_ORDER, np.inf))
+    # The first round finds the motion and its speed, which what torques do follows.
+    found = found.next()
+    if torque:
+        found = replace(found, sd=np.concatenate([found.sd, np.ones(2 * HIGHEST_ORDER + 2 * HIGHEST_OF_GROWING)]))
+        found = replace(found, log_penalty=None)
+    for _ in range(_ROUNDS - 1):
+        found = found.next()
+    assert found.terms is not None
+    assert found.log_penalty is not None
+    speed, acceleration = found.rates
+    return MotionFit(
+        smooth_rad=found.smooth_rad,
+        shaft_rad=found.shaft_rad,
+        speed_rad_s=speed,
+        acceleration_rad_s2=acceleration,
+        knee_rad_s=_knee(found.problem, found.log_penalty),
+        noise_rad=float(np.sqrt(found.variance)),
+        terms=found.terms,
+        usable=found.problem.weights > 0.0,
+        damping_per_s=found.damping_per_s,
+        separable=found.separable,
+    )
+
+
+def _separable(reduced: Reduced, variance: float, usual_rad_s: float) -> BoolArray:
+    """Whether of each order (orders,) a torque that makes all that is seen of it would be told from an error."""
+    first, dry = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
+    found = np.zeros(HIGHEST_ORDER, dtype=bool)
+    if len(reduced.gradient) <= first:
+        return found
+    # Without any torque, all of it is the sensor's.
+    seen = np.linalg.solve(reduced.normal[:first, :first] + 1e-12 * np.eye(first), reduced.gradient[:first])
+    noise = variance / np.diag(reduced.normal)[:first]
+    orders = np.arange(1, HIGHEST_ORDER + 1)
+    amplitude = np.sqrt(np.sum((seen**2 + noise).reshape(-1, 2), axis=1))
+    sd = np.concatenate([np.full(first, np.inf), np.repeat(amplitude * (orders * usual_rad_s) ** 2, 2)])
+    told = solved(reduced.normal[:dry, :dry], reduced.gradient[:dry], variance, sd).told[first:]
+    return np.asarray(np.mean(told.reshape(-1, 2), axis=1) > _TOLD)
+
+
+def _drawn(reduced: Reduced, sd: Array, variance: float, usual_rad_s: float, separable: BoolArray) -> Drawn:
+    """The coefficients, each order's torque by a scatter of its own; none where it would not be told.
+
+    A torque that grows with the speed, as a modulated viscous friction does, is told from a constant one by three
+    speeds or more. Where it is not, it is taken to be there, half as large.
+    """
+    first, dry = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
+    if len(sd) <= dry:
+        return solved(reduced.normal, reduced.gradient, variance, sd)
+    pairs = [np.arange(place, place + 2) for place in range(first, len(sd), 2)]
+    constant = [pair for pair, told in zip(pairs, separable, strict=False) if told]
+    sd = sd.copy()
+    sd[first:] = 1e-9 * usual_rad_s
+    sd[np.concatenate([np.zeros(0, dtype=np.int64), *constant])] = usual_rad_s**2
+    found = drawn(reduced.normal, reduced.gradient, variance, groups=constant, sd=sd)
+    sd = found.sd.copy()
+    growing = pairs[HIGHEST_ORDER:]
+    for group, beside in zip(growing, pairs, strict=False):
+        sd[group] = 0.5 * sd[beside] / usual_rad_s
+    found = drawn(reduced.normal, reduced.gradient, variance, groups=constant, sd=sd)
+    told = [group for group in growing if np.mean(found.told[group]) > _TOLD]
+    return drawn(reduced.normal, reduced.gradient, variance, groups=[*constant, *told], sd=found.sd) if told else found
+
+
+def _waves(shaft_rad: Array) -> Array:
+    """Cosine and sine (2 orders, n) of each order of the angle."""
+    return np.concatenate(
+        [np.stack([np.cos(k * shaft_rad), np.sin(k * shaft_rad)]) for k in range(1, HIGHEST_ORDER + 1)]
+    )
+
+
+def _torques(shaft_rad: Array, speed_rad_s: Array, acceleration_rad_s2: Array, damping_per_s: float) -> list[Array]:
+    """What torques of each order that give 1 rad/s^2, or modulate drag, add to the angle: (.., n) [rad] each."""
+    motion = {"shaft_rad": shaft_rad, "speed_rad_s": speed_rad_s, "acceleration_rad_s2": acceleration_rad_s2}
+    moved = np.concatenate(
+        [response(order, **motion, damping_per_s=damping_per_s) for order in range(1, HIGHEST_ORDER + 1)]
+    )
+    return [moved, np.abs(speed_rad_s) * moved[: 2 * HIGHEST_OF_GROWING]]
+
+
+def _damping(found: _Estimate, motion: tuple[Array, Array, Array]) -> float:
+    """The damping [1/s] of highest restricted likelihood."""
+    from scipy.optimize import minimize_scalar
+
+    problem, penalty = found.problem, found.log_penalty
+    assert penalty is not None
+    rows = float(problem.weights.sum()) - PENALISED - int(np.count_nonzero(~np.isfinite(found.sd)))
+    waves = _waves(motion[0])
+    fastest = float(np.max(np.abs(motion[1])))
+
+    def cost(root: float) -> float:
+        columns = np.concatenate([waves, *_torques(*motion, root**2 * fastest)])
+        return replace(problem, columns=columns).reduced(penalty).cost(found.sd, found.variance, rows)
+
+    best = minimize_scalar(cost, bounds=(0.0, 1.0), method="bounded", options={"xatol": 0.01})
+    return float(best.x) ** 2 * fastest
+
+
+def _rates(smooth_rad: Array, time_s: Array, ends: list[int]) -> tuple[Array, Array]:
+    """Speed and acceleration (n,) of a smooth motion, stretch by stretch."""
+    speed, acceleration = np.empty_like(time_s), np.empty_like(time_s)
+    for rows in pieces(ends):
+        speed[rows] = np.gradient(smooth_rad[rows], time_s[rows])
+        acceleration[rows] = np.gradient(speed[rows], time_s[rows])
+    return speed, acceleration
+
+
+def _stiffness(differences: Array) -> Array:
+    """How firmly each third difference (d,) is held against the usual one: less where the motion is rougher."""
+    from scipy.ndimage import uniform_filter1d
+
+    local = uniform_filter1d(differences**2, _WINDOW, mode="nearest")
+    return np.asarray(1.0 / np.maximum(local / (_BEYOND_CHANCE * max(float(np.median(local)), 1e-300)), 1.0))
+
+
+def _knee(problem: Problem, log_penalty: float) -> Array:
+    """Angular frequency (n,) [rad/s] at which the spline takes half of what a reading's noise does."""
+    spline = problem.spline
+    step = float(np.median(np.diff(problem.time_s)))
+    held = 10.0**log_penalty * np.interp(problem.time_s, spline.at_s, problem.stiffness)
+    return np.asarray((spline.spacing_s / (held * step)) ** (1.0 / (2 * PENALISED)) / spline.spacing_s)

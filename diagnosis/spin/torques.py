@@ -1,0 +1,61 @@
+"""What torques locked to the angle may have done to an estimated motion, taken out of what a fit is judged by."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnosis.spin.spline import pieces, stretch_ends
+from twin.angles import Array
+from twin.effect import BoolArray
+from twin.mechanics.torque_ripple import response
+from twin.motion import Motion
+
+
+def torque_columns(motion: Motion) -> Array:
+    """Angles (m, n) [rad] by which torques may turn the shaft, each one standard deviation of what they may be.
+
+    None (0, n) where a reference was recorded, or no torque is taken to be there.
+    """
+    found = motion.estimated
+    if found is None:
+        return np.zeros((0, len(motion)))
+    acceleration = np.zeros(len(motion))
+    for rows in pieces(stretch_ends(found.stretch)):
+        if rows.stop - rows.start > 1:
+            acceleration[rows] = np.gradient(motion.speed_rad_s[rows], motion.time_s[rows])
+    columns = [np.zeros((0, len(motion)))]
+    for torque in found.torques:
+        if torque.scatter_rad_s2 or torque.growing_rad_s:
+            moved = response(
+                torque.order,
+                shaft_rad=motion.shaft_rad,
+                speed_rad_s=motion.speed_rad_s,
+                acceleration_rad_s2=acceleration,
+                damping_per_s=found.damping_per_s,
+            )
+            columns += [torque.scatter_rad_s2 * moved, torque.growing_rad_s * np.abs(motion.speed_rad_s) * moved]
+    return np.concatenate(columns)
+
+
+class Loose:
+    """Directions in which readings are free by some standard deviation beside their noise, whitened.
+
+    With columns T of one standard deviation each and white noise of RMS s, readings have the covariance s^2 I + T T';
+    its inverse square root, times s, is ``1 - Q f Q'`` with orthonormal directions Q and shares f. Rows that are not in
+    use lose what the others tell of the columns.
+    """
+
+    def __init__(self, columns: Array, usable: BoolArray, noise: float) -> None:
+        used = columns * usable / noise
+        size, turned = np.linalg.eigh(used @ used.T)
+        size, turned = np.maximum(size, 1e-12), turned
+        self._usable = usable
+        self._directions: Array = (turned / np.sqrt(size)).T @ used
+        self._shares: Array = 1.0 - 1.0 / np.sqrt(1.0 + size)
+        self._columns: Array = (turned * (np.sqrt(size) / (1.0 + size))).T @ (columns / noise)
+
+    def whitened(self, values: Array) -> Array:
+        """Values (..., n) less what they have along the directions."""
+        along = (values * self._usable) @ self._directions.T
+        of_used = (along * self._shares) @ self._directions
+        return np.asarray(values - np.where(self._usable, of_used, along @ self._columns))

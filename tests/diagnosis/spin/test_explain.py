@@ -1,0 +1,91 @@
+"""explain and compensate of logs without a reference: what is found, what is left open, and what is refused."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnosis import Explanation, explain
+from diagnosis.report.console import text
+from tests.command_line import halltwin
+from tests.hidden.spins.generator import draw
+from tests.hidden.spins.judging import left_by
+from tests.spin_answerer import explained
+from twin.errors import SweepError
+
+TIME = np.arange(0.0, 4.0, 0.001)
+
+
+def even(turns_per_s: float, *, order: int = 1, error_deg: float = 0.5, seed: int = 1) -> dict[str, Any]:
+    """A shaft at one speed, and a sensor with an error of one order."""
+    angle = 360.0 * turns_per_s * TIME
+    noise = 0.03 * np.random.default_rng(seed).standard_normal(TIME.size)
+    read = angle + error_deg * np.cos(order * np.radians(angle)) + noise
+    return {"time_s": TIME, "measured_deg": np.mod(read, 360.0)}
+
+
+@cache
+def at_one_speed() -> Explanation:
+    return explain(even(9.0, order=5))
+
+
+def test_at_one_speed_a_cause_may_be_a_torque() -> None:
+    answer = at_one_speed().to_dict()
+    assert [cause["name"] for cause in answer["causes"]] == ["magnet_harmonic"]
+    assert "torque_ripple" in answer["causes"][0]["indistinguishable_from"]
+    assert "second speed" in answer["causes"][0]["to_tell_apart"]
+    assert answer["motion"]["not_separable"] == list(range(1, 17))
+    assert "orders 1 to 16" in text(answer, width=400)
+
+
+def test_at_two_speeds_it_may_not() -> None:
+    answer = explain([even(9.0, order=5), even(25.0, order=5, seed=2)]).to_dict()
+    assert [cause["name"] for cause in answer["causes"]] == ["magnet_harmonic"]
+    assert "torque_ripple" not in answer["causes"][0]["indistinguishable_from"]
+    assert 5 not in answer["motion"]["not_separable"]
+    assert answer["causes"][0]["parameters"]["amplitude_deg"]["value"] == pytest.approx(0.5, abs=0.01)
+
+
+def test_what_a_reference_does_is_not_looked_for() -> None:
+    lacks = at_one_speed().to_dict()["not_visible"]
+    assert {"backlash", "index_slip", "drive_ripple", "zero_drift"} <= set(lacks)
+    assert "a reference" in lacks["index_slip"]
+
+
+def test_a_coast_of_the_independent_generator_is_corrected(tmp_path: Path) -> None:
+    """To 0.02 deg over orders 1 to 16, of 0.2 to 0.7: cogging, an unbalance and friction that follows the angle."""
+    drawn = draw("coast", seed=11)
+    _, corrected, _ = explained([str(path) for path in drawn.write(tmp_path)])
+    left = left_by(corrected, drawn.at_rest)
+    assert left.rms_deg < 0.02 < 0.1 * left.raw_rms_deg * 10.0
+
+
+def test_compensate_takes_such_a_log(tmp_path: Path) -> None:
+    log = tmp_path / "spin.csv"
+    rows = even(9.0)
+    np.savetxt(log, np.column_stack(list(rows.values())), delimiter=",", header=",".join(rows), comments="")
+    done = halltwin("compensate", log, "--table", tmp_path / "table.csv")
+    assert done.code == 0
+    table = np.genfromtxt(tmp_path / "table.csv", delimiter=",", names=True, comments="#")
+    assert len(table) == 64
+
+
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [
+        (
+            {"time_s": TIME, "measured_deg": np.full(TIME.size, 20.0)},
+            "the shaft turns evenly in 0",
+        ),
+        ({"time_s": TIME[::-1], "measured_deg": 90.0 * TIME}, "row 2, column time_s: found 3.998 after 3.999"),
+        ({"time_s": TIME[:20], "measured_deg": 90.0 * TIME[:20]}, "20 usable rows and no reference_deg"),
+        ({"time_s": 0.0 * TIME, "measured_deg": 90.0 * TIME}, "column time_s: every row is 0"),
+    ],
+)
+def test_what_is_no_spin_is_refused_with_the_reason(columns: dict[str, Any], said: str) -> None:
+    with pytest.raises(SweepError, match=said):
+        explain(columns)

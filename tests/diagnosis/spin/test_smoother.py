@@ -1,0 +1,121 @@
+"""Of a spin with a known truth the sensor's error is found, torques are told from it, and what is not told is said."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diagnosis.spin.of_log import sweeps_of
+from diagnosis.spin.smoother import HIGHEST_ORDER, MotionFit, fitted_motion
+from diagnosis.spin.torques import Loose
+from twin.spin import Spin
+
+TIME = np.arange(0.0, 6.0, 0.001)
+OFFSET = 0.01
+"""Amplitude [rad] of the sensor's order 1."""
+NOISE = 3e-4
+COGGING = 60.0
+"""Acceleration [rad/s^2] of order 3."""
+
+
+def coasting(*, cogging: float = COGGING, last: float = 30.0) -> np.ndarray:
+    """A shaft that slows from 120 rad/s to ``last``, its angle (n,) [rad] by fine steps of the equation of motion."""
+    slows, steps = (last - 120.0) / TIME[-1], 10
+    angle, speed, out = 0.0, 120.0, np.empty(TIME.size)
+    step = 0.001 / steps
+    for row in range(TIME.size):
+        out[row] = angle
+        for _ in range(steps):
+            half = speed + 0.5 * step * (slows + cogging * np.cos(3.0 * angle))
+            angle += step * half
+            speed = half + 0.5 * step * (slows + cogging * np.cos(3.0 * angle))
+    return out
+
+
+def read(angle: np.ndarray, *, seed: int = 1) -> np.ndarray:
+    noise = NOISE * np.random.default_rng(seed).standard_normal(angle.size)
+    return np.asarray(angle + OFFSET * np.sin(angle) + 0.004 * np.cos(3.0 * angle) + noise)
+
+
+def fitted(angle: np.ndarray, *, torque: bool = True) -> MotionFit:
+    return fitted_motion(read(angle), TIME, [TIME.size], torque=torque)
+
+
+def error_of(fit: MotionFit, order: int) -> np.ndarray:
+    return np.asarray(fit.terms.values[2 * order - 2 : 2 * order])
+
+
+def test_a_coast_tells_the_sensor_from_a_torque_of_the_same_order() -> None:
+    """Both of order 3: 0.004 rad of the sensor, and a torque that turns the shaft by 0.0005 to 0.007 rad."""
+    fit = fitted(coasting())
+    sd = np.sqrt(np.diag(fit.terms.covariance))
+    assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=5.0 * sd[0])
+    assert error_of(fit, 3) == pytest.approx([0.004, 0.0], abs=5.0 * sd[4])
+    assert sd[4] < 3e-4
+    torque = fit.terms.values[2 * HIGHEST_ORDER + 4 : 2 * HIGHEST_ORDER + 6]
+    assert np.hypot(*torque) == pytest.approx(COGGING, rel=0.1)
+    assert fit.separable[:4].all()
+    assert fit.noise_rad == pytest.approx(NOISE, rel=0.1)
+
+
+def test_without_the_torque_in_the_model_it_is_taken_for_the_sensors() -> None:
+    fit = fitted(coasting(), torque=False)
+    assert not fit.separable.any()
+    assert np.hypot(*(error_of(fit, 3) - [0.004, 0.0])) > 5e-4
+
+
+def test_no_torque_is_seen_where_none_is() -> None:
+    fit = fitted(coasting(cogging=0.0))
+    assert np.hypot(*fit.terms.values[2 * HIGHEST_ORDER + 4 : 2 * HIGHEST_ORDER + 6]) < 0.1 * COGGING
+
+
+def test_readings_far_off_are_left_out() -> None:
+    angle = coasting()
+    readings = read(angle)
+    readings[::100] += 0.5
+    fit = fitted_motion(readings, TIME, [TIME.size], torque=True)
+    assert not fit.usable[::100].any()
+    assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=2e-4)
+
+
+def test_a_jerk_is_set_aside() -> None:
+    """A drive that takes the shaft from one speed to another in a tenth of a second."""
+    speed = 60.0 + 60.0 / (1.0 + np.exp(-(TIME - 3.0) / 0.02))
+    angle = np.concatenate([[0.0], np.cumsum(0.0005 * (speed[1:] + speed[:-1]))])
+    (sweep,) = sweeps_of([Spin.from_columns({"time_s": TIME, "measured_deg": np.degrees(read(angle))})])
+    assert sweep.estimated is not None
+    assert sweep.time_s is not None
+    assert not np.any(np.abs(sweep.time_s - 3.0) < 0.05)
+    assert len(sweep) > 0.85 * TIME.size
+    assert len(sweep.estimated.lengths) == 2
+
+
+def test_two_logs_of_one_speed_each_tell_together_what_neither_tells() -> None:
+    slow, fast = 40.0 * TIME, 100.0 * TIME
+    logs = [
+        Spin.from_columns({"time_s": TIME, "measured_deg": np.degrees(read(angle, seed=seed))})
+        for seed, angle in enumerate((slow, fast))
+    ]
+    for log in logs:
+        (alone,) = sweeps_of([log])
+        assert alone.estimated is not None
+        assert not any(torque.separable for torque in alone.estimated.torques)
+    for sweep in sweeps_of(logs):
+        assert sweep.estimated is not None
+        assert all(torque.separable for torque in sweep.estimated.torques[:4])
+
+
+def test_directions_that_are_loose_are_whitened_as_their_covariance_says() -> None:
+    rng = np.random.default_rng(3)
+    columns = 0.05 * rng.standard_normal((3, 400))
+    loose = Loose(columns, np.ones(400, dtype=bool), 0.01)
+    covariance = 0.01**2 * np.eye(400) + columns.T @ columns
+    whitened = loose.whitened(covariance)
+    assert np.allclose(loose.whitened(whitened.T), 0.01**2 * np.eye(400), atol=1e-10)
+
+
+def test_rows_out_of_use_lose_what_the_others_tell() -> None:
+    wave = 0.05 * np.cos(np.arange(400) / 9.0)[None]
+    use = np.arange(400) < 300
+    left = Loose(wave, use, 1e-4).whitened(0.3 * wave[0])
+    assert np.max(np.abs(left[~use])) < 1e-3 * 0.3 * 0.05

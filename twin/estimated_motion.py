@@ -1,0 +1,134 @@
+"""A motion that no reference recorded: how freely the shaft may have moved beside what was estimated of it."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from twin.angles import Array, IntArray
+
+_LOUDEST = 1e12
+"""Of a motion against the noise: from there on more of it makes no difference in double precision."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Torque:
+    """A torque locked to the shaft's angle, of one order.
+
+    Attributes
+    ----------
+    order : int
+        Periods a turn.
+    cos_rad_s2, sin_rad_s2 : float
+        The angular accelerations that go with cosine and sine of the angle [rad/s^2].
+    sd_rad_s2 : float
+        Standard deviation of their errors.
+    scatter_rad_s2, growing_rad_s : float
+        Standard deviations of what such a torque may be, of the part that does not depend on the speed [rad/s^2] and of
+        that which grows with it [rad/s^2 for each rad/s]; 0: none is taken to be there.
+    separable : bool
+        Whether the speeds of the log tell such a torque, were it as large as to make all that is seen of this order,
+        from an error of the sensor.
+    """
+
+    order: int
+    cos_rad_s2: float = 0.0
+    sin_rad_s2: float = 0.0
+    sd_rad_s2: float = 0.0
+    scatter_rad_s2: float = 0.0
+    growing_rad_s: float = 0.0
+    separable: bool = False
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class EstimatedMotion:
+    """What goes with a motion that was estimated from the sensor's readings.
+
+    Attributes
+    ----------
+    stretch : ndarray
+        Number of the stretch without a stop or a gap that each reading (n,) is of, never falling.
+    knee_rad : ndarray
+        Angular frequency [rad a row], (n,), at which the motion is as free as a reading is noisy: slower, an error of
+        the sensor cannot be told from a movement of the shaft. 0 where a reference was recorded.
+    noise_rad : float
+        RMS [rad] of a reading about the motion.
+    torques : tuple of Torque
+        What was found of torques locked to the angle, order by order.
+    damping_per_s : float
+        Rate at which friction and the drive undo a departure from the speed [1/s].
+    rows_aside : int
+        Readings of the log that tell nothing: at standstill, in a jerk, or far off.
+    even_clock : bool
+        Whether the readings were taken to be evenly spaced, their time stamps being coarser than their spacing or none.
+    """
+
+    stretch: IntArray
+    knee_rad: Array
+    noise_rad: float
+    torques: tuple[Torque, ...] = field(default=())
+    damping_per_s: float = 0.0
+    rows_aside: int = 0
+    even_clock: bool = False
+
+    SLOPE = 6
+    """Of the motion's spectrum over frequency: that of an angle whose torque is a random walk."""
+
+    def part(self, rows: IntArray) -> EstimatedMotion:
+        """Only these rows (m,); where rows are left out between two, a stretch ends."""
+        broken = (np.diff(rows) != 1) | (np.diff(self.stretch[rows]) != 0)
+        stretch = np.concatenate([[0], np.cumsum(broken)]).astype(np.int64) if rows.size else self.stretch[rows]
+        return replace(self, stretch=stretch, knee_rad=self.knee_rad[rows])
+
+    def averaged(self, group: IntArray) -> EstimatedMotion:
+        """Of rows that are averaged by groups (n,), numbered from 0."""
+        count = np.bincount(group)
+        first = np.searchsorted(group, np.arange(count.size))
+        return replace(self, stretch=self.stretch[first], knee_rad=self.knee_rad[first] * count)
+
+    @classmethod
+    def joined(cls, parts: Sequence[EstimatedMotion | None], lengths: Sequence[int]) -> EstimatedMotion | None:
+        """Of several recordings one behind the other, None standing for one with a reference; None: all are.
+
+        Torques are those of one rotor, told by all recordings together.
+        """
+        known = [part for part in parts if part is not None]
+        if not known:
+            return None
+        stretch, knee, at = [], [], 0
+        for part, length in zip(parts, lengths, strict=True):
+            own = np.zeros(length, dtype=np.int64) if part is None else part.stretch - part.stretch[0]
+            stretch.append(own + at)
+            knee.append(np.zeros(length) if part is None else part.knee_rad)
+            at = int(stretch[-1][-1]) + 1
+        return cls(
+            stretch=np.concatenate(stretch),
+            knee_rad=np.concatenate(knee),
+            noise_rad=float(np.median([part.noise_rad for part in known])),
+            torques=known[0].torques,
+            damping_per_s=known[0].damping_per_s,
+            rows_aside=sum(part.rows_aside for part in known),
+            even_clock=any(part.even_clock for part in known),
+        )
+
+    @cached_property
+    def lengths(self) -> tuple[int, ...]:
+        """Readings of each stretch."""
+        ends = [*(np.flatnonzero(np.diff(self.stretch)) + 1).tolist(), self.stretch.size]
+        return tuple(b - a for a, b in itertools.pairwise([0, *ends]))
+
+    @cached_property
+    def spectrum(self) -> Array:
+        """Variance (n,) of the motion over that of the noise, for the cosine coefficients of each stretch."""
+        out, at = [], 0
+        for length in self.lengths:
+            knee = float(np.median(self.knee_rad[at : at + length])) * length / np.pi
+            with np.errstate(divide="ignore"):
+                over = (knee / np.arange(length)) ** self.SLOPE if knee > 0.0 else np.zeros(length)
+            out.append(np.minimum(over, _LOUDEST))
+            at += length
+        return np.concatenate(out)

@@ -1,0 +1,42 @@
+"""Reading a recording: a sweep, or where the file holds no reference a spin."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from twin.angles import Array
+from twin.bounded_input import LARGEST_SWEEP_BYTES
+from twin.log import LOG
+from twin.shown_name import shown_name
+from twin.spin import Spin
+from twin.sweep import Sweep
+from twin.sweep_columns import is_spin
+from twin.sweep_reader import read_sweep
+
+
+def read_recording(
+    path: str | Path,
+    *,
+    max_bytes: int = LARGEST_SWEEP_BYTES,
+    name: str | None = None,
+    columns: str | None = None,
+    pole_pairs: int | None = None,
+) -> Sweep | Spin:
+    """Read a file as :meth:`twin.Sweep.read` does; one without ``reference_deg`` is a :class:`~twin.spin.Spin`.
+
+    Raises
+    ------
+    SweepError
+        Where the file cannot be read or used.
+    """
+    called = name or shown_name(path)
+
+    def checked(found: Mapping[str, Array]) -> Sweep | Spin:
+        if is_spin(found):
+            return Spin.from_columns(found, name=called, pole_pairs=pole_pairs)
+        return Sweep.from_columns(found, name=called, pole_pairs=pole_pairs)
+
+    found = read_sweep(Path(path), checked, columns=columns, max_bytes=max_bytes, spin=True)
+    LOG.info("read %s: %d rows", found.name, len(found))
+    return found

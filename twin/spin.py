@@ -1,0 +1,121 @@
+"""Spin: a log of a turning shaft in which the sensor's readings stand alone, without a reference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Self
+
+import numpy as np
+
+from twin.angles import Array, IntArray
+from twin.errors import SweepError
+from twin.periods import checked_pole_pairs
+from twin.sweep_checks import check_plausible
+from twin.sweep_columns import COLUMNS, MAY_BE_MISSING
+
+FEWEST_ROWS = 64
+"""Readings of which a motion and an error are told; a turn of fewer tells neither."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spin:
+    """The used rows of a log without a reference, in the order in which they were taken.
+
+    Attributes
+    ----------
+    measured_deg : ndarray
+        What the sensor reads [deg], (n,).
+    time_s : ndarray or None
+        When [s], never falling; None where not recorded: the readings are taken to be evenly spaced.
+    others : mapping of str to ndarray
+        Further columns of the file format by name, (n,) each.
+    rejected : mapping of int to str
+        Numbers of the rows that cannot be used (first reading = 1), and why.
+    name : str
+        Of the file, or of the kind of thing that the columns came from.
+    row_numbers : ndarray
+        Numbers (n,) of the used rows.
+    """
+
+    measured_deg: Array
+    time_s: Array | None
+    others: Mapping[str, Array]
+    rejected: Mapping[int, str] = field(default_factory=dict)
+    name: str = "spin"
+    row_numbers: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+    def __repr__(self) -> str:
+        names = [*(("time_s",) if self.time_s is not None else ()), "measured_deg", *self.others]
+        return f"Spin({self.name!r}, {len(self)} readings, columns {', '.join(names)})"
+
+    def __len__(self) -> int:
+        return int(self.measured_deg.size)
+
+    @classmethod
+    def from_columns(cls, columns: Mapping[str, Array], *, name: str = "spin", pole_pairs: int | None = None) -> Self:
+        """Check the columns and leave out rows with missing cells.
+
+        Parameters
+        ----------
+        columns : mapping of str to ndarray
+            ``measured_deg``, or ``vx`` and ``vy``, and where recorded ``time_s`` and other columns of the file format,
+            (n,) each, in the units of their names; NaN where a cell is missing.
+        name : str, optional
+            What messages call it.
+        pole_pairs : int, optional
+            How often the field at the sensor turns in a turn of the shaft; more than once is refused: without a
+            reference nothing says where in its turn the shaft stands.
+
+        Raises
+        ------
+        SweepError
+            Where they cannot be used.
+        """
+        if checked_pole_pairs(pole_pairs) is not None:
+            raise SweepError(
+                f"{name}: no reference_deg, and a sensor of {pole_pairs} periods a turn; its periods are told by a "
+                "reference alone: record one beside it, or leave the pole pairs out to explain the error over a period"
+            )
+        data = {key: np.asarray(columns[key], dtype=np.float64) for key in COLUMNS if key in columns}
+        for key, values in data.items():
+            check_plausible(key, values, name=name)
+        data = {key: values for key, values in data.items() if np.isfinite(values).any()}
+        if "measured_deg" not in data and {"vx", "vy"} <= set(data):
+            data["measured_deg"] = np.degrees(np.arctan2(data["vy"], data["vx"]))
+        if "measured_deg" not in data:
+            raise SweepError(f"{name}: no cell of measured_deg holds a number; expected the sensor's readings")
+        if ("vx" in data) != ("vy" in data):
+            have, lack = ("vx", "vy") if "vx" in data else ("vy", "vx")
+            raise SweepError(f"{name}: column {have} stands without {lack}; expected both channels or none: add {lack}")
+        rejected: dict[int, str] = {}
+        keep = np.ones(data["measured_deg"].size, dtype=bool)
+        for key, values in data.items():
+            if key not in MAY_BE_MISSING:
+                for row in np.flatnonzero(~np.isfinite(values) & keep).tolist():
+                    rejected[row + 1] = f"{key} missing or not finite"
+                keep &= np.isfinite(values)
+        used = {key: np.ascontiguousarray(values[keep]) for key, values in data.items()}
+        measured, time = used.pop("measured_deg"), used.pop("time_s", None)
+        _check(measured, time, rows=np.flatnonzero(keep) + 1, rejected=len(rejected), name=name)
+        return cls(measured, time, used, dict(sorted(rejected.items())), name, np.flatnonzero(keep) + 1)
+
+
+def _check(measured: Array, time: Array | None, *, rows: IntArray, rejected: int, name: str) -> None:
+    if measured.size < FEWEST_ROWS:
+        lost = f" ({rejected} rejected for missing or infinite cells)" if rejected else ""
+        raise SweepError(
+            f"{name}: {measured.size} usable rows{lost} and no reference_deg; without a reference expected at least "
+            f"{FEWEST_ROWS} readings of a turning shaft with time_s; or add reference_deg"
+        )
+    if time is None:
+        return
+    back = np.flatnonzero(np.diff(time) < 0.0)
+    if back.size:
+        row = int(back[0]) + 1
+        raise SweepError(
+            f"{name}: row {rows[row]}, column time_s: found {time[row]:g} after {time[row - 1]:g}; without a reference "
+            "the motion is told by the time: expected one that never falls: sort the rows, or split the log"
+        )
+    if time[-1] == time[0]:
+        raise SweepError(f"{name}: column time_s: every row is {time[0]:g}; expected the time of each reading")

@@ -24,6 +24,7 @@ from twin.chain import Chain
 from twin.each_recording import MARK, over_recordings
 from twin.effect import BoolArray, Effect
 from twin.errors import SweepError
+from twin.estimated_motion import EstimatedMotion
 from twin.hall.offset import OFFSET
 from twin.magnet.magnet import Magnet
 from twin.mechanics.zero import ZERO
@@ -219,4 +220,5 @@ def _one_sweep(sweeps: Sequence[Sweep], setups: Sequence[Setup]) -> Sweep:
         set_aside=sum(sweep.set_aside for sweep in sweeps),
         recordings=Recordings(number, tuple(setups), _left_out(sweeps)),
         senses=sweeps[0].senses,
+        estimated=EstimatedMotion.joined([sweep.estimated for sweep in sweeps], [len(sweep) for sweep in sweeps]),
     )

@@ -78,8 +78,10 @@ class EstimatedMotion:
     SLOPE = 6
     """Of the motion's spectrum over frequency: that of an angle whose torque is a random walk."""
 
-    def part(self, rows: IntArray) -> EstimatedMotion:
-        """Only these rows (m,); where rows are left out between two, a stretch ends."""
+    def part(self, rows: IntArray) -> EstimatedMotion | None:
+        """Only these rows (m,); where rows are left out between two, a stretch ends. None: all have a reference."""
+        if not np.any(self.knee_rad[rows]):
+            return None
         broken = (np.diff(rows) != 1) | (np.diff(self.stretch[rows]) != 0)
         stretch = np.concatenate([[0], np.cumsum(broken)]).astype(np.int64) if rows.size else self.stretch[rows]
         return replace(self, stretch=stretch, knee_rad=self.knee_rad[rows])

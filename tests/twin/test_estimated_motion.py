@@ -15,6 +15,7 @@ def motion(rows: int = 12, stretches: int = 2) -> EstimatedMotion:
 
 def test_a_stretch_ends_where_rows_are_left_out() -> None:
     part = motion().part(np.array([0, 1, 3, 4, 6, 7]))
+    assert part is not None
     assert part.stretch.tolist() == [0, 0, 1, 1, 2, 2]
     assert part.lengths == (2, 2, 2)
 
@@ -31,6 +32,7 @@ def test_joined_with_one_that_has_a_reference_the_shaft_is_free_in_its_own_rows_
     assert joined.lengths == (4, 6, 6)
     assert np.all(joined.spectrum[:4] == 0.0)
     assert np.all(joined.spectrum[4:] > 0.0)
+    assert joined.part(np.arange(4)) is None
     assert EstimatedMotion.joined([None, None], [4, 4]) is None
 
 

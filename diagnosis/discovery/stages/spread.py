@@ -10,6 +10,7 @@ from diagnosis.discovery.marks.row_masks import scaled
 from diagnosis.discovery.marks.row_numbers import place_in_recording
 from diagnosis.discovery.marks.spread import SpreadFinding, bursts, spread_shapes
 from diagnosis.discovery.search.likelihood_ratio import doubt_beside
+from diagnosis.discovery.stages.recording_levels import recording_levels
 from diagnosis.discovery.state import State
 from twin.catalogue import find, unnamed
 
@@ -21,6 +22,9 @@ def spread(state: State) -> State:
     """
     if state.found("spread"):
         return state
+    if (levelled := recording_levels(state)) is not state:
+        # A level told by neighbours far apart held what the search has found since: the next round judges by the new.
+        return levelled
     fit = state.fit
     shapes = spread_shapes(fit, [effect for effect in state.effects if effect.footprint == "spread"])
     burst = bursts(fit)

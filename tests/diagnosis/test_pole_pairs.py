@@ -177,3 +177,17 @@ def test_the_command_takes_it(tmp_path: Path) -> None:
     refused = halltwin("explain", path, "--pole-pairs", "0")
     assert refused.code == 2
     assert refused.err.count("\n") <= 1
+
+
+def test_teeth_make_the_lines_of_periods_that_nobody_has_counted() -> None:
+    """Orders p and 2p, as of offset and gain within a period: a gear of p teeth too, unless the periods are known."""
+    angle = np.arange(0.0, 360.0, 0.5)
+    wave = 0.2 * np.cos(np.radians(12.0 * angle)) + 0.08 * np.sin(np.radians(24.0 * angle))
+    noise = 0.02 * np.random.default_rng(2).standard_normal(angle.size)
+    sweep = {"reference_deg": angle, "measured_deg": angle + wave + noise}
+    (found,) = explain(sweep).causes
+    assert found.name == "multipole"
+    assert "mechanics" in found.indistinguishable_from
+    (known,) = explain(sweep, pole_pairs=12).causes
+    assert known.name == "multipole"
+    assert "mechanics" not in known.indistinguishable_from

@@ -45,7 +45,9 @@ def with_periods(effects: Sequence[Effect], periods: int, *, given: bool) -> tup
     Left out are those of a single period whose lines are the same: gain and phase of one, where there are two; not
     where a twin is ``given``, which may have them.
     """
-    known = replace(MULTIPOLE, shapes=lambda motion: [{"periods": float(periods)}])
+    # Who knows the sensor's periods knows that their lines are no teeth's.
+    told = None if MULTIPOLE.comb is None else replace(MULTIPOLE.comb, also=None)
+    known = replace(MULTIPOLE, shapes=lambda motion: [{"periods": float(periods)}], comb=told)
     same = set() if given or periods != 2 else {GAIN_MISMATCH.name, PHASE.name}
     return tuple(known if e.name == MULTIPOLE.name else e for e in effects if e.name not in same)
 
@@ -91,7 +93,15 @@ MULTIPOLE = Effect(
     forward=forward,
     needs=frozenset({"one turn"}),
     shapes=shapes,
-    comb=Comb(orders=orders, parts=(("x_percent", "y_percent"), ("ratio", "beta_deg"))),
+    comb=Comb(
+        orders=orders,
+        parts=(("x_percent", "y_percent"), ("ratio", "beta_deg")),
+        also=(
+            "mechanics",
+            "from mechanics (p teeth of a gear or belt): count them, or the sensor's own periods, and say these by "
+            "--pole-pairs",
+        ),
+    ),
     drawing=drawing,
     source="the paper's Eq. 1 with p times the angle: a sensor over p pole pairs, a resolver of p speeds",
     signature="orders p and 2p, phases as of offset, gain and phase within a period; 3p where these are large",

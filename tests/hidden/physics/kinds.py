@@ -167,8 +167,8 @@ OUTSIDE: dict[str, Kind] = {
     ),
     "play_weight": Kind(rotor.play_under_weight, UNNAMED, ("unnamed", "magnet_harmonic"), ("static", "many_turns")),
     "gear_runout": Kind(rotor.gear_runout, UNNAMED, protocols=("many_turns", "spin"), demands=Demands(turns=5)),
-    # twice its order may be one that a motor has
-    "gear_mesh": Kind(rotor.gear_mesh, UNNAMED, (*SEVERAL, "drive_ripple")),
+    # Twice its order may be one that a motor has; and a sensor of as many periods makes both orders.
+    "gear_mesh": Kind(rotor.gear_mesh, (*UNNAMED, ("mechanics",)), (*SEVERAL, "drive_ripple")),
     "belt": Kind(
         rotor.belt, UNNAMED, ("unnamed", "bearing_wobble"), protocols=("many_turns",), demands=Demands(turns=8)
     ),

@@ -18,6 +18,7 @@ from tests.mutations.scripts import SCRIPTS
 from tests.mutations.settings import settings
 from tests.mutations.setups import SETUPS
 from tests.mutations.signs import signs
+from tests.mutations.spins import SPINS
 from tests.mutations.stages import STAGES
 from tests.mutations.studies import STUDIES
 from tests.mutations.thermal import THERMAL
@@ -44,6 +45,7 @@ def mutations() -> tuple[Mutation, ...]:
         *THERMAL,
         *WORDS,
         *SETUPS,
+        *SPINS,
         *settings(),
         *signs(),
     )

@@ -38,5 +38,6 @@ def read_recording(
         return Sweep.from_columns(found, name=called, pole_pairs=pole_pairs)
 
     found = read_sweep(Path(path), checked, columns=columns, max_bytes=max_bytes, spin=True)
-    LOG.info("read %s: %d rows", found.name, len(found))
+    used = ", ".join(found.columns)
+    LOG.info("read %s: %d rows, %d rejected; %s", found.name, found.rows, len(found.rejected), used)
     return found

@@ -46,11 +46,20 @@ class Spin:
     row_numbers: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     def __repr__(self) -> str:
-        names = [*(("time_s",) if self.time_s is not None else ()), "measured_deg", *self.others]
-        return f"Spin({self.name!r}, {len(self)} readings, columns {', '.join(names)})"
+        return f"Spin({self.name!r}, {len(self)} readings, columns {', '.join(self.columns)})"
 
     def __len__(self) -> int:
         return int(self.measured_deg.size)
+
+    @property
+    def rows(self) -> int:
+        """Rows recorded, the rejected ones included."""
+        return len(self) + len(self.rejected)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the recorded columns, and of the readings where they are those of the channels."""
+        return (*(("time_s",) if self.time_s is not None else ()), "measured_deg", *self.others)
 
     @classmethod
     def from_columns(cls, columns: Mapping[str, Array], *, name: str = "spin", pole_pairs: int | None = None) -> Self:

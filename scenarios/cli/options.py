@@ -7,8 +7,6 @@ from typing import Annotated, Any
 
 import typer
 
-from twin.periods import MOST_PAIRS
-
 OUTPUTS = "What is written"
 RUNNING = "How it is run"
 """Groups of options in the help text: those in neither decide what the answer is."""
@@ -57,7 +55,6 @@ PolePairs = Annotated[
     typer.Option(
         "--pole-pairs",
         min=1,
-        max=MOST_PAIRS,
         metavar="P",
         help="How often the field at the sensor turns in a turn of the shaft: a ring of P pole pairs, a resolver of P "
         "speeds. An angle or the channels may turn as often.",

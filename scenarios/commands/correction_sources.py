@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from diagnosis.report.row_counts import counts_of, rejected_words
-from diagnosis.spin.of_log import with_motion
 from scenarios.commands.inputs import SweepFiles, SweepsRead, sweep_paths
 from twin.decoded import Decoded, decoded
 from twin.effect import Effect
@@ -36,6 +35,8 @@ def files_of(sources: Sequence[str | Path]) -> list[Path]:
 
 def read_files(paths: Sequence[Path], how: SweepFiles) -> SweepsRead:
     """The sweeps, read as those that the correction is checked on."""
+    from diagnosis.spin.of_log import with_motion
+
     if len(paths) > 1:
         return how.read(paths, spins=True)
     return SweepsRead(tuple(with_motion([how.recording(paths[0])])))

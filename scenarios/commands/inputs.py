@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from diagnosis.spin.of_log import with_motion
 from scenarios.commands.fail_on import FoundError
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.ending import ending_of
@@ -155,6 +154,8 @@ def read_sweeps(
 
     ``spins``: logs without a reference will do, with the motion that is estimated from all of them.
     """
+    from diagnosis.spin.of_log import with_motion
+
     sweeps: list[Sweep | Spin] = []
     unusable = []
     read = read_recording if spins else Sweep.read

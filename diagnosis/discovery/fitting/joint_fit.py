@@ -143,6 +143,8 @@ class Fit:
 
     @cached_property
     def _covariance(self) -> Array:
+        if not self.free:
+            return np.zeros((0, 0))
         r, j = self.whitened()
         scale = np.linalg.norm(j, axis=1)
         scale[scale == 0.0] = 1.0

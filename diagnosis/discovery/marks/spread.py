@@ -75,7 +75,9 @@ def spread_shapes(fit: Fit, effects: Sequence[Effect]) -> list[SpreadFinding]:
         return []
     square = squares(fit)
     expected = _expected_variance(fit, np.minimum(square, _FARTHEST * np.mean(square)))
-    found = [_spread_shape(fit, effect, square, expected) for effect in effects if effect.spread is not None]
+    provides = fit.observations.motion.provides
+    shown = [effect for effect in effects if effect.spread is not None and effect.visible_in(provides)]
+    found = [_spread_shape(fit, effect, square, expected) for effect in shown]
     return [finding for finding in found if finding is not None]
 
 

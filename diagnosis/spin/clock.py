@@ -4,26 +4,27 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import Array, IntArray
 
 _COARSE = 0.2
 """Share of the usual step from which on the stamps' grid counts: a fifth of a step is a fifth of the way turned."""
 
 
-def even_clock(time_s: Array) -> Array | None:
+def even_clock(time_s: Array, number: IntArray | None = None) -> Array | None:
     """The even clock (n,) [s] that explains stamps which a coarse grid rounds; None where there is none.
 
     Readings that a device takes evenly are stamped when they arrive: in frames of a bus, or by a clock of whole
     milliseconds. Then all stamps lie within the grid's step behind one straight line over the readings' number.
+    ``number`` (n,) is that of each reading where some are missing; not given: none is.
     """
     grid = _grid(time_s)
     if grid is None:
         return None
-    number = np.arange(time_s.size, dtype=np.float64)
-    slope, first = np.polyfit(number, time_s, 1)
-    even = first + slope * number
-    # The line stands in the middle of what rounding does.
-    if slope > 0.0 and float(np.max(np.abs(time_s - even))) < 1.5 * grid:
+    taken = np.arange(time_s.size) if number is None else number
+    slope, first = np.polyfit(taken, time_s, 1)
+    even = first + slope * taken
+    # The line stands in the middle of what rounding does; where that is nothing, the stamps are the clock's own.
+    if slope > 0.0 and 1e-3 * grid < float(np.max(np.abs(time_s - even))) < 1.5 * grid:
         return np.asarray(even)
     return None
 

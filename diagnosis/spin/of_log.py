@@ -39,8 +39,8 @@ class _Log:
     @classmethod
     def of(cls, spin: Spin) -> _Log:
         """Raises SweepError where no stretch shows a turning shaft."""
-        even = None if spin.time_s is None else even_clock(spin.time_s)
-        stamps = np.arange(len(spin), dtype=np.float64) if spin.time_s is None else spin.time_s
+        even = None if spin.time_s is None else even_clock(spin.time_s, spin.row_numbers)
+        stamps = spin.row_numbers.astype(np.float64) if spin.time_s is None else spin.time_s
         time = stamps if even is None else even
         found = _checked(turning(np.radians(spin.measured_deg), time), spin)
         return cls(spin, time, even is not None or spin.time_s is None, found)

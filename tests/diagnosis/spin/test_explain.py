@@ -86,3 +86,19 @@ def test_compensate_takes_such_a_log(tmp_path: Path) -> None:
 def test_what_is_no_spin_is_refused_with_the_reason(columns: dict[str, Any], said: str) -> None:
     with pytest.raises(SweepError, match=said):
         explain(columns)
+
+
+def test_columns_say_which_of_a_logs_are_those_of_a_spin(tmp_path: Path) -> None:
+    log = tmp_path / "own.csv"
+    rows = even(9.0)
+    np.savetxt(
+        log,
+        np.column_stack([1e3 * rows["time_s"], np.radians(rows["measured_deg"])]),
+        delimiter=",",
+        header="t_ms,ang",
+        comments="",
+    )
+    done = halltwin(
+        "compensate", log, "--columns", "time_s=t_ms:ms, measured_deg=ang:rad", "--table", tmp_path / "t.csv"
+    )
+    assert done.code == 0, done.err

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -10,7 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from twin.angles import Array, IntArray
+from twin.runs import runs
 
+SPECTRAL_SLOPE = 6
+"""Of a motion's spectrum over frequency: that of an angle whose torque is a random walk."""
 _LOUDEST = 1e12
 """Of a motion against the noise: from there on more of it makes no difference in double precision."""
 
@@ -75,9 +77,6 @@ class EstimatedMotion:
     rows_aside: int = 0
     even_clock: bool = False
 
-    SLOPE = 6
-    """Of the motion's spectrum over frequency: that of an angle whose torque is a random walk."""
-
     def part(self, rows: IntArray) -> EstimatedMotion | None:
         """Only these rows (m,); where rows are left out between two, a stretch ends. None: all have a reference."""
         if not np.any(self.knee_rad[rows]):
@@ -118,19 +117,22 @@ class EstimatedMotion:
         )
 
     @cached_property
+    def slices(self) -> tuple[slice, ...]:
+        """The rows of each stretch."""
+        return runs(self.stretch)
+
+    @cached_property
     def lengths(self) -> tuple[int, ...]:
         """Readings of each stretch."""
-        ends = [*(np.flatnonzero(np.diff(self.stretch)) + 1).tolist(), self.stretch.size]
-        return tuple(b - a for a, b in itertools.pairwise([0, *ends]))
+        return tuple(rows.stop - rows.start for rows in self.slices)
 
     @cached_property
     def spectrum(self) -> Array:
         """Variance (n,) of the motion over that of the noise, for the cosine coefficients of each stretch."""
-        out, at = [], 0
-        for length in self.lengths:
-            knee = float(np.median(self.knee_rad[at : at + length])) * length / np.pi
+        out = []
+        for rows, length in zip(self.slices, self.lengths, strict=True):
+            knee = float(np.median(self.knee_rad[rows])) * length / np.pi
             with np.errstate(divide="ignore"):
-                over = (knee / np.arange(length)) ** self.SLOPE if knee > 0.0 else np.zeros(length)
+                over = (knee / np.arange(length)) ** SPECTRAL_SLOPE if knee > 0.0 else np.zeros(length)
             out.append(np.minimum(over, _LOUDEST))
-            at += length
         return np.concatenate(out)

@@ -12,6 +12,7 @@ import numpy as np
 from twin.angles import TAU, Array, IntArray, wrap
 from twin.estimated_motion import EstimatedMotion
 from twin.recordings import Recordings, Setup
+from twin.runs import runs
 
 STOP_AND_MEASURE_S = 0.02
 """Readings farther apart than this, with no speed recorded, were taken at standstill."""
@@ -26,6 +27,8 @@ RPM = TAU / 60.0
 """One revolution a minute [rad/s]."""
 LEAST_SPAN_K = 5.0
 """Span of temperatures, or difference between two recordings, from which on drifts may show."""
+LEAST_SPEEDS = 0.2
+"""Difference of two speeds, as a share of the faster, from which on what follows them may show."""
 LEAST_CURRENTS = 0.2
 """Span of the motor's currents, as a share of the largest, from which on what follows them may show."""
 NOMINAL_C = 25.0
@@ -215,8 +218,7 @@ class Motion:
     @cached_property
     def segments(self) -> tuple[tuple[int, int, float], ...]:
         """Stretches of constant direction: (first row, one past the last row, direction)."""
-        cuts = [0, *(np.flatnonzero(np.diff(self.direction)) + 1).tolist(), len(self)]
-        return tuple((a, b, float(self.direction[a])) for a, b in itertools.pairwise(cuts) if b > a)
+        return tuple((rows.start, rows.stop, float(self.direction[rows.start])) for rows in runs(self.direction))
 
     @cached_property
     def travel_rad(self) -> Array:
@@ -261,7 +263,7 @@ class Motion:
             found.add("both directions")
         # A few rows about a reversal or a stop are no second speed.
         slow, fast = np.quantile(np.abs(self.speed_rad_s), [0.02, 0.98]) if len(self) else (0.0, 0.0)
-        if fast - slow > 0.2 * fast:
+        if fast - slow > LEAST_SPEEDS * fast:
             found.add("two speeds")
         if np.any(self.speed_rad_s != 0.0):
             found.add("moving shaft")
@@ -296,7 +298,7 @@ class Motion:
         turned = np.radians([setup.turned_deg for setup in setups])
         shown = {
             "both directions": np.ptp(self.direction) > 0.0,
-            "two speeds": fast - slow > 0.2 * fast,
+            "two speeds": fast - slow > LEAST_SPEEDS * fast,
             "two temperatures": np.ptp(self.temperature_c) > LEAST_SPAN_K,
             "two air gaps": max(setup.field for setup in setups) > LEAST_FIELD_RATIO * min(one.field for one in setups),
             "two mountings": float(np.max(np.abs(np.exp(1j * (turned - turned[0])) - 1.0))) > LEAST_TURN_RAD,

@@ -11,8 +11,7 @@ import numpy as np
 from twin.angles import Array, IntArray
 from twin.errors import SweepError
 from twin.periods import checked_pole_pairs
-from twin.sweep_checks import check_plausible
-from twin.sweep_columns import COLUMNS, MAY_BE_MISSING
+from twin.sweep_checks import as_recorded, check_both_channels, rows_in_use
 
 FEWEST_ROWS = 64
 """Readings of which a motion and an error are told; a turn of fewer tells neither."""
@@ -86,28 +85,17 @@ class Spin:
                 f"{name}: no reference_deg, and a sensor of {pole_pairs} periods a turn; its periods are told by a "
                 "reference alone: record one beside it, or leave the pole pairs out to explain the error over a period"
             )
-        data = {key: np.asarray(columns[key], dtype=np.float64) for key in COLUMNS if key in columns}
-        for key, values in data.items():
-            check_plausible(key, values, name=name)
-        data = {key: values for key, values in data.items() if np.isfinite(values).any()}
+        data = as_recorded(columns, name=name)
         if "measured_deg" not in data and {"vx", "vy"} <= set(data):
             data["measured_deg"] = np.degrees(np.arctan2(data["vy"], data["vx"]))
         if "measured_deg" not in data:
             raise SweepError(f"{name}: no cell of measured_deg holds a number; expected the sensor's readings")
-        if ("vx" in data) != ("vy" in data):
-            have, lack = ("vx", "vy") if "vx" in data else ("vy", "vx")
-            raise SweepError(f"{name}: column {have} stands without {lack}; expected both channels or none: add {lack}")
-        rejected: dict[int, str] = {}
-        keep = np.ones(data["measured_deg"].size, dtype=bool)
-        for key, values in data.items():
-            if key not in MAY_BE_MISSING:
-                for row in np.flatnonzero(~np.isfinite(values) & keep).tolist():
-                    rejected[row + 1] = f"{key} missing or not finite"
-                keep &= np.isfinite(values)
+        check_both_channels(data, name=name)
+        keep, rejected = rows_in_use(data)
         used = {key: np.ascontiguousarray(values[keep]) for key, values in data.items()}
         measured, time = used.pop("measured_deg"), used.pop("time_s", None)
         _check(measured, time, rows=np.flatnonzero(keep) + 1, rejected=len(rejected), name=name)
-        return cls(measured, time, used, dict(sorted(rejected.items())), name, np.flatnonzero(keep) + 1)
+        return cls(measured, time, used, rejected, name, np.flatnonzero(keep) + 1)
 
 
 def _check(measured: Array, time: Array | None, *, rows: IntArray, rejected: int, name: str) -> None:

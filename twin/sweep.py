@@ -20,8 +20,15 @@ from twin.periods import checked_pole_pairs, of_the_shaft
 from twin.reading_grid import step_of_grid_deg
 from twin.recordings import Recordings
 from twin.shown_name import shown_name
-from twin.sweep_checks import check_channels, check_follows, check_plausible, check_usable
-from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, REQUIRED
+from twin.sweep_checks import (
+    as_recorded,
+    check_both_channels,
+    check_channels,
+    check_follows,
+    check_usable,
+    rows_in_use,
+)
+from twin.sweep_columns import COLUMNS, REQUIRED
 from twin.sweep_file import write_columns
 from twin.sweep_reader import read_sweep
 
@@ -181,22 +188,9 @@ class Sweep:
             if needed not in columns:
                 found = ", ".join(columns) or "none"
                 raise SweepError(f"{name}: column {needed} is missing; found {found}; rename the column or add it")
-        data = {key: np.asarray(columns[key], dtype=np.float64) for key in COLUMNS if key in columns}
-        for key, values in data.items():
-            check_plausible(key, values, name=name)
-        # A column without a single reading was not recorded.
-        data = {key: v for key, v in data.items() if key in REQUIRED or np.isfinite(v).any()}
-        if ("vx" in data) != ("vy" in data):
-            have, lack = ("vx", "vy") if "vx" in data else ("vy", "vx")
-            raise SweepError(f"{name}: column {have} stands without {lack}; expected both channels or none: add {lack}")
-        rejected: dict[int, str] = {}
-        keep = np.ones(data["reference_deg"].size, dtype=bool)
-        for key, values in data.items():
-            if key in MAY_BE_MISSING:
-                continue
-            bad = np.flatnonzero(~np.isfinite(values) & keep)
-            keep[bad] = False
-            rejected.update({int(row) + 1: f"{key} missing or not finite" for row in bad})
+        data = as_recorded(columns, name=name, required=REQUIRED)
+        check_both_channels(data, name=name)
+        keep, rejected = rows_in_use(data)
         used: dict[str, Any] = {key: np.ascontiguousarray(values[keep]) for key, values in data.items()}
         check_usable(used, name=name, rejected=len(rejected))
         if (periods := checked_pole_pairs(pole_pairs)) is not None:
@@ -204,7 +198,7 @@ class Sweep:
         following_deg = check_follows(used["measured_deg"], used["reference_deg"], name=name)
         if "vx" in used:
             check_channels(used["vx"], used["vy"], following_deg, name=name)
-        return cls(**used, rejected=dict(sorted(rejected.items())), name=name, row_numbers=np.flatnonzero(keep) + 1)
+        return cls(**used, rejected=rejected, name=name, row_numbers=np.flatnonzero(keep) + 1)
 
     @classmethod
     def from_motion(cls, motion: Motion, *, reference_deg: Array, measured_deg: Array, channels: Array | None) -> Self:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from twin.angles import Array, radians, wrap_deg
+from twin.angles import Array, BoolArray, radians, wrap_deg
 from twin.errors import SweepError
 from twin.following import FOLLOWS_DEG, distance_deg, follows, spread_deg, swing_deg
 from twin.periods import times_as_fast
-from twin.sweep_columns import OF_SETUP, PLAUSIBLE, SMALLEST_AMPLITUDE
+from twin.sweep_columns import COLUMNS, MAY_BE_MISSING, OF_SETUP, PLAUSIBLE, SMALLEST_AMPLITUDE
 
 FEWEST_ROWS = 8
 _ONE_ANGLE_DEG = 0.1
@@ -36,6 +36,37 @@ def check_plausible(key: str, values: Array, *, name: str) -> None:
     if wrong.any():
         row = int(np.argmax(wrong))
         raise SweepError(f"{name}: row {row + 1}, column {key}: found {values[row]:g}; expected {expected}")
+
+
+def as_recorded(columns: Mapping[str, Array], *, name: str, required: Collection[str] = ()) -> dict[str, Array]:
+    """The columns of a sweep among some, in their order, each checked (:func:`check_plausible`).
+
+    A column without a single reading was not recorded, unless it is ``required``. Raises SweepError.
+    """
+    data = {key: np.asarray(columns[key], dtype=np.float64) for key in COLUMNS if key in columns}
+    for key, values in data.items():
+        check_plausible(key, values, name=name)
+    return {key: values for key, values in data.items() if key in required or np.isfinite(values).any()}
+
+
+def check_both_channels(data: Mapping[str, Array], *, name: str) -> None:
+    """Refuse one channel without the other. Raises SweepError."""
+    if ("vx" in data) != ("vy" in data):
+        have, lack = ("vx", "vy") if "vx" in data else ("vy", "vx")
+        raise SweepError(f"{name}: column {have} stands without {lack}; expected both channels or none: add {lack}")
+
+
+def rows_in_use(data: Mapping[str, Array]) -> tuple[BoolArray, dict[int, str]]:
+    """Which rows (n,) have a reading in every cell that must hold one; the numbers of the others, and why."""
+    keep = np.ones(next(iter(data.values())).size, dtype=bool)
+    rejected: dict[int, str] = {}
+    for key, values in data.items():
+        if key in MAY_BE_MISSING:
+            continue
+        bad = np.flatnonzero(~np.isfinite(values) & keep)
+        keep[bad] = False
+        rejected.update({int(row) + 1: f"{key} missing or not finite" for row in bad})
+    return keep, dict(sorted(rejected.items()))
 
 
 def check_usable(data: Mapping[str, Array], *, name: str, rejected: int) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from twin.confidence import Z95
+
 
 def modulus_interval(length: float, error: float) -> tuple[float, float]:
     """Limits of the true length where one of this length was found, with this standard error along each axis.
@@ -19,7 +21,7 @@ def modulus_interval(length: float, error: float) -> tuple[float, float]:
     square = (length / error) ** 2
     if square > 1e4:
         # Far out Rice's distribution is the normal one, and its inverse loses digits.
-        return length - 1.959964 * error, length + 1.959964 * error
+        return length - Z95 * error, length + Z95 * error
     none = float(chndtr(square, 2.0, 0.0))
     low = float(chndtrinc(square, 2.0, 0.975)) if none > 0.975 else 0.0
     high = float(chndtrinc(max(square, 1.0), 2.0, 0.025))

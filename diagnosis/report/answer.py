@@ -35,12 +35,12 @@ from diagnosis.setup.checks import checked_sweep
 from twin.angles import wrap_deg
 from twin.baseline import FACTORS
 from twin.catalogue import base_name, find
+from twin.confidence import Z95
 from twin.each_recording import everywhere
 from twin.files import to_dict
 from twin.param import Param
 
 SCHEMA = "halltwin.explain/1"
-_T95 = 1.959964
 
 
 def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
@@ -370,7 +370,7 @@ def _counted(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
         return {}
     figures = {}
     for name, (value, deviation) in effect.marks.told(len(cause.rows), len(found.sweep)).items():
-        param, half = effect.params[name], _T95 * deviation
+        param, half = effect.params[name], Z95 * deviation
         figures[name] = _figure(value, max(value - half, param.lower), min(value + half, param.upper), param.unit)
     return figures
 

@@ -13,13 +13,13 @@ from diagnosis.discovery.result import Discovery
 from diagnosis.report.wording import plain
 from twin.angles import TAU, Array
 from twin.catalogue import find
+from twin.confidence import Z95
 from twin.estimated_motion import EstimatedMotion, Torque
 
 TORQUE = "torque_ripple"
 """What a torque locked to the angle is called where a cause may as well be one."""
 SECOND_SPEED = "a log at a second speed, or coasting down: what a torque does falls as 1/speed^2"
 IN_TIME = "a log at another speed: a wave that the motor's supply or its drive makes in the torque keeps its frequency"
-_T95 = 1.959964
 _BEYOND_CHANCE = 4.0
 """Standard deviations from which on a torque is listed: one of sixteen orders, of two components each, passes it by
 chance in one log of 200 (16 exp(-8))."""
@@ -69,7 +69,7 @@ def _amplitude(torque: Torque) -> float:
 
 
 def _torque(torque: Torque) -> dict[str, Any]:
-    amplitude, away = _amplitude(torque), _T95 * torque.sd_rad_s2
+    amplitude, away = _amplitude(torque), Z95 * torque.sd_rad_s2
     return {
         "order": torque.order,
         "acceleration_rad_s2": amplitude,

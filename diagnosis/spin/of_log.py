@@ -10,17 +10,15 @@ import numpy as np
 
 from diagnosis.spin.clock import even_clock
 from diagnosis.spin.smoother import HIGHEST_OF_GROWING, HIGHEST_ORDER, MotionFit, fitted_motion
-from diagnosis.spin.spline import stretch_ends
-from diagnosis.spin.stretches import FEWEST_ROWS, Turning, turning
+from diagnosis.spin.stretches import Turning, turning
 from twin.angles import TAU, Array, IntArray
-from twin.effect import BoolArray
 from twin.errors import SweepError
 from twin.estimated_motion import EstimatedMotion, Torque
-from twin.spin import Spin
+from twin.motion import LEAST_SPEEDS
+from twin.runs import runs
+from twin.spin import FEWEST_ROWS, Spin
 from twin.sweep import Sweep
 
-_TWO_SPEEDS = 0.2
-"""Difference of two speeds, as a share of the faster, from which on torques show: as for all that follows a speed."""
 CHANNELS_TELL = 4
 """Order up to which offset, gain, phase and saturation of the channels show in their radius."""
 _FREE = 3.0
@@ -77,7 +75,7 @@ def sweeps_of(spins: Sequence[Spin]) -> list[Sweep]:
     jerks = fit.knee_rad_s > _FREE * float(np.median(fit.knee_rad_s))
     if jerks.any():
         parts = np.split(jerks, np.cumsum([log.found.rows.size for log in logs])[:-1])
-        calmer = [replace(log, found=_without(log.found, out)) for log, out in zip(logs, parts, strict=True)]
+        calmer = [replace(log, found=log.found.kept(~out)) for log, out in zip(logs, parts, strict=True)]
         if all(log.found.rows.size >= FEWEST_ROWS for log in calmer):
             logs = calmer
             fit = _fitted(logs)
@@ -88,7 +86,7 @@ def sweeps_of(spins: Sequence[Spin]) -> list[Sweep]:
 
 
 def _checked(found: Turning, spin: Spin) -> Turning:
-    turns = sum(np.ptp(found.readings_rad[found.stretch == k]) for k in np.unique(found.stretch)) / TAU
+    turns = sum(np.ptp(found.readings_rad[rows]) for rows in runs(found.stretch)) / TAU
     if found.rows.size < FEWEST_ROWS or turns < 1.0:
         raise SweepError(
             f"{spin.name}: no reference_deg, and the shaft turns evenly in {found.rows.size} of {len(spin)} rows "
@@ -96,14 +94,6 @@ def _checked(found: Turning, spin: Spin) -> Turning:
             f"at least {FEWEST_ROWS} readings one after another; or add reference_deg"
         )
     return found
-
-
-def _without(found: Turning, out: BoolArray) -> Turning:
-    """The rows that are not ``out`` (m,), in stretches that are long enough."""
-    run = np.concatenate([[0], np.cumsum((np.diff(found.stretch) != 0) | (np.diff(out.astype(int)) != 0))])
-    keep = ~out & (np.bincount(run)[run] >= FEWEST_ROWS)
-    stretch = np.unique(run[keep], return_inverse=True)[1].astype(np.int64)
-    return Turning(found.rows[keep], found.readings_rad[keep], stretch)
 
 
 def _fitted(logs: Sequence[_Log]) -> MotionFit:
@@ -118,7 +108,7 @@ def _fitted(logs: Sequence[_Log]) -> MotionFit:
     readings = np.concatenate([log.found.readings_rad for log in logs])
     speed = np.abs(np.diff(readings) / np.diff(time))[np.diff(stretch) == 0]
     slow, fast = np.quantile(speed, [0.1, 0.9])
-    return fitted_motion(readings, time, stretch_ends(stretch), torque=bool(fast - slow > _TWO_SPEEDS * fast))
+    return fitted_motion(readings, time, runs(stretch), torque=bool(fast - slow > LEAST_SPEEDS * fast))
 
 
 def _sweep(log: _Log, fit: MotionFit, own: slice, torques: tuple[Torque, ...]) -> Sweep:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.spline import PENALISED, Spline
+from diagnosis.spin.spline import PENALISED, Spline, bands
 from twin.angles import Array
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Readings (n,) [rad] about a start, on the splines; the present stiffness of each difference (d,)."""
+    """Readings (n,) [rad] about a start, on the splines, and columns (p, n) beside them.
+
+    ``weights`` (n,) are 0 for readings that are left out, ``stiffness`` (d,) that of each difference of the spline.
+    """
 
     spline: Spline
     readings: Array
@@ -20,27 +24,39 @@ class Problem:
     weights: Array
     stiffness: Array
     start: Array
-    columns: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    columns: Array
+
+    @cached_property
+    def _of_readings(self) -> tuple[Array, Array, Array, Array]:
+        """What the readings make of the normal equations, whatever the penalty: bands, across, left, its product."""
+        design = self.spline.design
+        left = self.weights * (self.readings - design @ self.start)
+        across = np.asarray(design.T @ (self.weights * self.columns).T)
+        return bands(design, self.weights), across, left, design.T @ left
+
+    @cached_property
+    def _of_differences(self) -> tuple[Array, Array]:
+        """The same of the differences that are held, for a penalty of 1: bands, and the differences themselves."""
+        return bands(self.spline.rough, self.stiffness), self.spline.rough @ self.start
 
     def reduced(self, log_penalty: float) -> Reduced:
         """The problem with the spline eliminated, at one penalty."""
         from scipy.linalg import cho_solve_banded, cholesky_banded
 
-        held = 10.0**log_penalty * self.stiffness
-        bands = self.spline.bands(self.weights, held)
+        penalty = 10.0**log_penalty
+        by_readings, across, left, along = self._of_readings
+        by_differences, differences = self._of_differences
+        held = penalty * self.stiffness * differences
+        system = by_readings + penalty * by_differences
         # Of a knot interval without a reading in use the differences alone tell the coefficients, and not all of them.
-        bands[0] += 1e-12 * np.max(bands[0])
-        factor = cholesky_banded(bands, lower=True)
-        design, rough = self.spline.design, self.spline.rough
-        left = self.weights * (self.readings - design @ self.start)
-        differences = rough @ self.start
-        rhs = design.T @ left - rough.T @ (held * differences)
-        across = np.asarray(design.T @ (self.weights * self.columns).T)
+        system[0] += 1e-12 * np.max(system[0])
+        factor = cholesky_banded(system, lower=True)
+        rhs = along - self.spline.rough.T @ held
         solved = cho_solve_banded((factor, True), np.column_stack([rhs, across]))
         step, pulled = solved[:, 0], solved[:, 1:]
         normal = (self.weights * self.columns) @ self.columns.T - across.T @ pulled
         gradient = self.columns @ left - across.T @ step
-        squares = float(left @ (self.readings - design @ self.start) + held @ differences**2 - rhs @ step)
+        squares = float(left @ left + held @ differences - rhs @ step)
         log_det = 2.0 * float(np.sum(np.log(factor[0]))) - len(held) * log_penalty * float(np.log(10.0))
         return Reduced(normal, gradient, squares, log_det, step, pulled)
 
@@ -56,44 +72,39 @@ class Reduced:
     step: Array
     pulled: Array
 
-    def cost(self, sd: Array, variance: float, rows: float) -> float:
-        """Minus twice the restricted log likelihood, the noise's variance at its best."""
+    def left(self, sd: Array, variance: float) -> tuple[float, float]:
+        """Squares that the columns leave where they scatter by ``sd`` (p,), and the log determinant of their system."""
         system = self.normal + np.diag(variance / sd**2)
         scale = 1.0 / np.sqrt(np.maximum(np.diag(system), 1e-300))
         system = system * np.outer(scale, scale) + 1e-12 * np.eye(len(scale))
-        _, log_det = np.linalg.slogdet(system)
         along = self.gradient * scale
+        _, log_det = np.linalg.slogdet(system)
         left = self.squares - float(along @ np.linalg.solve(system, along))
-        return (
-            rows * float(np.log(max(left, 1e-300))) + self.log_det + float(log_det) - 2.0 * float(np.sum(np.log(scale)))
-        )
+        return left, float(log_det) - 2.0 * float(np.sum(np.log(scale)))
+
+    def cost(self, sd: Array, variance: float, rows: float) -> float:
+        """Minus twice the restricted log likelihood, the noise's variance at its best."""
+        left, log_det = self.left(sd, variance)
+        return rows * float(np.log(max(left, 1e-300))) + self.log_det + log_det
 
 
-def solution(problem: Problem, log_penalty: float) -> Array:
-    """The spline alone, at one penalty."""
-    from scipy.linalg import solveh_banded
-
-    held = 10.0**log_penalty * problem.stiffness
-    bands = problem.spline.bands(problem.weights, held)
-    rhs = problem.spline.design.T @ (problem.weights * problem.readings)
-    return np.asarray(solveh_banded(bands, rhs, lower=True))
+def degrees_of_freedom(problem: Problem, sd: Array) -> float:
+    """Readings in use less what is free: the splines' parabola, and the columns that do not scatter."""
+    return float(problem.weights.sum()) - PENALISED - int(np.count_nonzero(~np.isfinite(sd)))
 
 
 def likeliest(problem: Problem, sd: Array, variance: float, *, around: float | None) -> tuple[float, float]:
     """The penalty (its common logarithm) and the noise's variance of highest restricted likelihood."""
     from scipy.optimize import minimize_scalar
 
-    free = int(np.count_nonzero(~np.isfinite(sd)))
-    rows = float(problem.weights.sum()) - PENALISED - free
-
-    def cost(log_penalty: float) -> float:
-        return problem.reduced(log_penalty).cost(sd[: len(problem.columns)], variance, rows)
-
+    rows = degrees_of_freedom(problem, sd)
     low, high = (-10.0, 14.0) if around is None else (around - 3.0, around + 3.0)
-    best = float(minimize_scalar(cost, bounds=(low, high), method="bounded", options={"xatol": 0.05}).x)
-    reduced = problem.reduced(best)
-    system = reduced.normal + np.diag(variance / sd[: len(problem.columns)] ** 2)
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(system), 1e-300))
-    along = reduced.gradient * scale
-    taken = along @ np.linalg.solve(system * np.outer(scale, scale) + 1e-12 * np.eye(len(scale)), along)
-    return best, max((reduced.squares - float(taken)) / rows, 1e-24)
+    best = float(
+        minimize_scalar(
+            lambda log_penalty: problem.reduced(log_penalty).cost(sd, variance, rows),
+            bounds=(low, high),
+            method="bounded",
+            options={"xatol": 0.05},
+        ).x
+    )
+    return best, max(problem.reduced(best).left(sd, variance)[0] / rows, 1e-24)

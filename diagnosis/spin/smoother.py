@@ -9,12 +9,14 @@ differences; how much is what makes the readings likeliest (restricted maximum l
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.problem import Problem, Reduced, likeliest, solution
-from diagnosis.spin.spline import PENALISED, Spline, pieces
+from diagnosis.spin.problem import Problem, Reduced, degrees_of_freedom, likeliest
+from diagnosis.spin.spline import PENALISED, Spline, rate
 from diagnosis.spin.variance_components import Drawn, drawn, solved
 from twin.angles import Array
 from twin.effect import BoolArray
@@ -31,24 +33,22 @@ _FAR_OUT = 6.0
 _WINDOW = 15
 """Third differences over whose mean square the motion's roughness is taken to be even."""
 _BEYOND_CHANCE = 4.0
-"""A mean of so many squares of one spread exceeds four times its expectation in one of 10^9."""
+"""A mean of so many squares of one spread exceeds four times its expectation in one of four million."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionFit:
     """A motion (n,), and what was found with it.
 
-    ``smooth_rad`` is the part that is smooth in time, ``shaft_rad`` that with what the torques do. ``knee_rad`` (n,)
-    is the angular frequency a second below which the motion is freer than the readings' noise is loud. ``noise_rad``
-    is the RMS of a reading about it all. ``terms`` are the coefficients: cosine and sine of each order of the error
+    ``shaft_rad`` is the part that is smooth in time with what the torques do. ``knee_rad_s`` (n,) is the angular
+    frequency below which the motion is freer than the readings' noise is loud. ``noise_rad`` is the RMS of a reading
+    about it all. ``terms`` are the coefficients: cosine and sine of each order of the error
     [rad], of each order's torque [rad/s^2], and of what of it grows with the speed [rad/s^2 for each rad/s] up to the
     order 4. ``separable`` (orders,): whether a torque that makes all that is seen of an order would be told.
     """
 
-    smooth_rad: Array
     shaft_rad: Array
     speed_rad_s: Array
-    acceleration_rad_s2: Array
     knee_rad_s: Array
     noise_rad: float
     terms: Drawn
@@ -62,7 +62,7 @@ class _Estimate:
     """Where the rounds stand: the problem, the shaft's angle (n,) [rad], and how much everything scatters."""
 
     problem: Problem
-    ends: list[int]
+    stretches: Sequence[slice]
     shaft_rad: Array
     sd: Array
     log_penalty: float | None = None
@@ -71,15 +71,12 @@ class _Estimate:
     terms: Drawn | None = None
     separable: BoolArray = field(default_factory=lambda: np.zeros(HIGHEST_ORDER, dtype=bool))
 
-    @property
-    def smooth_rad(self) -> Array:
-        """The motion (n,) without what torques do."""
-        return np.asarray(self.problem.spline.design @ self.problem.start)
-
-    @property
+    @cached_property
     def rates(self) -> tuple[Array, Array]:
-        """Speed and acceleration (n,)."""
-        return _rates(self.smooth_rad, self.problem.time_s, self.ends)
+        """Speed and acceleration (n,), without what torques do."""
+        smooth, time_s = np.asarray(self.problem.spline.design @ self.problem.start), self.problem.time_s
+        speed = rate(smooth, time_s, self.stretches)
+        return speed, rate(speed, time_s, self.stretches)
 
     @property
     def with_torques(self) -> bool:
@@ -90,7 +87,7 @@ class _Estimate:
         """One round: damping, penalty, coefficients, and which readings count, one after the other."""
         made = self._with_columns()
         log_penalty, variance = likeliest(made.problem, made.sd, made.variance, around=self.log_penalty)
-        reduced, usual = made.problem.reduced(log_penalty), float(np.median(np.abs(made.rates[0])))
+        reduced, usual = made.problem.reduced(log_penalty), float(np.median(np.abs(self.rates[0])))
         separable = _separable(reduced, variance, usual)
         terms = _drawn(reduced, made.sd, variance, usual, separable)
         start = made.problem.start + reduced.step - reduced.pulled @ terms.values
@@ -125,19 +122,19 @@ class _Estimate:
         return replace(self, damping_per_s=damping, problem=replace(self.problem, columns=columns))
 
 
-def fitted_motion(readings_rad: Array, time_s: Array, ends: list[int], *, torque: bool) -> MotionFit:
+def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice], *, torque: bool) -> MotionFit:
     """Estimate the motion behind unwrapped readings.
 
     Parameters
     ----------
     readings_rad, time_s : ndarray
         Readings (n,) [rad], continuous within each stretch, and their times [s], rising.
-    ends : list of int
-        One past the last row of each stretch.
+    stretches : sequence of slice
+        The rows of each stretch, one behind the other.
     torque : bool
         Whether torques locked to the angle are to be told from the error of the sensor: one speed does not.
     """
-    spline = Spline.over(time_s, ends)
+    spline = Spline.over(time_s, stretches)
     problem = Problem(
         spline,
         readings_rad,
@@ -145,9 +142,11 @@ def fitted_motion(readings_rad: Array, time_s: Array, ends: list[int], *, torque
         np.ones(readings_rad.size),
         np.ones(spline.rough.shape[0]),
         np.zeros(spline.size),
+        np.zeros((0, readings_rad.size)),
     )
-    problem = replace(problem, start=solution(problem, 0.0))
-    found = _Estimate(problem, ends, np.asarray(spline.design @ problem.start), np.full(2 * HIGHEST_ORDER, np.inf))
+    start = problem.reduced(0.0).step
+    shaft, free = np.asarray(spline.design @ start), np.full(2 * HIGHEST_ORDER, np.inf)
+    found = _Estimate(replace(problem, start=start), stretches, shaft, free)
     # The first round finds the motion and its speed, which what torques do follows.
     found = found.next()
     if torque:
@@ -157,12 +156,9 @@ def fitted_motion(readings_rad: Array, time_s: Array, ends: list[int], *, torque
         found = found.next()
     assert found.terms is not None
     assert found.log_penalty is not None
-    speed, acceleration = found.rates
     return MotionFit(
-        smooth_rad=found.smooth_rad,
         shaft_rad=found.shaft_rad,
-        speed_rad_s=speed,
-        acceleration_rad_s2=acceleration,
+        speed_rad_s=found.rates[0],
         knee_rad_s=_knee(found.problem, found.log_penalty),
         noise_rad=float(np.sqrt(found.variance)),
         terms=found.terms,
@@ -234,7 +230,7 @@ def _damping(found: _Estimate, motion: tuple[Array, Array, Array]) -> float:
 
     problem, penalty = found.problem, found.log_penalty
     assert penalty is not None
-    rows = float(problem.weights.sum()) - PENALISED - int(np.count_nonzero(~np.isfinite(found.sd)))
+    rows = degrees_of_freedom(problem, found.sd)
     waves = _waves(motion[0])
     fastest = float(np.max(np.abs(motion[1])))
 
@@ -244,15 +240,6 @@ def _damping(found: _Estimate, motion: tuple[Array, Array, Array]) -> float:
 
     best = minimize_scalar(cost, bounds=(0.0, 1.0), method="bounded", options={"xatol": 0.01})
     return float(best.x) ** 2 * fastest
-
-
-def _rates(smooth_rad: Array, time_s: Array, ends: list[int]) -> tuple[Array, Array]:
-    """Speed and acceleration (n,) of a smooth motion, stretch by stretch."""
-    speed, acceleration = np.empty_like(time_s), np.empty_like(time_s)
-    for rows in pieces(ends):
-        speed[rows] = np.gradient(smooth_rad[rows], time_s[rows])
-        acceleration[rows] = np.gradient(speed[rows], time_s[rows])
-    return speed, acceleration
 
 
 def _stiffness(differences: Array) -> Array:

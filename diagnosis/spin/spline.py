@@ -7,7 +7,6 @@ readings.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,14 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from twin.angles import Array, IntArray
+from twin.angles import Array
+from twin.estimated_motion import SPECTRAL_SLOPE
 
 DEGREE = 3
-PENALISED = 3
-"""Order of the differences that are penalised: what a constant torque does, a parabola, costs nothing."""
+PENALISED = SPECTRAL_SLOPE // 2
+"""Order of the differences that are penalised, three: what a constant torque does, a parabola, costs nothing."""
 ROWS_A_KNOT = 4
 MOST_KNOTS = 2000
-"""Of a log. Each then spans five readings of ten thousand; with more a fit of a long log would take minutes."""
+"""Of a log: each then spans five readings of ten thousand."""
 FEWEST_KNOTS = 4
 
 
@@ -40,17 +40,16 @@ class Spline:
     at_s: Array
 
     @classmethod
-    def over(cls, time_s: Array, ends: Sequence[int]) -> Spline:
-        """The splines for readings at these times (n,), of stretches that end at ``ends`` (one past the last row)."""
+    def over(cls, time_s: Array, stretches: Sequence[slice]) -> Spline:
+        """The splines for readings at these times (n,), of these stretches one behind the other."""
         from scipy.interpolate import BSpline
         from scipy.sparse import block_diag, diags_array
 
-        starts = [0, *ends[:-1]]
-        total = sum(float(time_s[end - 1] - time_s[start]) for start, end in zip(starts, ends, strict=True))
+        total = sum(float(np.ptp(time_s[rows])) for rows in stretches)
         aim = max(ROWS_A_KNOT * total / time_s.size, total / MOST_KNOTS)
         bases, differences, middles = [], [], []
-        for start, end in zip(starts, ends, strict=True):
-            own = time_s[start:end]
+        for rows in stretches:
+            own = time_s[rows]
             first, span = float(own[0]), float(own[-1] - own[0])
             count = max(round(span / aim), FEWEST_KNOTS)
             step = span / count
@@ -59,9 +58,9 @@ class Spline:
             bases.append(BSpline.design_matrix(inside, knots, DEGREE))
             size = count + DEGREE
             stencil = np.array([-1.0, 3.0, -3.0, 1.0])
-            rows = size - PENALISED
-            differences.append(diags_array(stencil, offsets=np.arange(4), shape=(rows, size)))
-            middles.append(first + step * (np.arange(rows) + 0.5))
+            held = size - PENALISED
+            differences.append(diags_array(stencil, offsets=np.arange(4), shape=(held, size)))
+            middles.append(first + step * (np.arange(held) + 0.5))
         return cls(block_diag(bases, format="csr"), block_diag(differences, format="csr"), aim, np.concatenate(middles))
 
     @cached_property
@@ -69,20 +68,21 @@ class Spline:
         """How many coefficients there are."""
         return int(self.design.shape[1])
 
-    def bands(self, weights: Array, stiffness: Array) -> Array:
-        """Lower bands (4, k) of the normal matrix of readings weighed so (n,) and differences held so (d,)."""
-        normal = (self.design.T.multiply(weights)) @ self.design + (self.rough.T.multiply(stiffness)) @ self.rough
-        out = np.zeros((DEGREE + 1, self.size))
-        for band in range(DEGREE + 1):
-            out[band, : self.size - band] = normal.diagonal(-band)
-        return out
+
+def bands(matrix: Any, weights: Array) -> Array:
+    """Lower bands (4, k) of the normal matrix of a sparse matrix (n, k) whose rows are weighed so (n,)."""
+    normal = matrix.T.multiply(weights) @ matrix
+    size = int(matrix.shape[1])
+    out = np.zeros((DEGREE + 1, size))
+    for band in range(DEGREE + 1):
+        out[band, : size - band] = normal.diagonal(-band)
+    return out
 
 
-def stretch_ends(stretch: IntArray) -> list[int]:
-    """One past the last row of each run of equal numbers (n,)."""
-    return [*(np.flatnonzero(np.diff(stretch)) + 1).tolist(), int(stretch.size)]
-
-
-def pieces(ends: Sequence[int]) -> list[slice]:
-    """The rows of each stretch."""
-    return [slice(a, b) for a, b in itertools.pairwise([0, *ends])]
+def rate(values: Array, time_s: Array, stretches: Sequence[slice]) -> Array:
+    """Change (n,) of smooth values (n,) a second, stretch by stretch; none in a stretch of one reading."""
+    found = np.zeros(values.size)
+    for rows in stretches:
+        if rows.stop - rows.start > 1:
+            found[rows] = np.gradient(values[rows], time_s[rows])
+    return found

@@ -8,8 +8,8 @@ import numpy as np
 
 from twin.angles import Array, IntArray, wrap
 from twin.effect import BoolArray
+from twin.spin import FEWEST_ROWS
 
-FEWEST_ROWS = 64
 _GAP = 20.0
 """Spacings of readings without one, from which on nobody knows how far the shaft has turned meanwhile."""
 _SLOW = 0.1
@@ -26,6 +26,13 @@ class Turning:
     readings_rad: Array
     stretch: IntArray
 
+    def kept(self, keep: BoolArray) -> Turning:
+        """Those of the rows (m,), in stretches that are long enough; where some are left out, one ends."""
+        run = np.concatenate([[0], np.cumsum((np.diff(self.stretch) != 0) | (np.diff(keep.astype(int)) != 0))])
+        keep = keep & (np.bincount(run)[run] >= FEWEST_ROWS)
+        stretch = np.unique(run[keep], return_inverse=True)[1].astype(np.int64)
+        return Turning(self.rows[keep], self.readings_rad[keep], stretch)
+
 
 def turning(measured_rad: Array, time_s: Array) -> Turning:
     """Find the stretches of a log of readings (n,) [rad] at times (n,) [s], never falling."""
@@ -35,12 +42,8 @@ def turning(measured_rad: Array, time_s: Array) -> Turning:
     counted = counted_on(measured_rad[rows], time_s[rows])
     moves = _moves(counted, time_s[rows])
     step = np.diff(time_s[rows])
-    broken = (step > _GAP * float(np.median(step))) | (np.diff(moves.astype(int)) != 0)
-    run = np.concatenate([[0], np.cumsum(broken)])
-    long_enough = np.bincount(run) >= FEWEST_ROWS
-    keep = moves & long_enough[run]
-    stretch = np.unique(run[keep], return_inverse=True)[1].astype(np.int64)
-    return Turning(rows[keep], counted[keep], stretch)
+    broken = step > _GAP * float(np.median(step))
+    return Turning(rows, counted, np.concatenate([[0], np.cumsum(broken)])).kept(moves)
 
 
 def counted_on(measured_rad: Array, time_s: Array) -> Array:

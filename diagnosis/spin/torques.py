@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.spin.spline import pieces, stretch_ends
+from diagnosis.spin.spline import rate
 from twin.angles import Array
 from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import response
@@ -19,10 +19,7 @@ def torque_columns(motion: Motion) -> Array:
     found = motion.estimated
     if found is None:
         return np.zeros((0, len(motion)))
-    acceleration = np.zeros(len(motion))
-    for rows in pieces(stretch_ends(found.stretch)):
-        if rows.stop - rows.start > 1:
-            acceleration[rows] = np.gradient(motion.speed_rad_s[rows], motion.time_s[rows])
+    acceleration = rate(motion.speed_rad_s, motion.time_s, found.slices)
     columns = [np.zeros((0, len(motion)))]
     for torque in found.torques:
         if torque.scatter_rad_s2 or torque.growing_rad_s:
@@ -48,7 +45,7 @@ class Loose:
     def __init__(self, columns: Array, usable: BoolArray, noise: float) -> None:
         used = columns * usable / noise
         size, turned = np.linalg.eigh(used @ used.T)
-        size, turned = np.maximum(size, 1e-12), turned
+        size = np.maximum(size, 1e-12)
         self._usable = usable
         self._directions: Array = (turned / np.sqrt(size)).T @ used
         self._shares: Array = 1.0 - 1.0 / np.sqrt(1.0 + size)

@@ -182,3 +182,23 @@ def run(protocol: str, layout: Layout, rng: np.random.Generator) -> Motion:
         turn=np.repeat(revolution, again),
         temperature_c=np.repeat(np.array([one.temperature_c for one in legs])[leg], again),
     )
+
+
+def on_the_move(
+    protocol: str, *, time_s: Array, shaft_deg: Array, speed_deg_s: Array, points: int, turn: Rows
+) -> Motion:
+    """A motion whose readings are taken of a moving shaft, once each, at 25 C."""
+    direction = np.where(speed_deg_s >= 0.0, 1.0, -1.0)
+    return Motion(
+        protocol=protocol,
+        points_per_turn=points,
+        repeats=1,
+        moving=True,
+        time_s=time_s,
+        shaft_deg=shaft_deg,
+        direction=direction,
+        named=direction,
+        speed_rpm=speed_deg_s / 6.0,
+        turn=turn,
+        temperature_c=np.full(len(time_s), 25.0),
+    )

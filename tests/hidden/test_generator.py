@@ -74,8 +74,9 @@ def alone(name: str, seed: int, bench: str = "easy") -> Hidden:
     )
 
 
-def test_imports_nothing_but_numpy_rich_and_the_standard_library() -> None:
-    for path in HERE.glob("*.py"):
+@pytest.mark.parametrize("folder", [HERE, HERE / "spins"], ids=lambda folder: folder.name)
+def test_imports_nothing_but_numpy_rich_and_the_standard_library(folder: Path) -> None:
+    for path in folder.glob("*.py"):
         allowed = {"numpy", "rich", *sys.stdlib_module_names, *(["pytest"] if "test_" in path.name else [])}
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []

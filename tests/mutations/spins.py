@@ -35,7 +35,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.each_log_alone",
             "diagnosis/spin/of_log.py",
-            "torque=bool(fast - slow > _TWO_SPEEDS * fast)",
+            "torque=bool(fast - slow > LEAST_SPEEDS * fast)",
             "torque=False",
             f"{_SMOOTHER}::test_two_logs_of_one_speed_each_tell_together_what_neither_tells",
         ),

@@ -8,12 +8,12 @@ from math import lgamma
 import numpy as np
 
 from twin.angles import TAU, Array, IntArray
+from twin.confidence import Z95
 from twin.drawing import span
 from twin.effect import BoolArray, Effect, Param, Parameters
 from twin.motion import Motion
 from twin.words import InWords, WordFault, Words
 
-_T95 = 1.959964
 _ODDS = 20.0
 """So many times as likely as that the angle itself reads the code must it be that the code stands in its place."""
 
@@ -94,7 +94,7 @@ def _log_choices(count: int, some: int) -> float:
 def _fault(words: Words, log_p: float, touched: BoolArray) -> WordFault:
     count, readings = int(np.count_nonzero(touched)), int(np.count_nonzero(words.usable))
     share = count / readings
-    half = _T95 * float(np.sqrt(share * (1.0 - share) / readings))
+    half = Z95 * float(np.sqrt(share * (1.0 - share) / readings))
     runs: IntArray = np.diff(np.concatenate([[0], touched.astype(np.int64)]))
     values = {
         "fraction_percent": 100.0 * share,

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from twin.angles import TAU, Array, wrap
+from twin.confidence import Z95
 from twin.effect import Effect, Param, Parameters
 from twin.mechanics.zero_drift import ZERO_DRIFT
 from twin.motion import Motion
 from twin.words import ORDERS, Also, Expected, InWords, WordFault, Words, noise_of, of_orders
 
-_T95 = 1.959964
 _PASSES = 5
 _AFAR_RAD = np.radians(1.0)
 """What orders 0 to 2 leave of a ramp where the factor is some percent off."""
@@ -52,7 +52,7 @@ def find(words: Words) -> WordFault | None:
     if after.sigma > 0.5 * before.sigma or after.sigma > 2.0 * max(noise_of(after.residual[words.usable]), noise):
         return None
     values = {"factor": factor, "goes_on": 0.0}
-    within = {"factor": (factor - _T95 * deviation, factor + _T95 * deviation)}
+    within = {"factor": (factor - Z95 * deviation, factor + Z95 * deviation)}
     log_p = float(np.log(after.sigma / before.sigma)) * words.usable.sum()
     return WordFault(values, log_p, words.usable, np.zeros(len(words), dtype=bool), after.chosen, within)
 

@@ -13,7 +13,7 @@ LONGEST = 24_000
 """Rows, after averaging, that are searched in full: at 0.03 deg of noise 0.001 deg is five sigma of them."""
 LONGEST_SPIN = 4_000
 """The same of a log without a reference, all of whose rows have told its motion: at 0.03 deg of noise 0.003 deg is five
-sigma. A real log of 20,000 rows, full of lines of its drive, is searched in a minute instead of in four."""
+sigma."""
 STRETCHES = 12
 
 

@@ -8,9 +8,8 @@ import numpy as np
 
 from diagnosis.discovery.fitting.profile import reached
 from twin.angles import Array
+from twin.confidence import Z95
 
-_REACH_95 = 1.959964
-"""Root deviance at the ends of a 95 % interval."""
 _STEPS = 8
 """Of Fisher scoring: from a start within a tenth, the square of its error is left by each."""
 
@@ -65,7 +64,7 @@ class TwoVariances:
         ``inflation``: by how much deviances are too large for the noise, by its tails or for what readings share. Where
         few rows tell the variance its likelihood is far from a parabola: it may be twice as large, but not nearly none.
         """
-        reach = _REACH_95 * float(np.sqrt(inflation))
+        reach = Z95 * float(np.sqrt(inflation))
         least = self.deviance
 
         def away(way: float, room: float) -> float:

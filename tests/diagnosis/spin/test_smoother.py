@@ -38,7 +38,7 @@ def read(angle: np.ndarray, *, seed: int = 1) -> np.ndarray:
 
 
 def fitted(angle: np.ndarray, *, torque: bool = True) -> MotionFit:
-    return fitted_motion(read(angle), TIME, [TIME.size], torque=torque)
+    return fitted_motion(read(angle), TIME, [slice(0, TIME.size)], torque=torque)
 
 
 def error_of(fit: MotionFit, order: int) -> np.ndarray:
@@ -73,7 +73,7 @@ def test_readings_far_off_are_left_out() -> None:
     angle = coasting()
     readings = read(angle)
     readings[::100] += 0.5
-    fit = fitted_motion(readings, TIME, [TIME.size], torque=True)
+    fit = fitted_motion(readings, TIME, [slice(0, TIME.size)], torque=True)
     assert not fit.usable[::100].any()
     assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=2e-4)
 

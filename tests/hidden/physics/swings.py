@@ -4,23 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..motion import Array, Motion
+from ..motion import Array, Motion, on_the_move
 
 
 def _motion(protocol: str, time_s: Array, shaft_deg: Array, speed_deg_s: Array, points: int) -> Motion:
-    direction = np.where(speed_deg_s >= 0, 1.0, -1.0)
-    return Motion(
-        protocol=protocol,
-        points_per_turn=points,
-        repeats=1,
-        moving=True,
+    forward = (speed_deg_s >= 0.0).astype(np.int64)
+    return on_the_move(
+        protocol,
         time_s=time_s,
         shaft_deg=shaft_deg,
-        direction=direction,
-        named=direction,
-        speed_rpm=speed_deg_s / 6.0,
-        turn=np.cumsum(np.diff(direction, prepend=direction[0]) != 0),
-        temperature_c=np.full(len(time_s), 25.0),
+        speed_deg_s=speed_deg_s,
+        points=points,
+        turn=np.cumsum(np.diff(forward, prepend=forward[0]) != 0),
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..baseline import Baseline, Injected
 from ..chain import Bench, convert, field_channels
-from ..motion import Motion
+from ..motion import Motion, on_the_move
 from ..noise import Noise
 from ..word_causes import cordic
 from .rotor import Array
@@ -50,19 +50,13 @@ def motion_of(time_s: Array, shaft_deg: Array, speed_deg_s: Array, *, protocol: 
     """The motion as the chain takes it."""
     speed = np.abs(speed_deg_s)
     step_deg = float(np.median(speed[1:] * np.diff(time_s))) if time_s.size > 1 else 1.0
-    direction = np.where(speed_deg_s >= 0.0, 1.0, -1.0)
-    return Motion(
-        protocol=protocol,
-        points_per_turn=int(np.clip(360.0 / max(step_deg, 0.1), 24, 3600)),
-        repeats=1,
-        moving=True,
+    return on_the_move(
+        protocol,
         time_s=time_s,
         shaft_deg=shaft_deg,
-        direction=direction,
-        named=direction,
-        speed_rpm=speed_deg_s / 6.0,
+        speed_deg_s=speed_deg_s,
+        points=int(np.clip(360.0 / max(step_deg, 0.1), 24, 3600)),
         turn=np.floor(np.abs(shaft_deg - shaft_deg[0]) / 360.0).astype(np.int64),
-        temperature_c=np.full(time_s.size, 25.0),
     )
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import ast
 import math
-import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -22,16 +20,6 @@ from .stamps import Clock
 
 HERE = Path(__file__).parent
 Array = np.ndarray[Any, np.dtype[np.float64]]
-
-
-def test_imports_nothing_but_numpy_rich_and_the_standard_library() -> None:
-    for path in HERE.glob("*.py"):
-        allowed = {"numpy", "rich", *sys.stdlib_module_names, *(["pytest"] if "test_" in path.name else [])}
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-            if isinstance(node, ast.ImportFrom) and node.level == 0:
-                names = [node.module or ""]
-            assert {name.partition(".")[0] for name in names} <= allowed, path.name
 
 
 def test_same_arguments_same_bytes() -> None:

@@ -56,8 +56,8 @@ class Comb:
     the orders of lines that have been found one by one to the shapes of the cause that may have made several of them,
     most likely first, and ``united`` such a shape to all orders that it makes: of such a cause each line is an instance
     of its own, with the order in ``order``. ``also``: the stage of which some part, that no effect stands for, makes
-    the same line where nothing but angles is recorded, and what would tell it apart. ``falling``: one body makes a line
-    at each order of its shapes, which falls off with the order; each is an instance of its own.
+    the same line and leaves the radius of the channels as it is, and what would tell it apart. ``falling``: one body
+    makes a line at each order of its shapes, which falls off with the order; each is an instance of its own.
     """
 
     orders: Callable[[Mapping[str, Any]], tuple[float, ...]]

@@ -10,6 +10,7 @@ import numpy as np
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.further.power import advice
 from diagnosis.discovery.result import Discovery
+from diagnosis.discovery.search.lines import waves_in_radius
 from diagnosis.report.motion import may_be_torque
 from twin.catalogue import find
 from twin.each_recording import everywhere
@@ -19,8 +20,8 @@ from twin.effect import Effect, Parameters
 def as_well(found: Discovery, cause: Finding) -> dict[str, Any]:
     """The answer's keys of a cause: its rivals, and the measurements that part them.
 
-    Among the rivals is the stage of which a part that no effect stands for makes the same line, where nothing but
-    angles is recorded.
+    Among the rivals is the stage of which a part that no effect stands for makes the same line, where the radius of the
+    channels does not tell it apart.
     """
     told = [advice(cause.options, found.fit.settings)] if cause.rivals else []
     beside = _beside(found, cause)
@@ -52,11 +53,15 @@ def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
         return []
     effect, observations = find(cause.keys[0], found.fit.chain.effects), found.fit.observations
     beside = []
-    if effect.comb is not None and effect.comb.also is not None and observations.observables == 1:
-        beside.append(effect.comb.also)
     values = found.fit.chain.values
+    own = [values[key] for key in cause.keys if key in values]
+    if effect.comb is not None and effect.comb.also is not None:
+        orders = {round(order) for line in own for order in effect.comb.orders(line)}
+        # What turns the shaft unevenly turns the field as a whole: the channels' radius stays.
+        if not any(waves_in_radius(found.fit, order) for order in orders):
+            beside.append(effect.comb.also)
     beside += may_be_torque(found, cause)
-    beside += _other_makers(effect, [values[key] for key in cause.keys if key in values])
+    beside += _other_makers(effect, own)
     also = effect.in_words.also if effect.in_words is not None else None
     if also is not None and also.where(observations.measured, observations.motion, cause.rows):
         beside.append((also.cause, also.tells))

@@ -108,9 +108,23 @@ PERIODS: tuple[Mutation, ...] = tuple(
         (
             "periods.mechanics_make_no_lines",
             "diagnosis/report/as_well.py",
-            "effect.comb.also is not None and observations.observables == 1",
-            "False",
+            "if effect.comb is not None and effect.comb.also is not None:",
+            "if False:",
             "tests/diagnosis/report/test_as_well.py::test_mechanics_may_stand_behind_a_line_of_an_angle_alone",
+        ),
+        (
+            "periods.channels_leave_the_magnet",
+            "diagnosis/discovery/search/lines.py",
+            "if fit.observations.observables == 1:\n        return False",
+            "if fit.observations.observables == 2:\n        return True",
+            "tests/diagnosis/report/test_as_well.py::test_a_line_that_leaves_the_radius_alone_may_be_that_of_mechanics",
+        ),
+        (
+            "periods.no_magnet_changes_the_radius",
+            "diagnosis/discovery/search/lines.py",
+            "    return gain > fit.settings.same_fit(coarse=fit.weighting.coarse)",
+            "    return False",
+            "tests/diagnosis/report/test_as_well.py::test_a_line_that_the_radius_has_too_is_the_magnets",
         ),
     )
 )

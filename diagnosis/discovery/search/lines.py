@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.search.likelihood_ratio import add, likelihood, settle, take_out
 from diagnosis.discovery.search.screening import Base, screen_one
+from twin.angles import Array
 from twin.catalogue import find
 from twin.effect import Effect
 
+_LOW = frozenset(range(1, 9))
+"""Orders that a real field, or a saturating concentrator, leaves in the radius."""
 _WHOLE = 0.1
 """A fitted order counts as the whole number that it lies so near to, as a share of what the record resolves."""
 
@@ -24,6 +29,28 @@ def lines_of(fit: Fit, keys: Sequence[str]) -> dict[str, tuple[int, ...]]:
         if orders and all(abs(order - round(order)) <= near for order in orders):
             found[key] = tuple(round(order) for order in orders)
     return found
+
+
+def waves_in_radius(fit: Fit, order: int) -> bool:
+    """Whether the channels' radius has a wave of this order over the turn, beyond what the fit has and chance makes.
+
+    Chance is what stands beside it in the radius: another constant and low orders are none of this wave.
+    """
+    if fit.observations.observables == 1:
+        return False
+    use, angle = fit.observations.usable, fit.observations.motion.shaft_rad
+    others = [np.ones_like(angle), *(turned(k * angle) for k in _LOW - {order} for turned in (np.cos, np.sin))]
+    waves = [turned(order * angle) for turned in (np.cos, np.sin)]
+    radius = fit.residual[1][use]
+    left = [_left(radius, np.stack(columns, axis=1)[use]) for columns in (others, [*others, *waves])]
+    gain = radius.size * float(np.log(left[0] / left[1])) if left[1] > 0.0 else 0.0
+    return gain > fit.settings.same_fit(coarse=fit.weighting.coarse)
+
+
+def _left(values: Array, columns: Array) -> float:
+    """Squares that least squares by these columns (n, q) leaves of values (n,)."""
+    factors, *_ = np.linalg.lstsq(columns, values, rcond=None)
+    return float(np.sum((values - columns @ factors) ** 2))
 
 
 def in_their_place(

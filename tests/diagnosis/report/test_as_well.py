@@ -1,4 +1,4 @@
-"""Where nothing but angles is recorded, a pulley or a gear makes the line that a magnet's order does."""
+"""A pulley or a gear makes the line that a magnet's order does, but for what that does to the channels' radius."""
 
 from __future__ import annotations
 
@@ -12,11 +12,16 @@ from twin.catalogue import find
 _SHAFT_DEG = np.arange(0.0, 720.0, 2.0)
 
 
-def named(*, channels: bool) -> tuple[list[str], str]:
-    """What the answer says of a line of order 5: what may be behind it, and what would tell."""
-    error = 0.2 * np.sin(np.radians(5.0 * _SHAFT_DEG)) + np.random.default_rng(4).normal(0.0, 0.02, _SHAFT_DEG.size)
-    angle = np.radians(_SHAFT_DEG + error)
-    raw = {"vx": 500.0 * np.cos(angle), "vy": 500.0 * np.sin(angle)} if channels else {}
+def named(*, channels: bool, radius: float = 0.0) -> tuple[list[str], str]:
+    """What the answer says of a line of order 5: what may be behind it, and what would tell.
+
+    The radius has a wave of the same order, so many times as large as that of the direction.
+    """
+    wave, size = np.exp(5j * np.radians(_SHAFT_DEG)), np.radians(0.2)
+    noise = np.radians(np.random.default_rng(4).normal(0.0, 0.02, (2, _SHAFT_DEG.size)))
+    angle = np.radians(_SHAFT_DEG) + size * wave.imag + noise[0]
+    vectors = 500.0 * (1.0 + radius * size * wave.real + noise[1]) * np.exp(1j * angle)
+    raw = {"vx": vectors.real, "vy": vectors.imag} if channels else {}
     columns = {"reference_deg": _SHAFT_DEG, "measured_deg": np.degrees(angle) % 360.0, **raw}
     (cause,) = explain(columns).to_dict()["causes"]
     assert cause["name"] == "magnet_harmonic"
@@ -29,8 +34,17 @@ def test_mechanics_may_stand_behind_a_line_of_an_angle_alone() -> None:
     assert "turn the magnet on its shaft" in told
 
 
-def test_raw_channels_leave_the_magnet() -> None:
-    assert named(channels=True) == ([], "")
+def test_a_line_that_leaves_the_radius_alone_may_be_that_of_mechanics() -> None:
+    """An uneven turn of the shaft turns the field as a whole."""
+    rivals, told = named(channels=True)
+    assert rivals == ["mechanics"]
+    assert "turn the magnet on its shaft" in told
+
+
+@pytest.mark.parametrize("radius", [1.0, -1.0, 0.3])
+def test_a_line_that_the_radius_has_too_is_the_magnets(radius: float) -> None:
+    """A part of the field that turns so many times as fast as the shaft is now along it, now across."""
+    assert named(channels=True, radius=radius) == ([], "")
 
 
 @pytest.mark.parametrize(("zero_deg", "turns", "drifts"), [(0.0, 1, True), (40.0, 1, False), (0.0, 2, False)])

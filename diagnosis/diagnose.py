@@ -25,6 +25,7 @@ def diagnose(
     twin: TwinLike | None = None,
     output_sense: int | None = None,
     mounting: Mounting | None = None,
+    columns: str | None = None,
 ) -> Diagnosis:
     """Quantify the paper's error factors of a sweep, and say what each figure is worth.
 
@@ -51,6 +52,8 @@ def diagnose(
         it, channels and a twin, the quadratic term decides, or both solutions are given.
     mounting : Mounting, optional
         The magnet and its air gap, in place of the twin's.
+    columns : str, optional
+        Which columns of a file are those of a sweep, as :func:`diagnosis.explain` takes it.
 
     Returns
     -------
@@ -93,6 +96,7 @@ def diagnose(
         twin=twin,
         output_sense=output_sense,
         mounting=mounting,
+        columns=columns,
     )[0]
 
 
@@ -105,6 +109,7 @@ def diagnose_many(
     twin: TwinLike | None = None,
     output_sense: int | None = None,
     mounting: Mounting | None = None,
+    columns: str | None = None,
     progress: Listener | None = None,
 ) -> Diagnoses:
     """Quantify the paper's error factors of many sweeps; those of equal length in one swarm.
@@ -125,6 +130,8 @@ def diagnose_many(
         As in :func:`diagnose`.
     mounting : Mounting, optional
         As in :func:`diagnose`; one air gap, that of the first sweep, or one for each.
+    columns : str, optional
+        As in :func:`diagnose`.
     progress : callable, optional
         Called with a :class:`diagnosis.Progress` as the sweeps are read, fitted and judged.
 
@@ -174,7 +181,10 @@ def diagnose_many(
     told, place = _told(output_sense, known), mounting or _mounting(known)
     wanted = list(sweeps)
     count = Count(len(wanted), progress)
-    each = [count.of("reading", done, decoded(as_sweep(sweep), CATALOGUE)) for done, sweep in enumerate(wanted, 1)]
+    each = [
+        count.of("reading", done, decoded(as_sweep(sweep, columns=columns), CATALOGUE))
+        for done, sweep in enumerate(wanted, 1)
+    ]
     read = [one.usable for one in each]
     if not read:
         raise UserError("found no sweep; give at least one")

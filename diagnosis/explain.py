@@ -34,6 +34,7 @@ def explain(
     effects: OwnEffects = (),
     settings: DiscoverySettings | None = None,
     pole_pairs: int | None = None,
+    columns: str | None = None,
     seed: int = 0,
     progress: Listener | None = None,
     on_interrupt: Literal["raise", "answer"] = "raise",
@@ -71,6 +72,9 @@ def explain(
         How often the field at the sensor turns in a turn of the shaft: a ring of so many pole pairs, a resolver of so
         many speeds. ``measured_deg``, the reference or the channels may turn as often, and ``multipole`` is looked for
         with this number alone. If not given, each angle turns once, and numbers from 3 up are searched.
+    columns : str, optional
+        Of files with names and units of their own: which of their columns are those of a sweep, as ``--columns`` says
+        it and ``halltwin import`` prints it, e.g. ``"time_s=t:ms, measured_deg=angle*360/16384"``.
     seed : int, optional
         Seed of everything random, 0 or more: the same sweep and seed give the same answer, bit for bit.
     progress : callable, optional
@@ -139,7 +143,7 @@ def explain(
     _check_settings(settings)
     _check_on_interrupt(on_interrupt)
     searched = _searched(effects, twin)
-    read = _read(sweep, mounting, pole_pairs)
+    read = _read(sweep, mounting, pole_pairs, columns)
     if pole_pairs is not None and pole_pairs > 1:
         check_seen(read, pole_pairs)
         searched = with_periods(searched, pole_pairs, given=twin is not None)
@@ -158,7 +162,10 @@ def explain(
 
 
 def _read(
-    sweep: SweepLike | Spin | Sequence[SweepLike | Spin], mounting: Mounting | None, pole_pairs: int | None
+    sweep: SweepLike | Spin | Sequence[SweepLike | Spin],
+    mounting: Mounting | None,
+    pole_pairs: int | None,
+    columns: str | None,
 ) -> list[Sweep]:
     """The sweeps that are meant. Raises UserError for a list of none, or where more or fewer are mounted."""
     from typing import cast
@@ -167,7 +174,7 @@ def _read(
 
     several = isinstance(sweep, list | tuple)
     sources = cast("Sequence[SweepLike | Spin]", sweep) if several else [cast("SweepLike | Spin", sweep)]
-    sweeps = as_sweeps(sources, pole_pairs=pole_pairs)
+    sweeps = as_sweeps(sources, pole_pairs=pole_pairs, columns=columns)
     if not sweeps:
         raise UserError("found a list of no sweep; give one sweep, or several recordings of one device")
     gaps, angles = (1, 0) if mounting is None else (len(mounting.air_gap_mm), len(mounting.turned_deg))

@@ -38,7 +38,9 @@ TwinLike: TypeAlias = "str | os.PathLike[str] | Chain"
 """What they take as a twin: a twin file, a preset's name, or a chain."""
 
 
-def as_sweeps(sources: Sequence[SweepLike | Spin], *, pole_pairs: int | None = None) -> list[Sweep]:
+def as_sweeps(
+    sources: Sequence[SweepLike | Spin], *, pole_pairs: int | None = None, columns: str | None = None
+) -> list[Sweep]:
     """Several sweeps, see :func:`as_sweep`; files that share a name bear as much of their paths as tells them apart.
 
     A log without a reference is one with the motion that is estimated from its readings
@@ -49,7 +51,7 @@ def as_sweeps(sources: Sequence[SweepLike | Spin], *, pole_pairs: int | None = N
     from diagnosis.spin.of_log import with_motion
     from twin.shown_name import distinct_names
 
-    sweeps = with_motion([_recording(source, pole_pairs, spin=True) for source in sources])
+    sweeps = with_motion([_recording(source, pole_pairs, spin=True, columns=columns) for source in sources])
     files = [place for place, source in enumerate(sources) if isinstance(source, str | os.PathLike)]
     names = distinct_names([os.fspath(sources[place]) for place in files])  # type: ignore[arg-type]
     for place, name in zip(files, names, strict=True):
@@ -57,7 +59,7 @@ def as_sweeps(sources: Sequence[SweepLike | Spin], *, pole_pairs: int | None = N
     return sweeps
 
 
-def as_sweep(source: SweepLike, *, pole_pairs: int | None = None) -> Sweep:
+def as_sweep(source: SweepLike, *, pole_pairs: int | None = None, columns: str | None = None) -> Sweep:
     """The sweep that is meant.
 
     Parameters
@@ -69,6 +71,8 @@ def as_sweep(source: SweepLike, *, pole_pairs: int | None = None) -> Sweep:
         the file format; other columns are ignored. A missing cell is NaN, None or what pandas puts there.
     pole_pairs : int, optional
         How often the field at the sensor turns in a turn of the shaft, where an angle or the channels do so too.
+    columns : str, optional
+        Which columns of a file are those of a sweep, as ``--columns`` says it.
 
     Returns
     -------
@@ -83,26 +87,30 @@ def as_sweep(source: SweepLike, *, pole_pairs: int | None = None) -> Sweep:
     """
     from twin.sweep import Sweep
 
-    found = _recording(source, pole_pairs, spin=False)
+    found = _recording(source, pole_pairs, spin=False, columns=columns)
     assert isinstance(found, Sweep)
     return found
 
 
-def _recording(source: SweepLike | Spin, pole_pairs: int | None, *, spin: bool) -> Sweep | Spin:
+def _recording(source: SweepLike | Spin, pole_pairs: int | None, *, spin: bool, columns: str | None) -> Sweep | Spin:
     """The sweep that is meant, or where ``spin`` is allowed and there is no reference, the spin. Raises SweepError."""
     from twin.errors import SweepError
     from twin.recording_file import read_recording
     from twin.spin import Spin
     from twin.sweep import Sweep
-    from twin.sweep_columns import COLUMNS, REQUIRED, is_spin
+    from twin.sweep_columns import COLUMNS, REQUIRED, is_spin, lacking
 
+    if isinstance(source, str | os.PathLike):
+        read = read_recording if spin else Sweep.read
+        return read(os.fspath(source), pole_pairs=pole_pairs, columns=columns)
+    if columns is not None:
+        raise SweepError(
+            f"columns says how a file is read, and the sweep is of the type {type(source).__name__}; leave it out"
+        )
     if isinstance(source, Sweep):
         return _of_the_shaft(source, pole_pairs)
     if spin and isinstance(source, Spin):
         return source
-    if isinstance(source, str | os.PathLike):
-        read = read_recording if spin else Sweep.read
-        return read(os.fspath(source), pole_pairs=pole_pairs)
     name = type(source).__name__
     if not (hasattr(source, "keys") and hasattr(source, "__getitem__")):
         raise SweepError(
@@ -111,23 +119,23 @@ def _recording(source: SweepLike | Spin, pole_pairs: int | None, *, spin: bool) 
         )
     table = _with_index(source, COLUMNS)
     names = _names(table)
-    spin = spin and is_spin(set(map(str, names)))
-    for needed in REQUIRED:
-        if needed not in names and not spin:
-            found = ", ".join(map(str, names)) or "no column"
-            raise SweepError(f"{name}: column {needed} is missing; found {found}; rename the column or add it")
-    columns = _columns(table, [key for key in COLUMNS if key in names], name=name)
-    first = next(key for key in columns if key in (*REQUIRED, "vx"))
-    rows = columns[first].size
-    for key, values in columns.items():
+    known = set(map(str, names))
+    if missing := lacking(known, spin=spin):
+        found = ", ".join(map(str, names)) or "no column"
+        raise SweepError(f"{name}: {missing}; found {found}; rename the column or add it")
+    spin = spin and is_spin(known)
+    data = _columns(table, [key for key in COLUMNS if key in names], name=name)
+    first = next(key for key in data if key in (*REQUIRED, "vx"))
+    rows = data[first].size
+    for key, values in data.items():
         if values.size != rows:
             raise SweepError(
                 f"{name}: column {key} holds {values.size} values and {first} {rows}; "
                 "expected one for each reading, NaN where there is none"
             )
     if spin:
-        return Spin.from_columns(columns, name=name, pole_pairs=pole_pairs)
-    return Sweep.from_columns(columns, name=name, pole_pairs=pole_pairs)
+        return Spin.from_columns(data, name=name, pole_pairs=pole_pairs)
+    return Sweep.from_columns(data, name=name, pole_pairs=pole_pairs)
 
 
 def _of_the_shaft(sweep: Sweep, pole_pairs: int | None) -> Sweep:

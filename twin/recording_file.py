@@ -33,11 +33,15 @@ def read_recording(
     called = name or shown_name(path)
 
     def checked(found: Mapping[str, Array]) -> Sweep | Spin:
-        if is_spin(found):
-            return Spin.from_columns(found, name=called, pole_pairs=pole_pairs)
-        return Sweep.from_columns(found, name=called, pole_pairs=pole_pairs)
+        return recording_of(found, name=called, pole_pairs=pole_pairs)
 
     found = read_sweep(Path(path), checked, columns=columns, max_bytes=max_bytes, spin=True)
     used = ", ".join(found.columns)
     LOG.info("read %s: %d rows, %d rejected; %s", found.name, found.rows, len(found.rejected), used)
     return found
+
+
+def recording_of(columns: Mapping[str, Array], *, name: str, pole_pairs: int | None = None) -> Sweep | Spin:
+    """Columns by name, (n,) each, as a sweep, or as a spin where none of them is a reference. Raises SweepError."""
+    kind = Spin if is_spin(columns) else Sweep
+    return kind.from_columns(columns, name=name, pole_pairs=pole_pairs)

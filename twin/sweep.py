@@ -28,7 +28,7 @@ from twin.sweep_checks import (
     check_usable,
     rows_in_use,
 )
-from twin.sweep_columns import COLUMNS, REQUIRED
+from twin.sweep_columns import COLUMNS, REQUIRED, lacking
 from twin.sweep_file import write_columns
 from twin.sweep_reader import read_sweep
 
@@ -184,10 +184,9 @@ class Sweep:
         >>> Sweep.from_columns({"reference_deg": angle_deg, "measured_deg": angle_deg + 30.0})
         Sweep('sweep', 36 readings, columns reference_deg, measured_deg)
         """
-        for needed in REQUIRED:
-            if needed not in columns:
-                found = ", ".join(columns) or "none"
-                raise SweepError(f"{name}: column {needed} is missing; found {found}; rename the column or add it")
+        if missing := lacking(columns):
+            found = ", ".join(columns) or "none"
+            raise SweepError(f"{name}: {missing}; found {found}; rename the column or add it")
         data = as_recorded(columns, name=name, required=REQUIRED)
         check_both_channels(data, name=name)
         keep, rejected = rows_in_use(data)

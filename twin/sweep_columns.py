@@ -32,6 +32,20 @@ def is_spin(names: Collection[str]) -> bool:
     return "reference_deg" not in names and (channels or ("measured_deg" in names and "time_s" in names))
 
 
+def lacking(names: Collection[str], *, spin: bool = False) -> str | None:
+    """Which column is missing from a recording, as a message says it; None where none is.
+
+    ``spin``: a log without a reference will do, see :func:`is_spin`.
+    """
+    if spin and is_spin(names):
+        return None
+    if spin and "measured_deg" in names and "reference_deg" not in names:
+        return "column time_s is missing, as without reference_deg the time tells the motion"
+    if is_spin(names):
+        return "column reference_deg is missing, which is needed here: explain and compensate take a log without it"
+    return next((f"column {needed} is missing" for needed in REQUIRED if needed not in names), None)
+
+
 OF_SETUP = ("air_gap_mm", "mounting_deg")
 """Columns that hold one number for a whole recording: how the bench was set up for it."""
 TOLD_BY_SENSOR = ("magnitude", "agc", "status", "frame")

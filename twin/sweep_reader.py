@@ -43,7 +43,7 @@ def read_sweep(
     except SweepError as error:
         from twin.logs.read import refused
 
-        raise SweepError(refused(path, str(error))) from None
+        raise SweepError(refused(path, str(error), spin=spin)) from None
 
 
 def read_columns(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES, spin: bool = False) -> dict[str, Array]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from twin.angles import Array
 from twin.errors import SweepError
-from twin.sweep_columns import COLUMNS, REQUIRED, TOLD_BY_SENSOR, is_spin
+from twin.sweep_columns import COLUMNS, TOLD_BY_SENSOR, lacking
 from twin.text_input import MISSING, cells_of, no_text, utf8_or_latin1
 
 LONGEST_LINE_BYTES = 1_000_000
@@ -115,11 +115,11 @@ def _refuse_binary(text: str, before: int, *, name: str) -> None:
 def _header_of(text: str, line: int, *, name: str, spin: bool) -> _Header:
     delimiter = ";" if ";" in text else "\t" if "\t" in text else ","
     names = tuple(cell.strip() for cell in cells_of(text, delimiter))
-    _check_header(names, where=f"{name}: line {line}", required=() if spin and is_spin(names) else REQUIRED)
+    _check_header(names, where=f"{name}: line {line}", spin=spin)
     return _Header(line, delimiter, names)
 
 
-def _check_header(header: tuple[str, ...], *, where: str, required: tuple[str, ...]) -> None:
+def _check_header(header: tuple[str, ...], *, where: str, spin: bool) -> None:
     found = _shown(",".join(header), 200)
     if all(_is_number(cell) for cell in header):
         raise SweepError(
@@ -129,9 +129,9 @@ def _check_header(header: tuple[str, ...], *, where: str, required: tuple[str, .
     for cell in COLUMNS:
         if header.count(cell) > 1:
             raise SweepError(f"{where}: column {cell} stands {header.count(cell)} times; expected it once: keep one")
-    for needed in required:
-        if needed not in header:
-            raise SweepError(f"{where}: column {needed} is missing; found {found}; rename the column or add it")
+    missing = lacking(header, spin=spin)
+    if missing:
+        raise SweepError(f"{where}: {missing}; found {found}; rename the column or add it")
 
 
 def _shown(text: str, most: int = 40) -> str:

@@ -15,7 +15,8 @@ from twin.angles import Array
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.errors import SweepError
 from twin.logs.angles import COUNTS_PER_TURN
-from twin.logs.guess import Guess, OpenGuess, guessed, unused_by
+from twin.logs.asked_back import OpenGuess
+from twin.logs.guess import Guess, guessed, unused_by
 from twin.logs.names import Meaning, meaning_of
 from twin.logs.others import others
 from twin.logs.read import by_statement, read_table
@@ -90,6 +91,8 @@ def read_record(
         found = _by_names(table, name=name, refused="") if _leaves_a_reference(guess, table) else None
         return _with_mended(_of(table, guess, name=name), table) if found is None else found
     except OpenGuess as two:
+        if two.example:
+            raise
         if two.fit:
             return _of_several(table, two, name=name)
         found = _by_names(table, name=name, refused=str(two))

@@ -8,7 +8,9 @@ from pathlib import Path
 
 from scenarios.commands.outputs import SWEEP, OutputFiles
 from twin.logs.read import Log, read_log
+from twin.recording_file import recording_of
 from twin.shown_name import shown_name
+from twin.spin import Spin
 from twin.sweep import Sweep
 from twin.sweep_file import csv_text
 
@@ -21,7 +23,7 @@ def run(log: Path, *, output: Path | None, columns: str | None, force: bool, max
     """
     files = OutputFiles.checked([(output, SWEEP)], inputs=[log], force=force)
     found = read_log(log, columns=columns, max_bytes=max_bytes)
-    sweep = Sweep.from_columns(found.columns, name=shown_name(log))
+    sweep = recording_of(found.columns, name=shown_name(log))
     for line in told(found, sweep):
         print(line, file=sys.stderr)
     # Rows that cannot be used stand in the sweep, too: their numbers are those of the log.
@@ -30,7 +32,7 @@ def run(log: Path, *, output: Path | None, columns: str | None, force: bool, max
     files.tell_written()
 
 
-def told(log: Log, sweep: Sweep) -> Iterator[str]:
+def told(log: Log, sweep: Sweep | Spin) -> Iterator[str]:
     """What was read as what, in lines: the statement that says so, what was taken for granted, and what is not used."""
     lost = f", {len(sweep.rejected)} of them with missing cells" if sweep.rejected else ""
     yield f"{sweep.name}: {sweep.rows} rows{lost}; {'; '.join(log.table.notes) or 'columns by their names'}"

@@ -6,6 +6,38 @@ from tests.mutations.mutation import Mutation, of_one_file
 
 LOGS: tuple[Mutation, ...] = (
     *of_one_file(
+        "twin/logs/turn_seen.py",
+        "tests/untidy/test_alone.py",
+        (
+            "logs.any_gap_is_that_of_a_turn",
+            "    if widest > 0.1 * span:",
+            "    if widest > 10.0 * span:",
+            "::test_a_turn_that_was_not_gone_through_is_none",
+        ),
+        (
+            "logs.a_failed_transfer_ends_the_turn",
+            "(known, *_without_a_word(known))",
+            "(known,)",
+            "::test_counts_a_turn_are_those_with_which_they_begin_anew",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/alone.py",
+        "tests/untidy/test_alone.py",
+        (
+            "logs.two_angles_are_one_alone",
+            "if len(named) > 1 or any(",
+            "if any(",
+            "::test_a_log_of_two_angles_is_never_one_of_a_sensor_alone",
+        ),
+        (
+            "logs.a_named_unit_is_believed",
+            "if not _contradicts(values, own, units):",
+            "if True:",
+            "::test_a_name_that_the_values_go_against_is_asked_about",
+        ),
+    ),
+    *of_one_file(
         "twin/reading_grid.py",
         "tests/twin/test_reading_grid.py",
         (

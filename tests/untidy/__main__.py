@@ -11,7 +11,7 @@ from pathlib import Path
 from tests.untidy.drawn_tables import drawn_table
 from tests.untidy.mixed import Mixed, drawn, drawn_geared
 from twin.errors import UserError
-from twin.logs.guess import OpenGuess
+from twin.logs.asked_back import OpenGuess
 from twin.logs.read import read_log
 from twin.sweep import Sweep
 

@@ -13,7 +13,7 @@ from tests.untidy.drawn_tables import drawn_table
 from tests.untidy.generator import Array, table
 from tests.untidy.tables import Stored, reading_of, stored, true_of
 from twin.errors import SweepError
-from twin.logs.guess import OpenGuess
+from twin.logs.asked_back import OpenGuess
 from twin.logs.read import Log, read_log
 from twin.sweep import Sweep
 

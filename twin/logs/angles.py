@@ -69,7 +69,7 @@ class AngleUnit:
         return f"{self.counts} counts a turn" if self.counts else self.name
 
 
-_TURN = {name: 360.0 / UNITS[name].factor for name in ("deg", "rad", "rev", "gon")}
+TURN = {name: 360.0 / UNITS[name].factor for name in ("deg", "rad", "rev", "gon")}
 """By unit what a turn is, of those in which an angle begins anew after one."""
 Pair = tuple[AngleUnit, AngleUnit]
 _BOTH_DEG, _BOTH_RAD = (AngleUnit("deg"), AngleUnit("deg")), (AngleUnit("rad"), AngleUnit("rad"))
@@ -181,7 +181,7 @@ def options_of(values: Array, said: Meaning) -> list[AngleUnit]:
         return counts
     span = float(np.ptp(values))
     if bool(np.any(restarts(values))):
-        named = [AngleUnit(name) for name, turn in _TURN.items() if 0.9 * turn <= span <= 1.001 * turn]
+        named = [AngleUnit(name) for name, turn in TURN.items() if 0.9 * turn <= span <= 1.001 * turn]
         return named or counts
     named = [AngleUnit("deg")] if span > _LEAST_DEG else []
     named += [AngleUnit("rad"), AngleUnit("rev")] if np.any(values % 1.0 != 0.0) else []

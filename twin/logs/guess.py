@@ -11,7 +11,9 @@ import numpy as np
 
 from twin.angles import Array
 from twin.errors import SweepError
+from twin.logs.alone import alone, in_order
 from twin.logs.angles import AngleUnit, Pair, units_of_pair
+from twin.logs.asked_back import raise_open, raise_several
 from twin.logs.channels import channels
 from twin.logs.devices import meanings_of
 from twin.logs.errors_listed import statements_of_errors
@@ -22,26 +24,13 @@ from twin.logs.others import others
 from twin.logs.ratios import Turned, turned
 from twin.logs.statement import Column, text_of
 from twin.logs.table import LARGEST, Table
-from twin.sweep_columns import COLUMNS
 
-_SHOWN, _SIDES = 2, 2
+_SIDES = 2
 _ERROR_IS = "an error is the reading less the true angle, a correction the reverse"
 _FEWEST = 4
 """Numbers that a column must hold to be judged."""
 _MOST_ANGLES = 12
 """Columns that are compared each with each other; of more a name must say that they are angles."""
-
-
-class OpenGuess(SweepError):
-    """No single guess is right as it stands; ``options`` are the statements of which one may be meant.
-
-    ``fit``: each of several fits names and values as well as the others; else they go against what a name says.
-    """
-
-    def __init__(self, said: str, options: tuple[str, ...], *, fit: bool = False) -> None:
-        super().__init__(said)
-        self.options = options
-        self.fit = fit
 
 
 @dataclass(frozen=True)
@@ -95,16 +84,21 @@ def guessed(table: Table) -> Guess:
         return _one_of(listed, (_ERROR_IS,), table)
     if pair is None:
         pair = _by_channels(table, said, angles, found.columns)
+        if pair is None and (single := alone(table, said, usable, found)) is not None:
+            columns = in_order(single.columns)
+            return Guess(columns, single.notes, unused_by(columns, table, single.why))
+        if pair is None:
+            _raise_no_angles(table)
         if any(column.per for column in pair):
             # A radius that goes with a period is none of the turn.
             found = replace(found, columns=())
     rest = others(table, said, usable, pair[0].of(table))
-    columns = sorted((*pair, *found.columns, *rest.columns), key=lambda one: COLUMNS.index(one.target))
-    unused = unused_by(tuple(columns), table, {**found.why, **rest.why})
+    columns = in_order((*pair, *found.columns, *rest.columns))
+    unused = unused_by(columns, table, {**found.why, **rest.why})
     several = tuple(
         f"{one.target} turns {one.per:g} times in a turn of the shaft: pole pairs, or a gear" for one in pair if one.per
     )
-    return Guess(tuple(columns), (*several, *found.notes, *rest.notes), unused)
+    return Guess(columns, (*several, *found.notes, *rest.notes), unused)
 
 
 def _guessed_of_entries(table: Table) -> Guess:
@@ -114,7 +108,7 @@ def _guessed_of_entries(table: Table) -> Guess:
 def _one_of(fitting: Sequence[tuple[Column, Column]], notes: tuple[str, ...], table: Table) -> Guess:
     """The one statement that fits. Raises OpenGuess where more do."""
     if len(fitting) > 1:
-        _raise_several(table, fitting)
+        raise_several(table, fitting)
     return Guess(fitting[0], notes, unused_by(fitting[0], table))
 
 
@@ -152,7 +146,7 @@ def _pair(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[C
         _raise_odd_factor(table, said, angles)
         return _by_name_alone(table, said, angles)
     if len(fitting) > 1:
-        _raise_several(table, [one.columns(table) for one in fitting])
+        raise_several(table, [one.columns(table) for one in fitting])
     return fitting[0].columns(table)
 
 
@@ -167,31 +161,10 @@ def _turned(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple
             for one in turned(table.values[a], table.values[b], said=(said[a], said[b]))
         ]
         if len(fitting) > 1:
-            _raise_several(table, fitting)
+            raise_several(table, fitting)
         if fitting:
             return fitting[0]
     return None
-
-
-def _raise_several(table: Table, fitting: Sequence[tuple[Column, ...]]) -> NoReturn:
-    """Raise OpenGuess: nothing speaks for one of the statements that fit."""
-    count = "two" if len(fitting) == 2 else "several"
-    _raise_open(table, f"{count} guesses fit", [text_of(one) for one in fitting], fit=True)
-
-
-def _raise_open(table: Table, what: str, options: Sequence[str], *, fit: bool = False) -> NoReturn:
-    which = "say which it is" if len(options) > 1 else "if so, say it"
-    raise OpenGuess(
-        f"{table.file}: {what} (found {table.listed()}); {which}: {in_words(options)}",
-        tuple(options),
-        fit=fit,
-    )
-
-
-def in_words(options: Sequence[str]) -> str:
-    """The first two of some statements as options of a command, and how many more there are."""
-    more = f", and {len(options) - _SHOWN} more" if len(options) > _SHOWN else ""
-    return " or ".join(f'--columns "{option}"' for option in options[:_SHOWN]) + more
 
 
 def _candidates(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> Iterator[_Candidate]:
@@ -228,7 +201,7 @@ def _raise_contradiction(table: Table, said: tuple[Meaning, ...], angles: list[i
         if k in stated and stated[k] != (unit.name or "counts")
     ]
     what = "; ".join(wrong) or "no two columns follow each other in the units of their names"
-    _raise_open(table, what, [text_of(one.columns(table)) for one in fitting])
+    raise_open(table, what, [text_of(one.columns(table)) for one in fitting])
 
 
 def _raise_odd_factor(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> None:
@@ -240,7 +213,7 @@ def _raise_odd_factor(table: Table, said: tuple[Meaning, ...], angles: list[int]
         )
         if odd is not None:
             name = table.names[(a, b)[odd.place]] or table.sources[(a, b)[odd.place]]
-            _raise_open(table, f"{name}: {odd.said}", [text_of(odd.columns)])
+            raise_open(table, f"{name}: {odd.said}", [text_of(odd.columns)])
 
 
 def _by_name_alone(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[Column, Column] | None:
@@ -263,8 +236,8 @@ def _turned_pair(found: Turned, source: str, measured: Column) -> tuple[Column, 
 
 def _by_channels(
     table: Table, said: tuple[Meaning, ...], angles: list[int], found: tuple[Column, ...]
-) -> tuple[Column, Column]:
-    """A reference, and the angle of the two channels as the sensor's. Raises SweepError."""
+) -> tuple[Column, Column] | None:
+    """A reference, and the angle of the two channels as the sensor's; None where there is none. Raises OpenGuess."""
     if len(found) == 2:
         x, y = found[0].term, found[1].term
         measured = Column("measured_deg", y, across=x)
@@ -286,11 +259,17 @@ def _by_channels(
         if len(fitting) == 1:
             return fitting[0]
         if fitting:
-            _raise_several(table, fitting)
+            raise_several(table, fitting)
+    return None
+
+
+def _raise_no_angles(table: Table) -> NoReturn:
+    """Raise SweepError for a log that holds neither a reference and a sensor, nor a sensor alone over time."""
     mistyped = [fault for fault in table.faults.values() if " words " not in fault]
     if mistyped:
         raise SweepError(f"{table.file}: {mistyped[0]}")
     raise SweepError(
         f"{table.file}: no two columns are angles that follow each other (found {table.listed()}); expected a "
-        'reference and a sensor: say which, e.g. --columns "reference_deg=NAME*360/4096, measured_deg=NAME:rad"'
+        'reference and a sensor: say which, e.g. --columns "reference_deg=NAME*360/4096, measured_deg=NAME:rad"; or, '
+        "of a shaft that turns by itself, a time and a sensor"
     )

@@ -19,7 +19,7 @@ from twin.errors import UserError
 from twin.logs.table import Table
 from twin.logs.units import QUANTITY, UNITS
 from twin.shown import shown
-from twin.sweep_columns import COLUMNS, REQUIRED, is_spin
+from twin.sweep_columns import COLUMNS, lacking
 
 _NAME = r"#\d+|[^\W\d]\w*(?:\.\w+)*|'(?:[^']|'')+'"
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
@@ -149,9 +149,8 @@ def parsed(text: str) -> tuple[Column, ...]:
     for target in targets:
         if targets.count(target) > 1:
             raise UserError(f"--columns: {target} is said {targets.count(target)} times; expected it once: keep one")
-    for needed in () if is_spin(targets) else REQUIRED:
-        if needed not in targets:
-            raise UserError(f"--columns: {needed} is missing; say which column it is, e.g. {EXAMPLE!r}")
+    if missing := lacking(targets, spin=True):
+        raise UserError(f"--columns: {missing.removeprefix('column ')}; say which column it is, e.g. {EXAMPLE!r}")
     return columns
 
 

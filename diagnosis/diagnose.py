@@ -89,14 +89,13 @@ def diagnose(
     True
     """
     return diagnose_many(
-        [sweep],
+        [sweep if columns is None else as_sweep(sweep, columns=columns)],
         robust=robust,
         seed=seed,
         band_deg=band_deg,
         twin=twin,
         output_sense=output_sense,
         mounting=mounting,
-        columns=columns,
     )[0]
 
 
@@ -109,7 +108,6 @@ def diagnose_many(
     twin: TwinLike | None = None,
     output_sense: int | None = None,
     mounting: Mounting | None = None,
-    columns: str | None = None,
     progress: Listener | None = None,
 ) -> Diagnoses:
     """Quantify the paper's error factors of many sweeps; those of equal length in one swarm.
@@ -130,8 +128,6 @@ def diagnose_many(
         As in :func:`diagnose`.
     mounting : Mounting, optional
         As in :func:`diagnose`; one air gap, that of the first sweep, or one for each.
-    columns : str, optional
-        As in :func:`diagnose`.
     progress : callable, optional
         Called with a :class:`diagnosis.Progress` as the sweeps are read, fitted and judged.
 
@@ -181,10 +177,7 @@ def diagnose_many(
     told, place = _told(output_sense, known), mounting or _mounting(known)
     wanted = list(sweeps)
     count = Count(len(wanted), progress)
-    each = [
-        count.of("reading", done, decoded(as_sweep(sweep, columns=columns), CATALOGUE))
-        for done, sweep in enumerate(wanted, 1)
-    ]
+    each = [count.of("reading", done, decoded(as_sweep(sweep), CATALOGUE)) for done, sweep in enumerate(wanted, 1)]
     read = [one.usable for one in each]
     if not read:
         raise UserError("found no sweep; give at least one")

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis import explain
+from diagnosis import diagnose, explain
 from tests.command_line import halltwin
 from tests.untidy.generator import Array, counts, table
 from twin.errors import SweepError
@@ -149,3 +149,11 @@ def test_python_takes_the_same_columns(tmp_path: Path) -> None:
         explain({"measured_deg": shaft_deg(), "time_s": TIME_S}, columns=statement)
     found = explain(str(coast(tmp_path)), columns=statement)
     assert found.sweep.estimated is not None
+
+
+def test_python_takes_the_columns_of_a_sweep_too(tmp_path: Path) -> None:
+    shaft = 2.5 * np.arange(360.0)
+    path = tmp_path / "log.csv"
+    path.write_text(table({"ref": shaft, "sensor": (shaft + 3.0 + 0.5 * np.sin(np.radians(shaft))) % 360.0}))
+    found = diagnose(str(path), columns="reference_deg=ref, measured_deg=sensor")
+    assert found.factors["gain_ratio"].value == pytest.approx(1.0, abs=0.01)

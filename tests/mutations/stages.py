@@ -40,6 +40,16 @@ STAGES: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
+        f"{_D}/stages/repeated_frames.py",
+        _T,
+        (
+            "repeated_frames.asked_once",
+            "range(state.settings.most_rounds)",
+            "range(1)",
+            "stages/test_repeated_frames.py::test_long_runs_pull_the_fit_until_they_are_masked",
+        ),
+    ),
+    *of_one_file(
         f"{_D}/watch.py",
         _T,
         (

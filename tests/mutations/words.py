@@ -86,6 +86,13 @@ WORDS = (
         (f"{_TESTS}::test_a_stretch_of_wrong_words_is_no_dead_zone",),
     ),
     Mutation(
+        "dead_zone.runs_of_repeats_are_short",
+        "twin/link/dead_zone.py",
+        "followed, ended = sum(others) - len(others) + 0.5",
+        "followed, ended = 0.5",
+        (f"{_TESTS}::test_the_longest_of_many_runs_of_repeated_frames_is_no_dead_zone",),
+    ),
+    Mutation(
         "dead_zone.edges_as_if_held",
         "twin/link/dead_zone.py",
         "lower = slack if low.any() else first_high",

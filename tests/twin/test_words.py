@@ -124,6 +124,17 @@ def test_a_stretch_of_wrong_words_is_no_dead_zone() -> None:
     assert "dead_zone" not in keys
 
 
+@pytest.mark.parametrize(("others", "zone"), [((), True), ((1,) * 8, True), ((3, 4, 2, 4), False)])
+def test_the_longest_of_many_runs_of_repeated_frames_is_no_dead_zone(others: tuple[int, ...], zone: bool) -> None:
+    """Over ten degrees the word before is sent again; elsewhere others are, so many times each."""
+    angle, words = sound()
+    words[100:110] = words[99]
+    for start, times in zip(range(120, 360, 25), others, strict=False):
+        words[start : start + times] = words[start - 1]
+    faults = decoded(Sweep(angle, words * (360.0 / 2**12)), CATALOGUE).faults
+    assert ([key for key, _ in faults] == ["dead_zone"]) == zone
+
+
 def test_a_sweep_that_only_follows_once_decoded_is_read() -> None:
     """The top bit always reads 1: half of the readings are half a turn off, so that they follow nothing."""
     angle = np.arange(0.0, 360.0, 9.0)

@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from twin.angles import TAU, Array, radians
+from twin.angles import TAU, Array, IntArray, radians
 from twin.drawing import span
 from twin.effect import BoolArray, Effect, Param, Parameters
 from twin.link.stale_frames import STALE_FRAMES
 from twin.motion import Motion
+from twin.runs import runs
 from twin.words import MISSED, Also, InWords, WordFault, Words
 
 _NOISE_SIGMA = 4.0
@@ -49,7 +50,36 @@ def find(words: Words) -> WordFault | None:
         return None
     standing = int(np.count_nonzero(held))
     log_p = (2 * standing - count) * np.log(MISSED) + (standing - 2) * np.log(2.0 * words.step / TAU)
-    return _fault(words, (start, width), (place, held & low, held & high), float(log_p))
+    log_p = max(float(log_p), _log_p_of_repeats(words, held))
+    return _fault(words, (start, width), (place, held & low, held & high), log_p)
+
+
+def _log_p_of_repeats(words: Words, held: BoolArray) -> float:
+    """Log probability that one of the runs of repeated frames of a sweep is as long as that in which the word held.
+
+    Where the word held more than once, or no frame is repeated elsewhere, repeats are no explanation: minus infinity.
+    After each repeat comes another one with some probability q: over what the other runs leave open of q (Beta, from
+    Jeffreys' prior), the mean of its power is the ratio of two Beta functions.
+    """
+    from scipy.special import betaln
+
+    if not _in_one_piece(np.flatnonzero(held)):
+        return -np.inf
+    moved = np.abs(np.diff(words.expected.angle, prepend=words.expected.angle[0])) > words.apart
+    repeated = moved & (np.diff(words.numbers, prepend=words.numbers[0]) == 0)
+    stretches = [run for run in runs(repeated) if repeated[run].all()]
+    own = [run.stop - run.start for run in stretches if held[run].any()]
+    others = [run.stop - run.start for run in stretches if not held[run].any()]
+    if not own or not others:
+        return -np.inf
+    followed, ended = sum(others) - len(others) + 0.5, len(others) + 0.5
+    log_mean = float(betaln(followed + max(own) - 1.0, ended) - betaln(followed, ended))
+    return min(log_mean + float(np.log(len(others) + 1.0)), 0.0)
+
+
+def _in_one_piece(rows: Sequence[int] | IntArray) -> bool:
+    """Whether readings follow one another."""
+    return bool(np.all(np.diff(np.sort(rows)) == 1))
 
 
 def _reach(place: Array) -> float:
@@ -103,7 +133,7 @@ def line(values: Mapping[str, float], shown: Mapping[str, str]) -> str:
 
 def _holds_once(read_rad: Array, motion: Motion, rows: Sequence[int]) -> bool:
     """Whether the readings that were held follow one another: then frames that were repeated do the same."""
-    return bool(np.all(np.diff(sorted(rows)) == 1))
+    return _in_one_piece(rows)
 
 
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:

@@ -20,13 +20,16 @@ def repeated_frames(state: State) -> State:
 
     Asked again after the search: structure may hide them at first; and a cause may do by itself what had passed for
     them, such as a clipped angle that stands still. The fit has not seen these readings: where it says what they read,
-    they are given back.
+    they are given back. And readings that are not masked yet pull the fit to where some of their marks do not show: it
+    is asked again without those that were found.
     """
     for effect in state.effects:
         if effect.marks is not None and effect.marks.early:
-            anew = given_back(state, effect)
-            after = claimed(anew, effect)
-            if not np.array_equal(after.touched, state.touched):
+            for _ in range(state.settings.most_rounds):
+                anew = given_back(state, effect)
+                after = claimed(anew, effect)
+                if np.array_equal(after.touched, state.touched):
+                    break
                 state = after.with_(without_rows(solve(anew.fit), after.touched))
     return state
 

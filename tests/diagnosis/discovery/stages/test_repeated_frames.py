@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from diagnosis import explain
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.marks.row_masks import scaled, without_rows
 from diagnosis.discovery.settings import DiscoverySettings
@@ -51,6 +52,18 @@ def test_every_repeated_frame_is_named_and_masked(made: Made) -> None:
     assert tuple(np.flatnonzero(after.touched)) == rows
     assert set(rows) <= set(np.flatnonzero(~after.fit.observations.usable))
     assert repeated_frames(after) is after
+
+
+def test_long_runs_pull_the_fit_until_they_are_masked() -> None:
+    """Ten frames again at steps of two degrees: against the fit to all readings the first of a run looks sound."""
+    shaft = np.arange(0.0, 360.0, 2.0)
+    read = shaft + 0.4 * np.sin(np.radians(shaft)) + 0.02 * np.random.default_rng(5).standard_normal(shaft.size)
+    held = np.zeros(shaft.size, dtype=bool)
+    for first, times in ((20, 4), (63, 7), (113, 11), (132, 4)):
+        held[first : first + times], read[first : first + times] = True, read[first - 1]
+    (cause,) = explain({"reference_deg": shaft, "measured_deg": np.round(read % 360.0, 3)}).to_dict()["causes"]
+    assert cause["name"] == STALE
+    assert cause["parameters"]["fraction_percent"]["value"] == pytest.approx(100.0 * np.mean(held), abs=1e-4)
 
 
 def test_a_repeat_that_the_expected_reading_repeats_is_none() -> None:

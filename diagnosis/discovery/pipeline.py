@@ -28,6 +28,7 @@ from diagnosis.discovery.stages.quantisation import quantisation
 from diagnosis.discovery.stages.recording_levels import recording_levels
 from diagnosis.discovery.stages.recordings_alone import recordings_alone
 from diagnosis.discovery.stages.repeated_frames import repeated_frames
+from diagnosis.discovery.stages.ringing import ringing
 from diagnosis.discovery.stages.rival_fits import rival_fits
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.stages.sense_check import sense_check
@@ -49,6 +50,7 @@ PIPELINE: tuple[Stage, ...] = (
         repeated_frames,  # readings that repeat the one before
         variance,  # rows that are beyond doubt louder weigh less
         stepwise,  # causes in the mean: add, exchange, remove
+        ringing,  # lines that are a narrow band of noise
         one_source,  # lines that one cause makes together
         sense_check,  # who counts which way, now that the causes are known
         own_shapes,  # of a given twin's effects, which without the causes would go anywhere

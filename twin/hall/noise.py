@@ -21,6 +21,8 @@ def described(values: Parameters) -> Noise:
         correlation=_first(values, "correlation"),
         flicker_exponent=_first(values, "flicker_exponent"),
         white_share=1.0 - _first(values, "correlated_share"),
+        ringing_per_reading=_first(values, "ringing_per_reading"),
+        ringing_quality=_first(values, "ringing_quality"),
         dof=1.0 / inverse if inverse > 0.0 else np.inf,
         scale=RowScale(**{name: _first(values, name) for name in _SCALE}),
     )
@@ -37,6 +39,8 @@ def parameters(noise: Noise) -> dict[str, float]:
         "correlation": noise.correlation,
         "correlated_share": 1.0 - noise.white_share,
         "flicker_exponent": noise.flicker_exponent,
+        "ringing_per_reading": noise.ringing_per_reading,
+        "ringing_quality": noise.ringing_quality if noise.rings else NOISE.params["ringing_quality"].null,
         "inverse_dof": 1.0 / noise.dof,
         # Of even Gaussian white noise each channel's is that of the angle.
         "rotating_frame": 0.0 if noise.white and np.isinf(noise.dof) else 1.0,
@@ -62,7 +66,7 @@ def _of_each_channel(rng: np.random.Generator, shape: tuple[int, ...], noise: No
     unit = innovations(rng, shape, dof=noise.dof)
     if noise.white:
         return unit
-    if noise.flicker_exponent == 0.0:
+    if noise.flicker_exponent == 0.0 and not noise.rings:
         coloured = autoregressive(rng, shape, noise.correlation, dof=noise.dof)
     else:
         coloured = draw(rng, shape, replace(noise, white_share=0.0).spectrum(shape[-1]), dof=noise.dof)
@@ -110,6 +114,8 @@ NOISE = Effect(
         "correlation": _shape("1", 0.0, (0.0, 0.999), "from one reading to the next", typical=0.5),
         "correlated_share": _shape("1", 1.0, (0.0, 1.0), "share of the variance that is correlated or 1/f"),
         "flicker_exponent": _shape("1", 0.0, (0.0, 2.5), "exponent a of 1/f^a noise", typical=0.5),
+        "ringing_per_reading": _shape("1", 0.0, (0.0, 0.5), "resonance of a narrow band, cycles a reading; 0: none"),
+        "ringing_quality": _shape("1", 10.0, (0.5, 1e3), "quality of that resonance", typical=5.0),
         "inverse_dof": _shape("1", 0.0, (0.0, 0.45), "1 over the degrees of freedom of Student's t; 0: Gaussian"),
         "rotating_frame": Param(
             unit="1",
@@ -125,7 +131,7 @@ NOISE = Effect(
     },
     forward=forward,
     footprint="spread",
-    source="thermal and 1/f noise of the Hall plates, as first-order autoregressive, 1/f and white noise",
+    source="thermal and 1/f noise of the Hall plates, as first-order autoregressive, 1/f and white noise; a bracket that rings",
     signature="spread of the readings",
     baseline=True,
 )

@@ -25,6 +25,8 @@ class Noise:
         Exponent a of 1/f^a noise.
     white_share : float
         Share of the variance that is white beside coloured noise.
+    ringing_per_reading, ringing_quality : float
+        Frequency [cycles a reading] and quality of a resonance that random knocks keep ringing; frequency 0: none.
     dof : float
         Degrees of freedom of the Student's t distribution of its innovations; infinite: Gaussian.
     scale : RowScale
@@ -35,13 +37,20 @@ class Noise:
     correlation: float = 0.0
     flicker_exponent: float = 0.0
     white_share: float = 0.0
+    ringing_per_reading: float = 0.0
+    ringing_quality: float = 0.0
     dof: float = np.inf
     scale: RowScale = field(default_factory=RowScale)
 
     @property
     def white(self) -> bool:
         """Whether no reading has anything to do with the one before."""
-        return self.correlation == 0.0 and self.flicker_exponent == 0.0
+        return self.correlation == 0.0 and self.flicker_exponent == 0.0 and not self.rings
+
+    @property
+    def rings(self) -> bool:
+        """Whether a resonance makes a narrow band of it."""
+        return self.ringing_per_reading > 0.0
 
     @property
     def label(self) -> str:
@@ -50,6 +59,7 @@ class Noise:
             return "white"
         parts = [f"AR(1) {self.correlation:g}"] if self.correlation else []
         parts += [f"1/f^{self.flicker_exponent:g}"] if self.flicker_exponent else []
+        parts += [f"ringing at {self.ringing_per_reading:g} a reading"] if self.rings else []
         return " x ".join(parts) + (f" + {self.white_share:.0%} white" if self.white_share else "")
 
     def spectrum(self, n: int) -> Array:
@@ -59,4 +69,5 @@ class Noise:
             correlation=self.correlation,
             flicker_exponent=self.flicker_exponent,
             white_share=0.0 if self.white else self.white_share,
+            ringing=(self.ringing_per_reading, self.ringing_quality),
         )

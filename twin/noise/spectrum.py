@@ -1,4 +1,4 @@
-"""Spectra over the cosine basis of a record: white, first-order autoregressive and 1/f noise.
+"""Spectra over the cosine basis of a record: white, first-order autoregressive and 1/f noise, and a resonance's.
 
 In the cosine basis (DCT-II) stationary noise is very nearly independent from coefficient to coefficient, with the
 variance given by its spectrum: the basis is the limit of the Karhunen-Loeve basis of first-order autoregressive noise
@@ -14,7 +14,14 @@ import numpy as np
 from twin.angles import Array
 
 
-def spectrum(n: int, *, correlation: float = 0.0, flicker_exponent: float = 0.0, white_share: float = 0.0) -> Array:
+def spectrum(
+    n: int,
+    *,
+    correlation: float = 0.0,
+    flicker_exponent: float = 0.0,
+    white_share: float = 0.0,
+    ringing: tuple[float, float] = (0.0, 0.0),
+) -> Array:
     """Variance of each cosine coefficient of a noise of unit variance.
 
     Parameters
@@ -27,6 +34,9 @@ def spectrum(n: int, *, correlation: float = 0.0, flicker_exponent: float = 0.0,
         Exponent a of 1/f^a noise; 0: none. With a correlation beside it the two spectra are multiplied.
     white_share : float
         Share of the variance that is white noise beside the coloured one.
+    ringing : tuple of float
+        Frequency [cycles a reading] and quality of a resonance that random knocks keep ringing; frequency 0: none.
+        With a correlation or 1/f noise beside it the spectra are multiplied.
 
     Returns
     -------
@@ -37,7 +47,20 @@ def spectrum(n: int, *, correlation: float = 0.0, flicker_exponent: float = 0.0,
     coloured = (1.0 - correlation**2) / (1.0 + correlation**2 - 2.0 * correlation * np.cos(omega))
     if flicker_exponent:
         coloured = coloured * (omega / np.pi) ** -flicker_exponent
+    if ringing[0]:
+        coloured = coloured * resonance(omega, *ringing)
     return np.asarray((1.0 - white_share) * coloured / np.mean(coloured) + white_share)
+
+
+def resonance(omega: Array, frequency: float, quality: float) -> Array:
+    """Spectrum over the angular frequency (n,) [rad a reading] of what a damped oscillator makes of random knocks.
+
+    A second-order autoregression, whose two roots turn by the frequency [cycles a reading] from one reading to the next
+    and fall off as an amplitude of this quality does.
+    """
+    radius, turn = np.exp(-np.pi * frequency / quality), 2.0 * np.pi * frequency
+    near, far = (1.0 + radius**2 - 2.0 * radius * np.cos(omega + sign * turn) for sign in (-1.0, 1.0))
+    return np.asarray(1.0 / (near * far))
 
 
 def to_cosine(values: Array, lengths: Sequence[int] = ()) -> Array:

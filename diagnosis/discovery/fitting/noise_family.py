@@ -58,6 +58,10 @@ class NoiseFamily:
         """Log determinants (members,) of all rows' covariance."""
         return np.array([log_determinant(spectrum, spectrum.size) for spectrum in self.spectra])
 
+    def with_(self, noise: Noise, spectrum: Array) -> NoiseFamily:
+        """The family with another noise, of this spectrum (n,), as its last member."""
+        return replace(self, members=(*self.members, noise), spectra=np.concatenate([self.spectra, spectrum[None]]))
+
     def white_alone(self) -> NoiseFamily:
         """The family of white noise only."""
         return replace(self, members=self.members[:1], spectra=self.spectra[:1])
@@ -71,10 +75,16 @@ def log_determinant(spectrum: Array, rows: int) -> float:
     return float(np.sum(np.log(spectrum))) * (rows / spectrum.size)
 
 
-def noise_family(lengths: Sequence[int], colour_log_odds: float, *, motion: Array | float = 0.0) -> NoiseFamily:
+def noise_family(
+    lengths: Sequence[int],
+    colour_log_odds: float,
+    *,
+    motion: Array | float = 0.0,
+    members: tuple[Noise, ...] = MEMBERS,
+) -> NoiseFamily:
     """The family for sequences of so many readings, one behind the other and independent of each other.
 
     ``motion`` (n,) is the spectrum of what the shaft may have done beside the noise, where no reference was recorded.
     """
-    spectra = [np.concatenate([noise.spectrum(n) for n in lengths]) + motion for noise in MEMBERS]
-    return NoiseFamily(MEMBERS, np.stack(spectra), colour_log_odds)
+    spectra = [np.concatenate([noise.spectrum(n) for n in lengths]) + motion for noise in members]
+    return NoiseFamily(members, np.stack(spectra), colour_log_odds)

@@ -52,7 +52,7 @@ def _flickers(noise: Noise) -> bool:
 
 @dataclass(frozen=True)
 class _Neighbourhood:
-    """Where to look about a member: its correlation or its exponent, and its white share, each within bounds."""
+    """Where to look about a member: its correlation, exponent or quality, and its white share, each within bounds."""
 
     start: Noise
     name: str
@@ -66,6 +66,9 @@ class _Neighbourhood:
         if _flickers(noise):
             exponent = noise.flicker_exponent
             return cls(noise, "flicker_exponent", ((exponent - _REACH_FLICKER, exponent + _REACH_FLICKER), whites))
+        if noise.rings:
+            quality = noise.ringing_quality
+            return cls(noise, "ringing_quality", ((0.5 * quality, 2.0 * quality), whites))
         if noise.white:
             # Without correlation there is nothing for white noise to stand beside.
             whites = (0.0, 0.0)
@@ -75,11 +78,9 @@ class _Neighbourhood:
         return cls(noise, "correlation", ((others[max(place - 2, 0)], high), whites))
 
     def at(self, point: tuple[float, float]) -> Noise:
-        """The noise with this correlation or exponent and this white share."""
+        """The noise with this correlation, exponent or quality and this white share."""
         first, white = point
-        if self.name == "correlation":
-            return replace(self.start, correlation=first, white_share=white)
-        return replace(self.start, flicker_exponent=first, white_share=white)
+        return replace(self.start, **{self.name: first, "white_share": white})
 
     def best(self, cost: _Cost) -> Noise:
         """The lowest point that a compass search finds: a step to each side, halved where none is better."""

@@ -1,0 +1,84 @@
+"""Ringing: a narrow band of noise, as a bracket makes it that random knocks keep at its resonance."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.discovery.fitting.joint_fit import Fit
+from twin.angles import Array
+from twin.noise.description import Noise
+
+_QUALITIES = np.geomspace(3.0, 48.0, 7)
+"""From where a resonance has hardly a peak to where it rings out in some fifteen periods."""
+_WHITE_SHARES = (0.1, 0.3, 0.5, 0.7, 0.85)
+_LEAST_WIDTH = 4.0
+"""Of a band in units of what the record resolves: one that is narrower is no wider than a line."""
+_HALVINGS = 4
+_MOST_BINS = 1500
+"""Of longer records neighbouring coefficients are averaged: no band is as narrow as these are then wide."""
+
+
+def ringing(fit: Fit) -> Noise | None:
+    """The resonance that explains best what the fit leaves of the angle; None where the record cannot show one.
+
+    By the likelihood of the cosine coefficients, each of which has the variance that the spectrum says (P. Whittle,
+    Ark. Mat. 2 (1953) 423): first on a grid as fine as the bands are wide, then about its best point.
+    """
+    rows = len(fit.observations)
+    if len(fit.observations.lengths) > 1 or np.any(fit.observations.motion_spectrum):
+        return None
+    each = -(-rows // _MOST_BINS)
+    bins = rows // each
+    squares = np.mean(fit.cosine_residual[0][: bins * each].reshape(bins, each) ** 2, axis=1)
+
+    def cost(noise: Noise) -> float:
+        spectrum = noise.spectrum(bins)
+        return float(np.log(np.mean(squares / spectrum)) + np.mean(np.log(spectrum)))
+
+    best = min(_tried(rows), key=cost, default=None)
+    if best is None:
+        return None
+    lowest = cost(best)
+    for halving in range(1, _HALVINGS + 1):
+        for step in itertools.product((-1.0, 0.0, 1.0), repeat=3):
+            near = _moved(best, 0.5**halving * np.array(step))
+            if (here := cost(near)) < lowest:
+                best, lowest = near, here
+    return best
+
+
+def _tried(rows: int) -> Iterator[Noise]:
+    """Resonances half a band's width apart, of all frequencies at which the record shows their width."""
+    for quality in _QUALITIES:
+        place = _LEAST_WIDTH * quality / rows
+        while place < 0.5:
+            for white in _WHITE_SHARES:
+                yield Noise(ringing_per_reading=float(place), ringing_quality=float(quality), white_share=white)
+            place *= 1.0 + 0.5 / quality
+
+
+def _moved(noise: Noise, by: Array) -> Noise:
+    """A noise near it: by shares of the grid's steps in frequency, quality and white share."""
+    quality = noise.ringing_quality
+    return replace(
+        noise,
+        ringing_per_reading=float(np.clip(noise.ringing_per_reading * (1.0 + 0.5 * by[0] / quality), 1e-4, 0.5)),
+        ringing_quality=float(quality * (_QUALITIES[1] / _QUALITIES[0]) ** by[1]),
+        white_share=float(np.clip(noise.white_share + 0.2 * by[2], 0.01, 0.95)),
+    )
+
+
+def within_band(noise: Noise, columns: Array) -> Array:
+    """The share (q,) of the squares of cosine coefficients (q, n) that lies in the band of a resonance.
+
+    Twice as far to both sides as it is wide at half of its height: there stand six sevenths of its own.
+    """
+    place, width = noise.ringing_per_reading, noise.ringing_per_reading / noise.ringing_quality
+    frequency = (np.arange(columns.shape[-1]) + 0.5) / (2.0 * columns.shape[-1])
+    inside = np.abs(frequency - place) < 2.0 * width
+    squares = columns**2
+    return np.asarray(squares[..., inside].sum(axis=-1) / np.maximum(squares.sum(axis=-1), 1e-300))

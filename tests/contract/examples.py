@@ -160,6 +160,8 @@ EXAMPLES: dict[str, Example] = {
             "correlation": 0.5,
             "correlated_share": 0.5,
             "flicker_exponent": 1.0,
+            "ringing_per_reading": 0.2,
+            "ringing_quality": 8.0,
             "inverse_dof": 0.2,
             "rotating_frame": 1.0,
             "backward_percent": 50.0,

@@ -146,6 +146,34 @@ STAGES: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
+        f"{_D}/stages/ringing.py",
+        _T,
+        (
+            "ringing.off",
+            "    if found is None:",
+            "    if True:",
+            "stages/test_ringing.py::test_a_bracket_that_rings_is_no_cause",
+        ),
+        (
+            "ringing.numbers_cost_nothing",
+            "likelihood(rung) + 0.5 * fewer * np.log(fit.rows)",
+            "likelihood(rung) + 15.0",
+            "stages/test_ringing.py::test_other_noise_does_not_ring",
+        ),
+        (
+            "ringing.lines_stay",
+            "np.all(within_band(noise, columns[np.any(columns, axis=1)]) > 0.5)",
+            "False",
+            "stages/test_ringing.py::test_several_lines_of_one_band_make_way_for_it",
+        ),
+        (
+            "ringing.every_cause_goes",
+            "np.all(within_band(noise, columns[np.any(columns, axis=1)]) > 0.5)",
+            "True",
+            "stages/test_ringing.py::test_several_lines_of_one_band_make_way_for_it",
+        ),
+    ),
+    *of_one_file(
         f"{_D}/stages/repeated_frames.py",
         _T,
         (

@@ -39,9 +39,15 @@ def density(omega: Array, params: dict[str, float]) -> Array:
     """Spectral density over angular frequency (0 to pi a reading), of mean 1."""
     share = params.get("correlated_share", 1.0)
     phi, exponent = params.get("correlation", 0.0), params.get("flicker_exponent", 0.0)
+    place, quality = params.get("ringing_per_reading", 0.0), params.get("ringing_quality", 1.0)
+    fall = np.exp(-TAU * place / quality) if place else 0.0
+    ring = np.sqrt(fall) * np.exp(1j * TAU * place)
 
     def shape(at: Array) -> Array:
-        return np.asarray(np.abs(1.0 - phi * np.exp(1j * at)) ** -2.0 * at**-exponent)
+        turned = np.exp(1j * at)
+        return np.asarray(
+            np.abs((1.0 - phi * turned) * (1.0 - 2.0 * ring.real * turned + fall * turned**2)) ** -2.0 * at**-exponent
+        )
 
     middle = np.pi * (np.arange(200_000) + 0.5) / 200_000
     return np.asarray(1.0 - share + share * shape(omega) / np.mean(shape(middle)))
@@ -54,6 +60,7 @@ SPECTRA: tuple[dict[str, float], ...] = (
     {"flicker_exponent": 0.6},
     {"flicker_exponent": 0.8, "correlated_share": 0.5},
     {"flicker_exponent": 0.5, "correlation": 0.6},
+    {"ringing_per_reading": 0.1, "ringing_quality": 6.0, "correlated_share": 0.7},
 )
 
 

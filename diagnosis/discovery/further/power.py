@@ -162,9 +162,7 @@ def expected(fit: Fit, rival: Fit, motion: Motion) -> Fit:
     weight = fit.weighting.radius_weight if fit.observations.observables == 2 else 1.0
     weighting = replace(
         fit.weighting,
-        family=_family(
-            observations.lengths, fit.settings.colour_log_odds, members=fit.weighting.family.members
-        ),
+        family=_family(observations.lengths, fit.settings.colour_log_odds, members=fit.weighting.family.members),
         radius_member=fit.weighting.radius_member if fit.observations.observables == 2 else fit.weighting.member,
         radius_weight=weight if channels else 0.0,
         to_come_rad=max(float(np.sqrt(fit.variance)), _LEAST_NOISE_RAD) * truth.usual,

@@ -30,6 +30,7 @@ from diagnosis.discovery.stages.quantisation import quantisation
 from diagnosis.discovery.stages.recording_levels import recording_levels
 from diagnosis.discovery.stages.recordings_alone import recordings_alone
 from diagnosis.discovery.stages.repeated_frames import repeated_frames
+from diagnosis.discovery.stages.ringing import ringing
 from diagnosis.discovery.stages.rival_fits import rival_fits
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.stages.sense_check import sense_check
@@ -50,8 +51,8 @@ from twin.chain import Chain
 from twin.sweep import Sweep
 
 LOOP: tuple[Stage, ...] = (
-    *(recording_levels, repeated_frames, variance, stepwise, one_source, sense_check),
-    *(own_shapes, spread),
+    *(recording_levels, repeated_frames, variance, stepwise, ringing, one_source),
+    *(sense_check, own_shapes, spread),
 )
 """The stages that the pipeline repeats until none of them has anything more to say."""
 ONCE: tuple[Stage, ...] = (

@@ -131,7 +131,8 @@ NOISE = Effect(
     },
     forward=forward,
     footprint="spread",
-    source="thermal and 1/f noise of the Hall plates, as first-order autoregressive, 1/f and white noise; a bracket that rings",
+    source="thermal and 1/f noise of the Hall plates, as first-order autoregressive, 1/f and white noise; a bracket "
+    "that rings",
     signature="spread of the readings",
     baseline=True,
 )

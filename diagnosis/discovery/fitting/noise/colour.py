@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -80,7 +81,8 @@ class _Neighbourhood:
     def at(self, point: tuple[float, float]) -> Noise:
         """The noise with this correlation, exponent or quality and this white share."""
         first, white = point
-        return replace(self.start, **{self.name: first, "white_share": white})
+        moved: dict[str, Any] = {self.name: first, "white_share": white}
+        return replace(self.start, **moved)
 
     def best(self, cost: _Cost) -> Noise:
         """The lowest point that a compass search finds: a step to each side, halved where none is better."""

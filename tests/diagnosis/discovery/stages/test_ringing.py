@@ -19,7 +19,7 @@ RINGING = Noise(ringing_per_reading=0.13, ringing_quality=9.0, white_share=0.36)
 
 
 def read(noise: Noise, seed: int, *, line_deg: float = 0.0, order: int = 94) -> dict[str, Array]:
-    """A sweep of one turn with an offset, noise of 0.02 deg, and a line; of order 94 it is in the middle of the band."""
+    """A sweep of one turn with an offset, noise of 0.02 deg, and a line: order 94 is in mid-band."""
     shaft = np.arange(ROWS) * (360.0 / ROWS)
     rung = 0.02 * draw(np.random.default_rng(seed), (ROWS,), noise.spectrum(ROWS))
     error = 0.4 * np.sin(np.radians(shaft)) + line_deg * np.sin(np.radians(order * shaft)) + rung

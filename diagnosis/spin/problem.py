@@ -10,6 +10,9 @@ import numpy as np
 from diagnosis.spin.spline import PENALISED, Spline, bands
 from twin.angles import Array
 
+_PENALTIES = np.arange(-10.0, 15.0)
+"""Common logarithms: from one to the next the motion's frequencies are slower by a third."""
+
 
 @dataclass(frozen=True, eq=False)
 class Problem:
@@ -93,18 +96,36 @@ def degrees_of_freedom(problem: Problem, sd: Array) -> float:
     return float(problem.weights.sum()) - PENALISED - int(np.count_nonzero(~np.isfinite(sd)))
 
 
-def likeliest(problem: Problem, sd: Array, variance: float, *, around: float | None) -> tuple[float, float]:
-    """The penalty (its common logarithm) and the noise's variance of highest restricted likelihood."""
+def knee(problem: Problem, log_penalty: float) -> Array:
+    """Angular frequency (n,) [rad/s] at which the spline takes half of what a reading's noise does."""
+    spline = problem.spline
+    step = float(np.median(np.diff(problem.time_s)))
+    held = 10.0**log_penalty * np.interp(problem.time_s, spline.at_s, problem.stiffness)
+    return np.asarray((spline.spacing_s / (held * step)) ** (1.0 / (2 * PENALISED)) / spline.spacing_s)
+
+
+def likeliest(
+    problem: Problem, sd: Array, variance: float, *, around: float | None, turning_rad_s: float
+) -> tuple[float, float]:
+    """The penalty (its common logarithm) and the noise's variance of highest restricted likelihood.
+
+    A wave in time, as of the mains in a channel, makes another peak of it, of a motion so free that it holds the wave
+    and all that is slower. So a peak of a motion that is slower than the usual turn is taken before any other; which
+    one, is looked for anew where there is none to look ``around``.
+    """
     from scipy.optimize import minimize_scalar
 
     rows = degrees_of_freedom(problem, sd)
-    low, high = (-10.0, 14.0) if around is None else (around - 3.0, around + 3.0)
-    best = float(
-        minimize_scalar(
-            lambda log_penalty: problem.reduced(log_penalty).cost(sd, variance, rows),
-            bounds=(low, high),
-            method="bounded",
-            options={"xatol": 0.05},
-        ).x
-    )
+
+    def cost(log_penalty: float) -> float:
+        return problem.reduced(log_penalty).cost(sd, variance, rows)
+
+    if around is None:
+        costs = np.array([cost(one) for one in _PENALTIES])
+        slow = np.array([float(np.median(knee(problem, one))) < turning_rad_s for one in _PENALTIES])
+        peaks = np.flatnonzero((costs[1:-1] <= costs[:-2]) & (costs[1:-1] <= costs[2:]) & slow[1:-1]) + 1
+        among = peaks if peaks.size else np.arange(costs.size)
+        around = float(_PENALTIES[among[np.argmin(costs[among])]])
+    found = minimize_scalar(cost, bounds=(around - 1.0, around + 1.0), method="bounded", options={"xatol": 0.05})
+    best = float(found.x)
     return best, max(problem.reduced(best).left(sd, variance)[0] / rows, 1e-24)

@@ -15,8 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.problem import Problem, Reduced, degrees_of_freedom, likeliest
-from diagnosis.spin.spline import PENALISED, Spline, rate
+from diagnosis.spin.problem import Problem, Reduced, degrees_of_freedom, knee, likeliest
+from diagnosis.spin.spline import Spline, rate
 from diagnosis.spin.variance_components import Drawn, drawn, solved
 from twin.angles import Array
 from twin.effect import BoolArray
@@ -86,8 +86,11 @@ class _Estimate:
     def next(self) -> _Estimate:
         """One round: damping, penalty, coefficients, and which readings count, one after the other."""
         made = self._with_columns()
-        log_penalty, variance = likeliest(made.problem, made.sd, made.variance, around=self.log_penalty)
-        reduced, usual = made.problem.reduced(log_penalty), float(np.median(np.abs(self.rates[0])))
+        usual = float(np.median(np.abs(self.rates[0])))
+        log_penalty, variance = likeliest(
+            made.problem, made.sd, made.variance, around=self.log_penalty, turning_rad_s=usual
+        )
+        reduced = made.problem.reduced(log_penalty)
         separable = _separable(reduced, variance, usual)
         terms = _drawn(reduced, made.sd, variance, usual, separable)
         start = made.problem.start + reduced.step - reduced.pulled @ terms.values
@@ -159,7 +162,7 @@ def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]
     return MotionFit(
         shaft_rad=found.shaft_rad,
         speed_rad_s=found.rates[0],
-        knee_rad_s=_knee(found.problem, found.log_penalty),
+        knee_rad_s=knee(found.problem, found.log_penalty),
         noise_rad=float(np.sqrt(found.variance)),
         terms=found.terms,
         usable=found.problem.weights > 0.0,
@@ -248,11 +251,3 @@ def _stiffness(differences: Array) -> Array:
 
     local = uniform_filter1d(differences**2, _WINDOW, mode="nearest")
     return np.asarray(1.0 / np.maximum(local / (_BEYOND_CHANCE * max(float(np.median(local)), 1e-300)), 1.0))
-
-
-def _knee(problem: Problem, log_penalty: float) -> Array:
-    """Angular frequency (n,) [rad/s] at which the spline takes half of what a reading's noise does."""
-    spline = problem.spline
-    step = float(np.median(np.diff(problem.time_s)))
-    held = 10.0**log_penalty * np.interp(problem.time_s, spline.at_s, problem.stiffness)
-    return np.asarray((spline.spacing_s / (held * step)) ** (1.0 / (2 * PENALISED)) / spline.spacing_s)

@@ -97,7 +97,7 @@ _MECHANISMS: tuple[Mutation, ...] = (
     ),
     Mutation(
         "radius_nuisance.masked_rows_keep_the_scale",
-        "diagnosis/discovery/fitting/radius_nuisance.py",
+        "diagnosis/discovery/fitting/nuisance.py",
         "np.linalg.pinv(factors.T) @ everywhere",
         "np.linalg.pinv(factors.T) @ (everywhere * observations.usable)",
         (f"{_TESTS}/stages/test_row_masks.py::test_a_row_that_is_in_its_place_comes_back",),

@@ -14,7 +14,7 @@ from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import NoiseFamily
 from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.fitting.projection import projected
-from diagnosis.discovery.fitting.radius_nuisance import without_nuisance
+from diagnosis.discovery.fitting.nuisance import without_nuisance
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
 from twin.baseline import FACTORS
@@ -208,9 +208,6 @@ def evaluate(
         moved = [(free[place].name, free[place].turn) for place in own]
         jacobian[own] = linear.derivatives(key, find(key, chain.effects), moved)
     residual, jacobian = without_nuisance(observations, residual), without_nuisance(observations, jacobian)
-    if observations.loose is not None:
-        residual[0] = observations.loose.whitened(residual[0])
-        jacobian[:, 0] = observations.loose.whitened(jacobian[:, 0])
     fit = Fit(
         chain=chain,
         free=free,

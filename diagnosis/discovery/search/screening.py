@@ -17,7 +17,7 @@ from diagnosis.discovery.fitting.coefficients import observables_to_cosine, to_r
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
 from diagnosis.discovery.fitting.linearised_chain import Term
-from diagnosis.discovery.fitting.radius_nuisance import without_nuisance
+from diagnosis.discovery.fitting.nuisance import without_nuisance
 from diagnosis.discovery.search.periodogram import line_shapes
 from twin.angles import Array, IntArray
 from twin.effect import BoolArray, Effect
@@ -189,11 +189,13 @@ def matched(base: Base) -> list[Array]:
 
 def matched_to(base: Base, cosine_residual: Array, best: int) -> list[Array]:
     """An angle's residual, cosine coefficients (n,), weighted likewise and back over the rows."""
-    fit = base.fit
+    fit, observations = base.fit, base.fit.observations
     rows = []
     for member in dict.fromkeys((0, best)):
-        weighted = cosine_residual * fit.weighting.family.weights[member]
-        rows.append(to_rows(fit.observations, weighted) * (fit.observations.usable / fit.observations.scale))
+        weighted = to_rows(observations, cosine_residual * fit.weighting.family.weights[member])
+        weighted = weighted * (observations.usable / observations.scale)
+        # Lines are matched as they are: what whitens them beside the noise is symmetric, and turned on the residual.
+        rows.append(weighted if observations.loose is None else observations.loose.whitened(weighted))
     return rows
 
 

@@ -1,4 +1,4 @@
-"""What the channels' amplitude may do for reasons of its own, which tells nothing about an angle."""
+"""What radius and angle may do for reasons of their own, which tells nothing about the sensor's angle."""
 
 from __future__ import annotations
 
@@ -10,20 +10,29 @@ from twin.motion import NOMINAL_C
 
 
 def without_nuisance(observations: Observations, columns: Array) -> Array:
-    """Columns (..., O, n) whose radius is free of a common scale and its drift with temperature.
+    """Columns (..., O, n) as they count: residuals, Jacobian and candidates alike.
 
-    These are as the rows in use tell them, and are taken off the others too: whether such a row is in its place is
-    judged by what is left of it.
+    The radius is free of a common scale and its drift with temperature. These are as the rows in use tell them, and are
+    taken off the others too: whether such a row is in its place is judged by what is left of it. Of an angle without a
+    reference counts along what torques may have done to the shaft the less the more these may have.
     """
-    if observations.observables == 1:
+    if observations.observables == 1 and observations.loose is None:
         return columns
+    columns = np.array(columns)
+    if observations.loose is not None:
+        columns[..., 0, :] = observations.loose.whitened(columns[..., 0, :])
+    if observations.observables == 2:
+        _free_of_scale(observations, columns[..., 1, :])
+    return columns
+
+
+def _free_of_scale(observations: Observations, radii: Array) -> None:
+    """Take the scale and its drift off radii (..., n), in place."""
     everywhere = np.stack(_nuisance(observations))
     basis, factors = np.linalg.qr((everywhere * observations.usable).T)
     # Of a recording that is left out altogether nothing tells the scale.
     full = np.linalg.pinv(factors.T) @ everywhere
-    columns = np.array(columns)
-    columns[..., 1, :] -= (columns[..., 1, :] @ basis) @ full
-    return columns
+    radii -= (radii @ basis) @ full
 
 
 def _nuisance(observations: Observations) -> list[Array]:

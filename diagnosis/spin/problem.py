@@ -30,12 +30,16 @@ class Problem:
     columns: Array
 
     @cached_property
-    def _of_readings(self) -> tuple[Array, Array, Array, Array]:
-        """What the readings make of the normal equations, whatever the penalty: bands, across, left, its product."""
+    def _of_readings(self) -> tuple[Array, Array, Array, Array, Array]:
+        """What the readings make of the normal equations, whatever the penalty.
+
+        Bands, across, left, its product, and the columns' own.
+        """
         design = self.spline.design
         left = self.weights * (self.readings - design @ self.start)
-        across = np.asarray(design.T @ (self.weights * self.columns).T)
-        return bands(design, self.weights), across, left, design.T @ left
+        weighed = self.weights * self.columns
+        across = np.asarray(design.T @ weighed.T)
+        return bands(design, self.weights), across, left, design.T @ left, weighed @ self.columns.T
 
     @cached_property
     def _of_differences(self) -> tuple[Array, Array]:
@@ -47,7 +51,7 @@ class Problem:
         from scipy.linalg import cho_solve_banded, cholesky_banded
 
         penalty = 10.0**log_penalty
-        by_readings, across, left, along = self._of_readings
+        by_readings, across, left, along, own = self._of_readings
         by_differences, differences = self._of_differences
         held = penalty * self.stiffness * differences
         system = by_readings + penalty * by_differences
@@ -57,7 +61,7 @@ class Problem:
         rhs = along - self.spline.rough.T @ held
         solved = cho_solve_banded((factor, True), np.column_stack([rhs, across]))
         step, pulled = solved[:, 0], solved[:, 1:]
-        normal = (self.weights * self.columns) @ self.columns.T - across.T @ pulled
+        normal = own - across.T @ pulled
         gradient = self.columns @ left - across.T @ step
         squares = float(left @ left + held @ differences - rhs @ step)
         log_det = 2.0 * float(np.sum(np.log(factor[0]))) - len(held) * log_penalty * float(np.log(10.0))

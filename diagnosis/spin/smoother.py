@@ -22,10 +22,13 @@ from twin.angles import Array
 from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import response
 
-HIGHEST_ORDER = 16
-"""Of the sensor's error and of the torques: what correction tables of 32 entries hold."""
+HIGHEST_ORDER = 32
+"""Of the sensor's error and of the torques: the second harmonic of a cogging by sixteen teeth."""
 HIGHEST_OF_GROWING = 4
 """Of torques that grow with the speed: what rubs is modulated by what runs out or is bent, not by teeth."""
+_OF_ERROR, _OF_TORQUE = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
+_OF_GROWING = _OF_TORQUE + 2 * HIGHEST_OF_GROWING
+"""Where the coefficients of the error, of constant and of growing torques end; those of a late channel follow."""
 _TOLD = 0.5
 """Share of a coefficient that the readings tell, from which on its scatter is told by them too."""
 _ROUNDS = 5
@@ -43,8 +46,9 @@ class MotionFit:
     ``shaft_rad`` is the part that is smooth in time with what the torques do. ``knee_rad_s`` (n,) is the angular
     frequency below which the motion is freer than the readings' noise is loud. ``noise_rad`` is the RMS of a reading
     about it all. ``terms`` are the coefficients: cosine and sine of each order of the error
-    [rad], of each order's torque [rad/s^2], and of what of it grows with the speed [rad/s^2 for each rad/s] up to the
-    order 4. ``separable`` (orders,): whether a torque that makes all that is seen of an order would be told.
+    [rad], of each order's torque [rad/s^2], of what of it grows with the speed [rad/s^2 for each rad/s] up to the
+    order 4, and of an error of order 2 that grows with the speed [rad for each rad/s]. ``separable`` (orders,): whether
+    a torque that makes all that is seen of an order would be told.
     """
 
     shaft_rad: Array
@@ -81,7 +85,7 @@ class _Estimate:
     @property
     def with_torques(self) -> bool:
         """Whether torques are among the columns."""
-        return len(self.sd) > 2 * HIGHEST_ORDER
+        return len(self.sd) > _OF_ERROR
 
     def next(self) -> _Estimate:
         """One round: damping, penalty, coefficients, and which readings count, one after the other."""
@@ -93,8 +97,9 @@ class _Estimate:
         reduced = made.problem.reduced(log_penalty)
         separable = _separable(reduced, variance, usual)
         terms = _drawn(reduced, made.sd, variance, usual, separable)
+        torques = slice(_OF_ERROR, _OF_GROWING)
         start = made.problem.start + reduced.step - reduced.pulled @ terms.values
-        smooth, first = made.problem.spline.design @ start, 2 * HIGHEST_ORDER
+        smooth = made.problem.spline.design @ start
         left = made.problem.readings - smooth - terms.values @ made.problem.columns
         usual_left = 1.4826 * float(np.median(np.abs(left[made.problem.weights > 0.0])))
         problem = replace(
@@ -106,7 +111,7 @@ class _Estimate:
         return replace(
             made,
             problem=problem,
-            shaft_rad=smooth + terms.values[first:] @ made.problem.columns[first:],
+            shaft_rad=smooth + terms.values[torques] @ made.problem.columns[torques],
             sd=terms.sd,
             log_penalty=log_penalty,
             variance=variance,
@@ -148,12 +153,12 @@ def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]
         np.zeros((0, readings_rad.size)),
     )
     start = problem.reduced(0.0).step
-    shaft, free = np.asarray(spline.design @ start), np.full(2 * HIGHEST_ORDER, np.inf)
+    shaft, free = np.asarray(spline.design @ start), np.full(_OF_ERROR, np.inf)
     found = _Estimate(replace(problem, start=start), stretches, shaft, free)
     # The first round finds the motion and its speed, which what torques do follows.
     found = found.next()
     if torque:
-        found = replace(found, sd=np.concatenate([found.sd, np.ones(2 * HIGHEST_ORDER + 2 * HIGHEST_OF_GROWING)]))
+        found = replace(found, sd=np.concatenate([found.sd, np.ones(_OF_GROWING + 2 - _OF_ERROR)]))
         found = replace(found, log_penalty=None)
     for _ in range(_ROUNDS - 1):
         found = found.next()
@@ -171,19 +176,38 @@ def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]
     )
 
 
+def _seen(reduced: Reduced, variance: float) -> Array:
+    """Amplitude [rad] of each order (orders,): without any torque, all of it is the sensor's."""
+    own = slice(_OF_ERROR)
+    seen = np.linalg.solve(reduced.normal[own, own] + 1e-12 * np.eye(_OF_ERROR), reduced.gradient[own])
+    noise = variance / np.diag(reduced.normal)[own]
+    return np.asarray(np.sqrt(np.sum((seen**2 + noise).reshape(-1, 2), axis=1)))
+
+
 def _separable(reduced: Reduced, variance: float, usual_rad_s: float) -> BoolArray:
     """Whether of each order (orders,) a torque that makes all that is seen of it would be told from an error."""
-    first, dry = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
-    found = np.zeros(HIGHEST_ORDER, dtype=bool)
-    if len(reduced.gradient) <= first:
-        return found
-    # Without any torque, all of it is the sensor's.
-    seen = np.linalg.solve(reduced.normal[:first, :first] + 1e-12 * np.eye(first), reduced.gradient[:first])
-    noise = variance / np.diag(reduced.normal)[:first]
+    if len(reduced.gradient) <= _OF_ERROR:
+        return np.zeros(HIGHEST_ORDER, dtype=bool)
     orders = np.arange(1, HIGHEST_ORDER + 1)
-    amplitude = np.sqrt(np.sum((seen**2 + noise).reshape(-1, 2), axis=1))
-    sd = np.concatenate([np.full(first, np.inf), np.repeat(amplitude * (orders * usual_rad_s) ** 2, 2)])
-    told = solved(reduced.normal[:dry, :dry], reduced.gradient[:dry], variance, sd).told[first:]
+    makes = np.repeat(_seen(reduced, variance) * (orders * usual_rad_s) ** 2, 2)
+    return _told(reduced, variance, makes)[:HIGHEST_ORDER]
+
+
+def _late_channel_told(reduced: Reduced, variance: float, usual_rad_s: float) -> bool:
+    """Whether an error of order 2 that grows with the speed is told from torques, were either all that is seen."""
+    orders = np.arange(1, HIGHEST_ORDER + 1)
+    seen = _seen(reduced, variance)
+    makes = np.repeat(seen * (orders * usual_rad_s) ** 2, 2)
+    late = np.full(2, seen[1] / usual_rad_s)
+    told = _told(reduced, variance, np.concatenate([makes, makes[: 2 * HIGHEST_OF_GROWING] / usual_rad_s, late]))
+    return bool(told[1] and told[-1])
+
+
+def _told(reduced: Reduced, variance: float, sd: Array) -> BoolArray:
+    """Of which pairs beside the error of the sensor the readings tell most, were they to scatter so (2 pairs,)."""
+    count = _OF_ERROR + sd.size
+    scatter = np.concatenate([np.full(_OF_ERROR, np.inf), sd])
+    told = solved(reduced.normal[:count, :count], reduced.gradient[:count], variance, scatter).told[_OF_ERROR:]
     return np.asarray(np.mean(told.reshape(-1, 2), axis=1) > _TOLD)
 
 
@@ -191,24 +215,28 @@ def _drawn(reduced: Reduced, sd: Array, variance: float, usual_rad_s: float, sep
     """The coefficients, each order's torque by a scatter of its own; none where it would not be told.
 
     A torque that grows with the speed, as a modulated viscous friction does, is told from a constant one by three
-    speeds or more. Where it is not, it is taken to be there, half as large.
+    speeds or more. Where it is not, it is taken to be there, half as large. An error of order 2 that grows with the
+    speed, as of a channel that is read late, is told by these too; where it is not, none is taken to be there.
     """
-    first, dry = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
-    if len(sd) <= dry:
+    if len(sd) <= _OF_ERROR:
         return solved(reduced.normal, reduced.gradient, variance, sd)
-    pairs = [np.arange(place, place + 2) for place in range(first, len(sd), 2)]
-    constant = [pair for pair, told in zip(pairs, separable, strict=False) if told]
+    pairs = [np.arange(place, place + 2) for place in range(_OF_ERROR, len(sd), 2)]
+    groups = [pair for pair, told in zip(pairs, separable, strict=False) if told]
     sd = sd.copy()
-    sd[first:] = 1e-9 * usual_rad_s
-    sd[np.concatenate([np.zeros(0, dtype=np.int64), *constant])] = usual_rad_s**2
-    found = drawn(reduced.normal, reduced.gradient, variance, groups=constant, sd=sd)
+    sd[_OF_ERROR:_OF_GROWING] = 1e-9 * usual_rad_s
+    sd[_OF_GROWING:] = 1e-9 / usual_rad_s
+    sd[np.concatenate([np.zeros(0, dtype=np.int64), *groups])] = usual_rad_s**2
+    if _late_channel_told(reduced, variance, usual_rad_s):
+        sd[pairs[-1]] = 1.0 / usual_rad_s
+        groups.append(pairs[-1])
+    found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
     sd = found.sd.copy()
-    growing = pairs[HIGHEST_ORDER:]
+    growing = pairs[HIGHEST_ORDER:-1]
     for group, beside in zip(growing, pairs, strict=False):
         sd[group] = 0.5 * sd[beside] / usual_rad_s
-    found = drawn(reduced.normal, reduced.gradient, variance, groups=constant, sd=sd)
+    found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
     told = [group for group in growing if np.mean(found.told[group]) > _TOLD]
-    return drawn(reduced.normal, reduced.gradient, variance, groups=[*constant, *told], sd=found.sd) if told else found
+    return drawn(reduced.normal, reduced.gradient, variance, groups=[*groups, *told], sd=found.sd) if told else found
 
 
 def _waves(shaft_rad: Array) -> Array:
@@ -219,12 +247,16 @@ def _waves(shaft_rad: Array) -> Array:
 
 
 def _torques(shaft_rad: Array, speed_rad_s: Array, acceleration_rad_s2: Array, damping_per_s: float) -> list[Array]:
-    """What torques of each order that give 1 rad/s^2, or modulate drag, add to the angle: (.., n) [rad] each."""
+    """What torques of each order that give 1 rad/s^2, or modulate drag, add to the angle: (.., n) [rad] each.
+
+    And an error of order 2 that is as large as the speed.
+    """
     motion = {"shaft_rad": shaft_rad, "speed_rad_s": speed_rad_s, "acceleration_rad_s2": acceleration_rad_s2}
     moved = np.concatenate(
         [response(order, **motion, damping_per_s=damping_per_s) for order in range(1, HIGHEST_ORDER + 1)]
     )
-    return [moved, np.abs(speed_rad_s) * moved[: 2 * HIGHEST_OF_GROWING]]
+    late = speed_rad_s * np.stack([np.cos(2.0 * shaft_rad), np.sin(2.0 * shaft_rad)])
+    return [moved, np.abs(speed_rad_s) * moved[: 2 * HIGHEST_OF_GROWING], late]
 
 
 def _damping(found: _Estimate, motion: tuple[Array, Array, Array]) -> float:

@@ -75,7 +75,8 @@ LATENCY = Effect(
     },
     forward=forward,
     behind=Behind(acts_on="angle", forward=filtered, params=("variance_ms2", "third_moment_ms3"), record_wide=True),
-    needs=frozenset({"two speeds|both directions", "moving shaft"}),
+    # Of a sensor alone a delay only moves the time's zero: where the shaft was told late, it was late.
+    needs=frozenset({"a reference", "two speeds|both directions", "moving shaft"}),
     drawing=delay,
     source="kinematics: e = -w tau; cumulants of an impulse response: Papoulis, The Fourier Integral (1962)",
     signature="order 0, minus speed times delay",

@@ -10,8 +10,9 @@ import numpy as np
 from diagnosis.spin.spline import PENALISED, Spline, bands
 from twin.angles import Array
 
-_PENALTIES = np.arange(-10.0, 15.0)
-"""Common logarithms: from one to the next the motion's frequencies are slower by a third."""
+_BEYOND = np.arange(0.0, 16.0)
+"""Common logarithms of penalties that are tried: from one to the next the motion is slower by a third, from a turn to
+three hundred of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,8 +115,9 @@ def likeliest(
     """The penalty (its common logarithm) and the noise's variance of highest restricted likelihood.
 
     A wave in time, as of the mains in a channel, makes another peak of it, of a motion so free that it holds the wave
-    and all that is slower. So a peak of a motion that is slower than the usual turn is taken before any other; which
-    one, is looked for anew where there is none to look ``around``.
+    and all that is slower. Of a motion freer than the usual turn no order of the sensor's would be told: none is taken
+    to be so free, and a peak within that is taken before its edge. Which peak, is looked for where there is none to
+    look ``around``.
     """
     from scipy.optimize import minimize_scalar
 
@@ -124,12 +126,13 @@ def likeliest(
     def cost(log_penalty: float) -> float:
         return problem.reduced(log_penalty).cost(sd, variance, rows)
 
+    least = 2.0 * PENALISED * float(np.log10(np.median(knee(problem, 0.0)) / turning_rad_s))
     if around is None:
-        costs = np.array([cost(one) for one in _PENALTIES])
-        slow = np.array([float(np.median(knee(problem, one))) < turning_rad_s for one in _PENALTIES])
-        peaks = np.flatnonzero((costs[1:-1] <= costs[:-2]) & (costs[1:-1] <= costs[2:]) & slow[1:-1]) + 1
+        tried = least + _BEYOND
+        costs = np.array([cost(one) for one in tried])
+        peaks = np.flatnonzero((costs[1:-1] <= costs[:-2]) & (costs[1:-1] <= costs[2:])) + 1
         among = peaks if peaks.size else np.arange(costs.size)
-        around = float(_PENALTIES[among[np.argmin(costs[among])]])
-    found = minimize_scalar(cost, bounds=(around - 1.0, around + 1.0), method="bounded", options={"xatol": 0.05})
-    best = float(found.x)
+        around = float(tried[among[np.argmin(costs[among])]])
+    bounds = (max(around - 1.0, least), max(around, least) + 1.0)
+    best = float(minimize_scalar(cost, bounds=bounds, method="bounded", options={"xatol": 0.05}).x)
     return best, max(problem.reduced(best).left(sd, variance)[0] / rows, 1e-24)

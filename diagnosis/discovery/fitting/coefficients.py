@@ -6,6 +6,8 @@ the angle is.
 
 from __future__ import annotations
 
+import numpy as np
+
 from diagnosis.discovery.fitting.observations import Observations
 from twin.angles import Array
 from twin.noise import spectrum
@@ -26,6 +28,22 @@ def observables_to_cosine(observations: Observations, values: Array) -> Array:
 def radius_to_cosine(observations: Observations, values: Array) -> Array:
     """Radii (..., n) as cosine coefficients (..., n)."""
     return spectrum.to_cosine(values * observations.usable, observations.lengths)
+
+
+def without_motion(observations: Observations, angles: Array) -> Array:
+    """Angles (n,) less what the shaft may have done beside an estimated motion; as they are, NaN too, where none was.
+
+    What of them is slower than the readings tell of, and what torques may have made, says nothing of a sensor.
+    """
+    estimated = observations.motion.estimated
+    if estimated is None:
+        return angles
+    known = np.isfinite(angles) & observations.usable
+    left = np.where(np.isfinite(angles), angles, 0.0)
+    left = left if observations.loose is None else observations.loose.whitened(left)
+    coefficients = spectrum.to_cosine(np.where(known, left, 0.0), estimated.lengths)
+    moved = spectrum.to_rows(coefficients * (1.0 - 1.0 / np.sqrt(1.0 + estimated.spectrum)), estimated.lengths)
+    return np.where(np.isfinite(angles), left - moved, np.nan)
 
 
 def to_rows(observations: Observations, coefficients: Array) -> Array:

@@ -12,9 +12,9 @@ from diagnosis.discovery.fitting.bounded_step import eased, step_within
 from diagnosis.discovery.fitting.coefficients import observables_to_cosine, to_rows
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import NoiseFamily
+from diagnosis.discovery.fitting.nuisance import without_nuisance
 from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.fitting.projection import projected
-from diagnosis.discovery.fitting.nuisance import without_nuisance
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
 from twin.baseline import FACTORS

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.discovery.fitting.coefficients import without_motion
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.noise.rounding import coarsest_stair
 from diagnosis.discovery.fitting.observations import Observations
@@ -97,8 +98,11 @@ def scaled(fit: Fit, variance: Array) -> Fit:
 
 
 def raw_residual(fit: Fit, sweep: Sweep) -> Array:
-    """Residual [rad] of every raw reading (n_raw,) against the fit."""
-    if len(sweep) == len(fit.observations):
-        return np.asarray(fit.residual[0])
-    predicted: Array = fit.linear.angle[fit.observations.group] + fit.observations.ahead
-    return wrap(np.radians(sweep.measured_deg) - predicted)
+    """Residual [rad] of every raw reading (n_raw,) against the fit, without what the shaft may have done of itself."""
+    observations = fit.observations
+    residual = wrap(observations.measured - fit.linear.angle)
+    moved = residual - without_motion(observations, residual)
+    if len(sweep) == len(observations):
+        return residual - moved
+    predicted: Array = fit.linear.angle[observations.group] + observations.ahead
+    return wrap(np.radians(sweep.measured_deg) - predicted) - moved[observations.group]

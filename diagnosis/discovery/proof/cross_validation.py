@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
+from diagnosis.discovery.fitting.coefficients import without_motion
 from diagnosis.discovery.fitting.initial_fit import baseline_of
 from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve
 from diagnosis.discovery.proof.whole_recordings import Split, are_halves, by_recordings, halves, of_recordings
@@ -73,7 +74,7 @@ def held_out_residual(
             if own:
                 settled = solve(evaluate(told.chain, own, fit.observations.masked(seen), fit.weighting))
             residual[held] = wrap(fit.observations.measured - settled.linear.angle)[held]
-    return residual
+    return without_motion(fit.observations, residual)
 
 
 def _of_blocks(fit: Fit, free: tuple[Free, ...], fold: IntArray) -> Iterator[Split]:

@@ -29,9 +29,10 @@ class Torque:
         The angular accelerations that go with cosine and sine of the angle [rad/s^2].
     sd_rad_s2 : float
         Standard deviation of their errors.
-    scatter_rad_s2, growing_rad_s : float
-        Standard deviations of what such a torque may be, of the part that does not depend on the speed [rad/s^2] and of
-        that which grows with it [rad/s^2 for each rad/s]; 0: none is taken to be there.
+    scatter_rad_s2, growing_rad_s, reversing_rad_s2 : float
+        Standard deviations of what such a torque may be, of the part that does not depend on the speed [rad/s^2], of
+        that which grows with it [rad/s^2 for each rad/s] and of that which reverses with it [rad/s^2]; 0: none is taken
+        to be there.
     separable : bool
         Whether the speeds of the log tell such a torque, were it as large as to make all that is seen of this order,
         from an error of the sensor.
@@ -43,6 +44,7 @@ class Torque:
     sd_rad_s2: float = 0.0
     scatter_rad_s2: float = 0.0
     growing_rad_s: float = 0.0
+    reversing_rad_s2: float = 0.0
     separable: bool = False
 
 

@@ -103,7 +103,10 @@ def _in_time(fit: Fit, cause: Finding) -> bool:
 def _beyond(fit: Fit, keys: Sequence[str], orders: Sequence[int]) -> Array:
     """What causes do to the reading (n,) [rad] that waves of these orders cannot."""
     motion = fit.linear.motion
-    does = fit.chain.readings(motion) - fit.chain.without(*keys).readings(motion)
+    # Behind the output's rounding a wave is one no longer.
+    rounding = (key for key in fit.chain.values if find(key, fit.chain.effects).output_grid and key not in keys)
+    smooth = fit.chain.without(*rounding)
+    does = smooth.readings(motion) - smooth.without(*keys).readings(motion)
     angle = motion.shaft_rad
     waves = [np.ones_like(angle), *(wave(order * angle) for order in orders for wave in (np.cos, np.sin))]
     basis = np.linalg.qr(np.stack(waves).T)[0]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.spin.clock import even_clock
-from diagnosis.spin.smoother import HIGHEST_OF_GROWING, HIGHEST_ORDER, MotionFit, fitted_motion
+from diagnosis.spin.smoother import HIGHEST_OF_FRICTION, HIGHEST_ORDER, MotionFit, fitted_motion
 from diagnosis.spin.stretches import Turning, turning
 from twin.angles import TAU, Array, IntArray
 from twin.errors import SweepError
@@ -145,7 +145,8 @@ def _torques(fit: MotionFit, *, told_by_channels: int) -> tuple[Torque, ...]:
     Up to the order ``told_by_channels`` a torque that the speeds do not tell may be any: the channels' radius tells
     what of the error is theirs.
     """
-    terms, first, dry = fit.terms, 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
+    terms, first, growing = fit.terms, 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
+    reversing = growing + 2 * HIGHEST_OF_FRICTION
     usual = float(np.median(np.abs(fit.speed_rad_s)))
     error = np.sqrt(np.diag(terms.covariance))
     torques = []
@@ -164,7 +165,8 @@ def _torques(fit: MotionFit, *, told_by_channels: int) -> tuple[Torque, ...]:
                 sin_rad_s2=float(terms.values[pair[1]]),
                 sd_rad_s2=float(np.max(error[pair])),
                 scatter_rad_s2=float(terms.sd[pair[0]]),
-                growing_rad_s=float(terms.sd[dry + 2 * place]) if order <= HIGHEST_OF_GROWING else 0.0,
+                growing_rad_s=float(terms.sd[growing + 2 * place]) if order <= HIGHEST_OF_FRICTION else 0.0,
+                reversing_rad_s2=float(terms.sd[reversing + 2 * place]) if order <= HIGHEST_OF_FRICTION else 0.0,
                 separable=True,
             )
         )

@@ -24,11 +24,13 @@ from twin.mechanics.torque_ripple import response
 
 HIGHEST_ORDER = 32
 """Of the sensor's error and of the torques: the second harmonic of a cogging by sixteen teeth."""
-HIGHEST_OF_GROWING = 4
-"""Of torques that grow with the speed: what rubs is modulated by what runs out or is bent, not by teeth."""
+HIGHEST_OF_FRICTION = 4
+"""Of what friction makes: what rubs is modulated by what runs out or is bent, not by teeth."""
 _OF_ERROR, _OF_TORQUE = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
-_OF_GROWING = _OF_TORQUE + 2 * HIGHEST_OF_GROWING
-"""Where the coefficients of the error, of constant and of growing torques end; those of a late channel follow."""
+_OF_GROWING = _OF_TORQUE + 2 * HIGHEST_OF_FRICTION
+_OF_FRICTION = _OF_GROWING + 2 * HIGHEST_OF_FRICTION
+"""Where the coefficients of the error, of torques that are the same at any speed, of those that grow with it and of those
+that reverse with it end; those of a late channel follow."""
 _TOLD = 0.5
 """Share of a coefficient that the readings tell, from which on its scatter is told by them too."""
 _ROUNDS = 5
@@ -46,9 +48,9 @@ class MotionFit:
     ``shaft_rad`` is the part that is smooth in time with what the torques do. ``knee_rad_s`` (n,) is the angular
     frequency below which the motion is freer than the readings' noise is loud. ``noise_rad`` is the RMS of a reading
     about it all. ``terms`` are the coefficients: cosine and sine of each order of the error
-    [rad], of each order's torque [rad/s^2], of what of it grows with the speed [rad/s^2 for each rad/s] up to the
-    order 4, and of an error of order 2 that grows with the speed [rad for each rad/s]. ``separable`` (orders,): whether
-    a torque that makes all that is seen of an order would be told.
+    [rad], of each order's torque [rad/s^2], of what of it grows with the speed [rad/s^2 for each rad/s] and of what
+    reverses with it [rad/s^2] up to the order 4, and of an error of order 2 that grows with the speed [rad for each
+    rad/s]. ``separable`` (orders,): whether a torque that makes all that is seen of an order would be told.
     """
 
     shaft_rad: Array
@@ -96,8 +98,9 @@ class _Estimate:
         )
         reduced = made.problem.reduced(log_penalty)
         separable = _separable(reduced, variance, usual)
-        terms = _drawn(reduced, made.sd, variance, usual, separable)
-        torques = slice(_OF_ERROR, _OF_GROWING)
+        both_ways = bool(np.ptp(np.sign(self.rates[0])) > 0.0)
+        terms = _drawn(reduced, made.sd, variance, usual, separable, both_ways=both_ways)
+        torques = slice(_OF_ERROR, _OF_FRICTION)
         start = made.problem.start + reduced.step - reduced.pulled @ terms.values
         smooth = made.problem.spline.design @ start
         left = made.problem.readings - smooth - terms.values @ made.problem.columns
@@ -158,7 +161,7 @@ def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]
     # The first round finds the motion and its speed, which what torques do follows.
     found = found.next()
     if torque:
-        found = replace(found, sd=np.concatenate([found.sd, np.ones(_OF_GROWING + 2 - _OF_ERROR)]))
+        found = replace(found, sd=np.concatenate([found.sd, np.ones(_OF_FRICTION + 2 - _OF_ERROR)]))
         found = replace(found, log_penalty=None)
     for _ in range(_ROUNDS - 1):
         found = found.next()
@@ -199,7 +202,8 @@ def _late_channel_told(reduced: Reduced, variance: float, usual_rad_s: float) ->
     seen = _seen(reduced, variance)
     makes = np.repeat(seen * (orders * usual_rad_s) ** 2, 2)
     late = np.full(2, seen[1] / usual_rad_s)
-    told = _told(reduced, variance, np.concatenate([makes, makes[: 2 * HIGHEST_OF_GROWING] / usual_rad_s, late]))
+    rubs = makes[: 2 * HIGHEST_OF_FRICTION]
+    told = _told(reduced, variance, np.concatenate([makes, rubs / usual_rad_s, 1e-9 * rubs, late]))
     return bool(told[1] and told[-1])
 
 
@@ -211,27 +215,31 @@ def _told(reduced: Reduced, variance: float, sd: Array) -> BoolArray:
     return np.asarray(np.mean(told.reshape(-1, 2), axis=1) > _TOLD)
 
 
-def _drawn(reduced: Reduced, sd: Array, variance: float, usual_rad_s: float, separable: BoolArray) -> Drawn:
+def _drawn(
+    reduced: Reduced, sd: Array, variance: float, usual_rad_s: float, separable: BoolArray, *, both_ways: bool
+) -> Drawn:
     """The coefficients, each order's torque by a scatter of its own; none where it would not be told.
 
     A torque that grows with the speed, as a modulated viscous friction does, is told from a constant one by three
-    speeds or more. Where it is not, it is taken to be there, half as large. An error of order 2 that grows with the
-    speed, as of a channel that is read late, is told by these too; where it is not, none is taken to be there.
+    speeds or more. Where it is not, it is taken to be there, half as large. One that reverses with the speed, as a
+    modulated dry friction does, is told by a log of ``both_ways``. An error of order 2 that grows with the speed, as of
+    a channel that is read late, is told by three speeds; where it is not, none is taken to be there.
     """
     if len(sd) <= _OF_ERROR:
         return solved(reduced.normal, reduced.gradient, variance, sd)
     pairs = [np.arange(place, place + 2) for place in range(_OF_ERROR, len(sd), 2)]
-    groups = [pair for pair, told in zip(pairs, separable, strict=False) if told]
+    growing = pairs[HIGHEST_ORDER:][:HIGHEST_OF_FRICTION]
+    reversing = pairs[HIGHEST_ORDER + HIGHEST_OF_FRICTION : -1] if both_ways else []
+    groups = [pair for all_of in (pairs, reversing) for pair, told in zip(all_of, separable, strict=False) if told]
     sd = sd.copy()
-    sd[_OF_ERROR:_OF_GROWING] = 1e-9 * usual_rad_s
-    sd[_OF_GROWING:] = 1e-9 / usual_rad_s
+    sd[_OF_ERROR:_OF_FRICTION] = 1e-9 * usual_rad_s
+    sd[_OF_FRICTION:] = 1e-9 / usual_rad_s
     sd[np.concatenate([np.zeros(0, dtype=np.int64), *groups])] = usual_rad_s**2
     if _late_channel_told(reduced, variance, usual_rad_s):
         sd[pairs[-1]] = 1.0 / usual_rad_s
         groups.append(pairs[-1])
     found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
     sd = found.sd.copy()
-    growing = pairs[HIGHEST_ORDER:-1]
     for group, beside in zip(growing, pairs, strict=False):
         sd[group] = 0.5 * sd[beside] / usual_rad_s
     found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
@@ -256,7 +264,8 @@ def _torques(shaft_rad: Array, speed_rad_s: Array, acceleration_rad_s2: Array, d
         [response(order, **motion, damping_per_s=damping_per_s) for order in range(1, HIGHEST_ORDER + 1)]
     )
     late = speed_rad_s * np.stack([np.cos(2.0 * shaft_rad), np.sin(2.0 * shaft_rad)])
-    return [moved, np.abs(speed_rad_s) * moved[: 2 * HIGHEST_OF_GROWING], late]
+    rubs = moved[: 2 * HIGHEST_OF_FRICTION]
+    return [moved, speed_rad_s * rubs, np.sign(speed_rad_s) * rubs, late]
 
 
 def _damping(found: _Estimate, motion: tuple[Array, Array, Array]) -> float:

@@ -22,7 +22,7 @@ def torque_columns(motion: Motion) -> Array:
     acceleration = rate(motion.speed_rad_s, motion.time_s, found.slices)
     columns = [np.zeros((0, len(motion)))]
     for torque in found.torques:
-        if torque.scatter_rad_s2 or torque.growing_rad_s:
+        if torque.scatter_rad_s2 or torque.growing_rad_s or torque.reversing_rad_s2:
             moved = response(
                 torque.order,
                 shaft_rad=motion.shaft_rad,
@@ -30,8 +30,13 @@ def torque_columns(motion: Motion) -> Array:
                 acceleration_rad_s2=acceleration,
                 damping_per_s=found.damping_per_s,
             )
-            columns += [torque.scatter_rad_s2 * moved, torque.growing_rad_s * np.abs(motion.speed_rad_s) * moved]
+            rubs = torque.growing_rad_s * motion.speed_rad_s, torque.reversing_rad_s2 * np.sign(motion.speed_rad_s)
+            columns += [torque.scatter_rad_s2 * moved, *(each * moved for each in rubs)]
     return np.concatenate(columns)
+
+
+_LEAST = 1e-4
+"""Of what a direction does, against the noise of all readings: less than that moves no whitened reading by 1/20000."""
 
 
 class Loose:
@@ -45,7 +50,8 @@ class Loose:
     def __init__(self, columns: Array, usable: BoolArray, noise: float) -> None:
         used = columns * usable / noise
         size, turned = np.linalg.eigh(used @ used.T)
-        size = np.maximum(size, 1e-12)
+        told = size > _LEAST
+        size, turned = size[told], turned[:, told]
         self._usable = usable
         self._directions: Array = (turned / np.sqrt(size)).T @ used
         self._shares: Array = 1.0 - 1.0 / np.sqrt(1.0 + size)

@@ -27,11 +27,13 @@ def plan_error_code(rng: np.random.Generator, setting: Setting) -> Injected:
 
 
 def plan_latency(rng: np.random.Generator, setting: Setting) -> Injected:
-    """A delay worth 2 to 6 degrees at the highest speed: what it turns is the phase of a torque over the reading."""
+    """A delay worth 2 to 6 degrees at the highest speed."""
     lag = float(rng.uniform(2.0, 6.0))
     return Injected("latency", lag, {"delay_us": 1e6 * lag / float(np.max(np.abs(setting.motion.speed_deg_s)))})
 
 
+UNSEEN = ("latency",)
+"""Causes that no log of the sensor alone shows: a shaft that is always read late is one that turned late."""
 PLANS: dict[str, Callable[[np.random.Generator, Setting], Injected]] = {
     "error_code": plan_error_code,
     "latency": plan_latency,

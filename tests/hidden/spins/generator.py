@@ -22,7 +22,7 @@ from ..noise import Noise
 from ..streams import stream
 from .benches import PROTOCOLS, TURN, Spin
 from .drives import Rocking, Stepping
-from .frames import PLANS, send
+from .frames import PLANS, UNSEEN, send
 from .rotor import Array, Trajectory
 from .sensor import AtRest, Order, at_rest, bent, motion_of
 from .stamps import Clock, clock_of, through_frames
@@ -236,7 +236,7 @@ def _truth(
     mixed = any(one.order <= 3 for one in sensor.orders) or "magnet_harmonic" in named
     factors = sensor.own.parameters()
     return {
-        "causes": [one.name for one in injected] + ["magnet_harmonic"] * len(harmonics),
+        "causes": [one.name for one in injected if one.name not in UNSEEN] + ["magnet_harmonic"] * len(harmonics),
         "tolerated": ["torque_ripple", "time_jitter", *(["output_quantisation"] if near else [])],
         "parameters": {key: _at_no_zero(values) for key, values in parameters.items()},
         "strength_deg": {one.name: one.strength_deg for one in injected},
@@ -244,7 +244,8 @@ def _truth(
         "baseline": {} if mixed else {key: value for key, value in factors.items() if key != "zero_deg"},
         "frame": {
             "amplitude_x": sensor.own.amplitude_x,
-            "first_time_s": clock.start_s,
+            # Waves in time count from the log's own beginning, as its stamps need not.
+            "first_time_s": float(moved[0].time_s[0]),
             "first_reference_deg": 0.0,
             "duration_s": float(np.ptp(moved[0].time_s)),
         },
@@ -259,6 +260,7 @@ def _truth(
         "rows": [int(one.time_s.size) for one in moved],
         "turns": [float(abs(one.shaft_deg[-1] - one.shaft_deg[0]) / 360.0) for one in moved],
         "speeds_turns_s": [[float(np.min(np.abs(one.speed_rpm))) / 60.0, _top(one) / 60.0] for one in moved],
+        "stamps_from_s": clock.start_s,
         "jitter_s": clock.jitter_s,
         "period_s": clock.period_s,
     }

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 
 from ..streams import derived_seed
 from .benches import PROTOCOLS
+from .frames import UNSEEN
 from .generator import Drawn, draw
 
 NAMED = (
@@ -15,7 +16,6 @@ NAMED = (
     "cordic_truncation",
     "output_quantisation",
     "stale_frames",
-    "latency",
     "xy_skew",
     "mains_pickup",
     "reference_ripple",
@@ -81,7 +81,7 @@ def of_causes(*, draws: int, seed: int, only: frozenset[str] = frozenset()) -> l
             (name,),
         )
         for number in range(draws)
-        for name in NAMED
+        for name in (*NAMED, *UNSEEN)
         if not only or name in only
     ]
 

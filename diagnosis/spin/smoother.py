@@ -29,8 +29,8 @@ HIGHEST_OF_FRICTION = 4
 _OF_ERROR, _OF_TORQUE = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
 _OF_GROWING = _OF_TORQUE + 2 * HIGHEST_OF_FRICTION
 _OF_FRICTION = _OF_GROWING + 2 * HIGHEST_OF_FRICTION
-"""Where the coefficients of the error, of torques that are the same at any speed, of those that grow with it and of those
-that reverse with it end; those of a late channel follow."""
+"""Where the coefficients of the error, of torques alike at any speed, of those that grow and of those that reverse with
+it end; those of a late channel follow."""
 _TOLD = 0.5
 """Share of a coefficient that the readings tell, from which on its scatter is told by them too."""
 _ROUNDS = 5

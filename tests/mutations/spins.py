@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.mutations.mutation import Mutation
 
 _SMOOTHER = "tests/diagnosis/spin/test_smoother.py"
+_SEARCH = "tests/diagnosis/spin/test_search.py"
 _STRETCHES = "tests/diagnosis/spin/test_stretches.py"
 _MOTION = "tests/twin/test_estimated_motion.py"
 
@@ -17,6 +18,55 @@ SPINS: tuple[Mutation, ...] = tuple(
             "    if torque:\n",
             "    if False:\n",
             f"{_SMOOTHER}::test_a_coast_tells_the_sensor_from_a_torque_of_the_same_order",
+        ),
+        (
+            "spins.a_wave_in_time_is_motion",
+            "diagnosis/spin/problem.py",
+            "least = 2.0 * PENALISED",
+            "least = -9.0 * PENALISED",
+            f"{_SMOOTHER}::test_a_wave_in_time_is_no_motion",
+        ),
+        (
+            "spins.a_late_channel_is_a_torque",
+            "diagnosis/spin/smoother.py",
+            "    if _late_channel_told(reduced, variance, usual_rad_s):\n",
+            "    if False:\n",
+            f"{_SMOOTHER}::test_an_error_that_grows_with_the_speed_is_no_torque",
+        ),
+        (
+            "spins.dry_friction_stays",
+            "diagnosis/spin/smoother.py",
+            "if both_ways else []",
+            "if False else []",
+            f"{_SMOOTHER}::test_dry_friction_reverses_with_the_direction",
+        ),
+        (
+            "spins.candidates_are_not_whitened",
+            "diagnosis/discovery/search/screening.py",
+            "observables_to_cosine(fit.observations, without_nuisance(fit.observations, columns))",
+            "observables_to_cosine(fit.observations, columns)",
+            f"{_SEARCH}::test_a_candidate_gains_to_first_order_what_it_gains_in_the_fit",
+        ),
+        (
+            "spins.lines_are_matched_to_torques",
+            "diagnosis/discovery/search/screening.py",
+            "weighted if observations.loose is None else observations.loose.whitened(weighted)",
+            "weighted",
+            f"{_SEARCH}::test_lines_are_matched_to_what_torques_do_not_make",
+        ),
+        (
+            "spins.figures_count_the_motion",
+            "diagnosis/discovery/fitting/coefficients.py",
+            "np.where(np.isfinite(angles), left - moved, np.nan)",
+            "angles",
+            f"{_SEARCH}::test_residuals_are_without_what_the_shaft_may_have_done",
+        ),
+        (
+            "spins.behind_a_rounding_no_torque",
+            "diagnosis/report/motion.py",
+            "fit.chain.without(*rounding)",
+            "fit.chain",
+            "tests/diagnosis/spin/test_explain.py::test_behind_a_rounding_too_a_cause_may_be_a_torque",
         ),
         (
             "spins.readings_far_off_count",

@@ -18,7 +18,7 @@ COGGING = 60.0
 """Acceleration [rad/s^2] of order 3."""
 
 
-def coasting(*, cogging: float = COGGING, last: float = 30.0) -> np.ndarray:
+def coasting(*, cogging: float = COGGING, last: float = 30.0, order: int = 3) -> np.ndarray:
     """A shaft that slows from 120 rad/s to ``last``, its angle (n,) [rad] by fine steps of the equation of motion."""
     slows, steps = (last - 120.0) / TIME[-1], 10
     angle, speed, out = 0.0, 120.0, np.empty(TIME.size)
@@ -26,9 +26,9 @@ def coasting(*, cogging: float = COGGING, last: float = 30.0) -> np.ndarray:
     for row in range(TIME.size):
         out[row] = angle
         for _ in range(steps):
-            half = speed + 0.5 * step * (slows + cogging * np.cos(3.0 * angle))
+            half = speed + 0.5 * step * (slows + cogging * np.cos(order * angle))
             angle += step * half
-            speed = half + 0.5 * step * (slows + cogging * np.cos(3.0 * angle))
+            speed = half + 0.5 * step * (slows + cogging * np.cos(order * angle))
     return out
 
 
@@ -67,6 +67,44 @@ def test_without_the_torque_in_the_model_it_is_taken_for_the_sensors() -> None:
 def test_no_torque_is_seen_where_none_is() -> None:
     fit = fitted(coasting(cogging=0.0))
     assert np.hypot(*fit.terms.values[2 * HIGHEST_ORDER + 4 : 2 * HIGHEST_ORDER + 6]) < 0.1 * COGGING
+
+
+def test_a_torque_of_a_high_order_is_one() -> None:
+    fit = fitted(coasting(cogging=2000.0, order=24))
+    place = 2 * HIGHEST_ORDER + 2 * 23
+    assert np.hypot(*fit.terms.values[place : place + 2]) == pytest.approx(2000.0, rel=0.1)
+    assert np.hypot(*error_of(fit, 24)) < 1e-4
+
+
+def test_a_wave_in_time_is_no_motion() -> None:
+    """The mains in a channel, ten times the noise: a motion that held it would hold all that is slower too."""
+    angle = coasting()
+    hum = 10.0 * NOISE * np.cos(2.0 * np.pi * 50.0 * TIME) * np.cos(angle)
+    fit = fitted_motion(read(angle) + hum, TIME, [slice(0, TIME.size)], torque=True)
+    assert np.median(fit.knee_rad_s) < 60.0
+    assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=3e-4)
+
+
+def test_an_error_that_grows_with_the_speed_is_no_torque() -> None:
+    """Of order 2, as of a channel that is read late: 5 us here."""
+    angle = coasting()
+    late = 5e-6 * np.gradient(angle, TIME) * np.cos(2.0 * angle)
+    fit = fitted_motion(read(angle) + late, TIME, [slice(0, TIME.size)], torque=True)
+    assert fit.terms.values[-2:] == pytest.approx([5e-6, 0.0], abs=5e-7)
+    assert error_of(fit, 2) == pytest.approx([0.0, 0.0], abs=5e-5)
+
+
+def test_dry_friction_reverses_with_the_direction() -> None:
+    """Its torque of order 1 does so too: there and back it is told from one that does not."""
+    there, rubbing = coasting(cogging=0.0), 4.0
+    speed = np.gradient(there, TIME)
+    turned = -rubbing * np.cos(there) / speed**2
+    both = np.concatenate([there + turned, -there + rubbing * np.cos(there) / speed**2])
+    time = np.concatenate([TIME, TIME[-1] + 1.0 + TIME])
+    readings = np.concatenate([read(both[: TIME.size]), read(both[TIME.size :], seed=2)])
+    slices = [slice(0, TIME.size), slice(TIME.size, 2 * TIME.size)]
+    fit = fitted_motion(readings, time, slices, torque=True)
+    assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=6e-5)
 
 
 def test_readings_far_off_are_left_out() -> None:

@@ -140,10 +140,17 @@ FORMS: tuple[Mutation, ...] = tuple(
             f"{_FORMS}::test_a_play_under_weight_is_one_thing",
         ),
         (
-            "forms.an_axis_returns_like_an_exponential",
+            "forms.an_axis_returns_in_a_straight_line",
             "twin/concentrator/hysteresis.py",
-            "np.maximum(1.0 - path / (REACH * memory), 0.0) ** 2",
-            "np.exp(-path / memory)",
+            "** np.asarray(fall)",
+            "** 1.0",
+            "tests/twin/test_lag_of_axes.py::test_is_what_plays_of_all_radii_up_to_one_do",
+        ),
+        (
+            "forms.plays_forget_where_they_were",
+            "twin/concentrator/hysteresis.py",
+            "        held = states[..., -1]",
+            "        held = at[-1] - rising * width + np.zeros_like(weight)",
             "tests/twin/test_lag_of_axes.py::test_is_what_plays_of_all_radii_up_to_one_do",
         ),
         (

@@ -15,9 +15,8 @@ from twin.drawing import log_span
 from twin.effect import Behind, Effect, Param, Parameters
 from twin.motion import Motion
 
-REACH = 3.0
-"""Path in memories after which nothing is left of the lag before a turning point: (1 - p/reach)^2 then holds over the
-path as much as an exponential."""
+RAYLEIGH = 2.0
+"""Power of the fall after a turning point in weak fields: plays of all widths up to the reach, each as strong."""
 
 
 def lag(motion: Motion, lag_rad: Array, memory_rad: Array) -> Array:
@@ -41,54 +40,76 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return signal + lag(motion, np.atleast_1d(of_angle), np.atleast_1d(memory))
 
 
-def axis_lag(value: Array, lag: Array, memory: Array) -> Array:
-    """By how much one axis lags (..., n), in amplitudes: after each turning point by Rayleigh's law, in a parabola.
+def axis_lag(value: Array, lag: Array, memory: Array, fall: Array | float = RAYLEIGH) -> Array:
+    """By how much one axis lags (..., n), in amplitudes: as a stack of plays does.
 
-    ``value`` (n,) is the path c of the axis, of amplitude 1; ``lag`` h and ``memory`` (..., 1) are in amplitudes too:
-    what is left of the lag before the turning point falls as (1 - p/reach)^2 of the path p, over a reach of three
-    memories. Before the first row the field has come from the end of the axis.
+    ``value`` (n,) is the path c of the axis, of amplitude 1; ``lag`` h and ``memory`` (..., 1) are in amplitudes too.
+    After a turning point of a long path the lag goes from -h to h by 2 h (1 - (1 - p/reach)^fall) of the path p, over
+    a reach of 1 + ``fall`` (..., 1) memories: this way its lag before holds over the path as much as an exponential.
+    Loops within it close as the plays do. Before the first row the field has come from the end of the axis.
     """
-    step = np.diff(value)
-    moving = np.where(step != 0.0, np.arange(step.size), -1)
-    last = np.maximum.accumulate(moving)
-    # A row at rest goes on as the one before it, the first ones as the first that moves.
-    way = np.sign(step[np.where(last >= 0, last, np.argmax(moving >= 0))]) if step.size else np.zeros(0)
-    way = np.concatenate([way[:1], way]) if way.size else np.zeros(value.size)
+    width, weight = _plays(lag, memory, fall)
     if not value.size:
-        return np.zeros((*np.broadcast_shapes(lag.shape, memory.shape)[:-1], 0))
-    cuts = [0, *(np.flatnonzero(np.diff(way)) + 1).tolist(), value.size]
-    out = np.empty((*np.broadcast_shapes(lag.shape, memory.shape)[:-1], value.size))
-    state, before = way[:1] * lag, -way[:1]
-    for first, end in itertools.pairwise(cuts):
-        target = -way[first] * lag
-        path = np.abs(value[first:end] - before)
-        out[..., first:end] = target + (state - target) * np.maximum(1.0 - path / (REACH * memory), 0.0) ** 2
-        state, before = out[..., end - 1 : end], value[end - 1 : end]
-    return out
+        return np.zeros((*weight.shape[:-1], 0))
+    way = np.sign(value[np.argmax(value != value[0])] - value[0])
+    path = np.concatenate([[-way, value[0]], value])
+    held = np.broadcast_to(path[0] + way * width, weight.shape)
+    out = np.empty((*weight.shape[:-1], path.size))
+    for first, end in itertools.pairwise(_turns(path)):
+        at = path[first:end]
+        dragged = np.maximum if at[-1] >= path[max(first - 1, 0)] else np.minimum
+        rising = 1.0 if dragged is np.maximum else -1.0
+        states = dragged(held[..., None], at - rising * width[..., None])
+        out[..., first:end] = np.sum(weight[..., None] * (states - at), axis=-2)
+        held = states[..., -1]
+    return out[..., 2:]
 
 
-def mean_lag(memory: Array) -> Array:
+_LEAST = 1e-3
+"""Of the mean lag: below, hardly any play moves at all."""
+_PLAYS = 24
+"""Of a stack: the lag is then a polygon that leaves Rayleigh's parabola by a thousandth of the lag."""
+
+
+def _plays(lag: Array, memory: Array, fall: Array | float) -> tuple[Array, Array]:
+    """Half widths and weights (..., k) of the plays by which a lag is at its curve in so many places of the reach."""
+    place = np.arange(1, _PLAYS + 1) / _PLAYS
+    reach = (1.0 + fall) * memory
+    risen = 1.0 - (1.0 - np.concatenate([[0.0], place])) ** np.asarray(fall)
+    slope = np.diff(risen, axis=-1, append=risen[..., -1:])
+    return 0.5 * reach * place, -2.0 * lag * np.diff(slope, axis=-1) * _PLAYS / reach
+
+
+def _turns(path: Array) -> list[int]:
+    """Rows at which the stretches of a path (n,) begin in which it goes one way, and its length."""
+    step = np.sign(np.diff(path))
+    moving = np.flatnonzero(step)
+    turns = moving[1:][step[moving[1:]] != step[moving[:-1]]] + 1
+    return [0, *turns.tolist(), path.size]
+
+
+def mean_lag(memory: Array, fall: Array | float = RAYLEIGH) -> Array:
     """By how much the angle lags in the mean over a turn, of axes that lag by 1 at most: 4 / pi of a short memory.
 
     An axis that is behind by L turns the angle by L sin a, so the mean is that of L over the way of the axis, of length
-    2, times 4 / pi. With the share f of what is before a turning point left after the whole way it turns from h to -h
-    by (1 - f) / (1 + f) only.
+    2, times 4 / pi. Plays that are wider than that way stay where they are.
     """
-    short = np.maximum(1.0 - 2.0 / (REACH * memory), 0.0)
-    held = REACH / 3.0 * memory * (1.0 - short**3)
-    return np.asarray(4.0 / np.pi * (1.0 - held / (1.0 + short**2)))
+    short = np.maximum(1.0 - 2.0 / ((1.0 + fall) * memory), 0.0)
+    held = memory * (1.0 - short ** (1.0 + fall))
+    return np.asarray(4.0 / np.pi * np.maximum(1.0 - held + short**fall, _LEAST))
 
 
 def on_axes(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     """Each axis with its own lag: over a turn the angle lags by the stated one in the mean, and ripples."""
     memory = np.reshape(radians(np.maximum(values["memory_deg"], 1e-3)), (-1, 1))
     mean = np.reshape(radians(values["lag_deg"]) * np.asarray(values["on_axes"]), (-1, 1))
-    height = mean / mean_lag(memory)
+    fall = np.reshape(np.asarray(values.get("fall", RAYLEIGH), dtype=np.float64), (-1, 1))
+    height = mean / mean_lag(memory, fall)
     if signal.ndim == 2:
-        lags = np.stack([axis_lag(axis, height, memory) for axis in signal], axis=-2)
+        lags = np.stack([axis_lag(axis, height, memory, fall) for axis in signal], axis=-2)
         return signal + (lags if len(lags) > 1 else lags[0])
-    each = zip(signal, *np.broadcast_arrays(height, memory, np.empty((len(signal), 1)))[:2], strict=True)
-    return signal + np.stack([[axis_lag(axis, high, path) for axis in one] for one, high, path in each])
+    each = zip(signal, *np.broadcast_arrays(height, memory, fall, np.empty((len(signal), 1)))[:3], strict=True)
+    return signal + np.stack([[axis_lag(axis, *own) for axis in one] for one, *own in each])
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -133,6 +154,17 @@ HYSTERESIS = Effect(
             aside=True,
             detail=True,
         ),
+        "fall": Param(
+            unit="1",
+            null=RAYLEIGH,
+            lower=1.0,
+            upper=6.0,
+            doc="of the lag of an axis after a turning point, as a power of the path; 2: Rayleigh's law, 1: one play",
+            role="shape",
+            typical=0.5,
+            aside=True,
+            detail=True,
+        ),
     },
     forward=forward,
     behind=Behind(acts_on="channels", forward=on_axes, params=("on_axes",)),
@@ -141,7 +173,7 @@ HYSTERESIS = Effect(
     zoomed=("memory_deg",),
     fitted_shapes=("memory_deg",),
     drawing=drawing,
-    source="in the angle first-order return-point memory (Dahl's friction model, 1968); in each axis Rayleigh's law of "
-    "weak fields (Philosophical Magazine 23 (1887) 225)",
+    source="in the angle first-order return-point memory (Dahl's friction model, 1968); in each axis a stack of "
+    "plays: Rayleigh's law of weak fields (Philosophical Magazine 23 (1887) 225)",
     signature="-h d, relaxing exponentially after a reversal; of axes also order 4, with the direction and without",
 )

@@ -60,7 +60,7 @@ class EstimatedMotion:
         Angular frequency [rad a row], (n,), at which the motion is as free as a reading is noisy: slower, an error of
         the sensor cannot be told from a movement of the shaft. 0 where a reference was recorded.
     noise_rad : float
-        RMS [rad] of a reading about the motion.
+        RMS [rad] of a reading, or of a mean of readings, about the motion.
     torques : tuple of Torque
         What was found of torques locked to the angle, order by order.
     damping_per_s : float
@@ -91,7 +91,9 @@ class EstimatedMotion:
         """Of rows that are averaged by groups (n,), numbered from 0."""
         count = np.bincount(group)
         first = np.searchsorted(group, np.arange(count.size))
-        return replace(self, stretch=self.stretch[first], knee_rad=self.knee_rad[first] * count)
+        # The motion stays what it is, while the mean of several readings is less noisy than one.
+        noise_rad = self.noise_rad / float(np.sqrt(np.mean(count)))
+        return replace(self, stretch=self.stretch[first], knee_rad=self.knee_rad[first] * count, noise_rad=noise_rad)
 
     @classmethod
     def joined(cls, parts: Sequence[EstimatedMotion | None], lengths: Sequence[int]) -> EstimatedMotion | None:

@@ -111,6 +111,13 @@ SPINS: tuple[Mutation, ...] = tuple(
             f"{_STRETCHES}::test_after_a_gap_a_stretch_begins_anew",
         ),
         (
+            "spins.a_mean_is_as_noisy_as_a_reading",
+            "twin/estimated_motion.py",
+            "self.noise_rad / float(np.sqrt(np.mean(count)))",
+            "self.noise_rad",
+            f"{_MOTION}::test_averaged_rows_are_further_apart",
+        ),
+        (
             "spins.rows_left_out_end_no_stretch",
             "twin/estimated_motion.py",
             "broken = (np.diff(rows) != 1) | (np.diff(self.stretch[rows]) != 0)",

@@ -23,6 +23,7 @@ def test_a_stretch_ends_where_rows_are_left_out() -> None:
 def test_averaged_rows_are_further_apart() -> None:
     found = motion().averaged(np.repeat(np.arange(6), 2))
     assert found.knee_rad == pytest.approx(1.0)
+    assert found.noise_rad == pytest.approx(1e-3 / np.sqrt(2.0))
     assert found.lengths == (3, 3)
 
 

@@ -142,6 +142,22 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
     return said
 
 
+def correction_words(estimated: EstimatedMotion | None) -> list[str]:
+    """What has to be kept in mind of a correction whose readings had no reference; nothing where they had one."""
+    if estimated is None:
+        return []
+    said = [
+        "made without a reference: the error is told against the shaft's own even turning; the zero is free",
+    ]
+    orders = not_separable(estimated)
+    if orders:
+        said.append(
+            f"caution: orders {_ranges(orders)} of it may be a torque's (cogging, an unbalance, a bearing) in place of "
+            f"the sensor's, and would then put a movement of the shaft into the table; to part them: {SECOND_SPEED}"
+        )
+    return said
+
+
 def _ranges(orders: Sequence[int]) -> str:
     """Whole numbers, runs of them by their ends."""
     runs: list[list[int]] = []

@@ -15,6 +15,7 @@ from diagnosis.report import statements, tables
 from diagnosis.report.change_words import change_name
 from diagnosis.report.data import Readings, readings, two_ways
 from diagnosis.report.facts import facts
+from diagnosis.report.motion import motion_words
 from diagnosis.report.over_class import in_factors_words, open_words
 from diagnosis.report.recordings import RMS_HEADS, recordings_notes, recordings_table, where_words
 from diagnosis.report.rivals_words import rivals_words
@@ -42,6 +43,7 @@ def page(found: Discovery, answer: Mapping[str, Any]) -> str:
         [
             f"<h1>What the simulation gets wrong about {name}</h1>",
             _headline(answer),
+            _motion(answer),
             _setup(answer),
             _measured(answer, said, read),
             _baseline(answer, read, found),
@@ -82,6 +84,12 @@ def _cards(cards: list[tuple[str, str, str]]) -> str:
         for name, value, unit in cards
     )
     return f'<dl class="figures">{items}</dl>'
+
+
+def _motion(answer: Mapping[str, Any]) -> str:
+    """How the motion was come by where no reference was recorded; empty where one was."""
+    items = "".join(f"<li>{_text(words)}.</li>" for words in motion_words(answer))
+    return f"<h2>Without a reference</h2><ul>{items}</ul>" if items else ""
 
 
 def _setup(answer: Mapping[str, Any]) -> str:

@@ -11,6 +11,7 @@ from diagnosis.correction.compensation import Correction, correction_of, correct
 from diagnosis.correction.compensation_c import check_prefix, header
 from diagnosis.correction.correction_file import to_dict
 from diagnosis.correction.left_of_readings import of_words_of
+from diagnosis.report.motion import correction_words
 from scenarios.commands.compensate_judge import Judged, held_out, on_others, rows_of, say_where_worse
 from scenarios.commands.compensate_source import Readings, readings_of
 from scenarios.commands.compensate_table import table, temperatures_c
@@ -151,10 +152,13 @@ def _write(
     readings: Readings | None,
     tolerance_deg: float,
 ) -> None:
+    about = [] if readings is None else correction_words(readings.estimated)
     files.write(
         {
-            outputs.header: lambda: header(correction, source=f"from {source}", prefix=outputs.prefix),
-            outputs.table: lambda: table(correction, outputs.points, tolerance_deg),
+            outputs.header: lambda: header(
+                correction, source=f"from {source}", prefix=outputs.prefix, about=about, counted=not about
+            ),
+            outputs.table: lambda: table(correction, outputs.points, tolerance_deg, about=about),
             outputs.toml: lambda: _toml(correction, readings),
             outputs.plot: lambda: _picture(judged, readings),
         }
@@ -174,7 +178,10 @@ def _toml(correction: Correction, readings: Readings | None) -> str:
     laws = {} if readings is None else readings.laws()
     if laws:
         content["factors"] = {name: law["verdict"] for name, law in laws["factors"].items()}
-    return tomli_w.dumps(content)
+    if readings is not None and readings.not_separable is not None:
+        content["not_separable"] = readings.not_separable
+    about = [] if readings is None else correction_words(readings.estimated)
+    return "".join(f"# {line}\n" for line in about) + tomli_w.dumps(content)
 
 
 def _picture(judged: Sequence[Judged], readings: Readings | None) -> Any:

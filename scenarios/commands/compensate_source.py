@@ -15,10 +15,12 @@ from diagnosis.correction.calibration import Calibration, calibrate, calibrate_o
 from diagnosis.correction.compensation import Correction, correction_of, correction_over
 from diagnosis.correction.cross_validation import Shaft
 from diagnosis.factors.findings import OneSense
+from diagnosis.report.motion import not_separable
 from diagnosis.report.temperature_answer import to_dict
 from diagnosis.thermal.recording import SMALLEST_SPAN_K, Recording, over_temperature
 from twin.decoded import Decoded
 from twin.errors import UserError
+from twin.estimated_motion import EstimatedMotion
 from twin.sweep import Sweep
 
 
@@ -103,6 +105,17 @@ class Readings:
         """The laws of the factors over temperature as plain values; empty where there is none."""
         over = self.calibration.over
         return {} if over is None else to_dict(over, sweeps=len(self.sweeps), decided_by=self.one_sense.by)
+
+    @cached_property
+    def estimated(self) -> EstimatedMotion | None:
+        """The motion in place of a reference; None where one of the sweeps has a reference."""
+        motions = [sweep.estimated for sweep in self.sweeps]
+        return motions[0] if all(motion is not None for motion in motions) else None
+
+    @property
+    def not_separable(self) -> list[int] | None:
+        """Orders that may be a torque's; None where a reference tells."""
+        return None if self.estimated is None else not_separable(self.estimated)
 
     @property
     def temperature_words(self) -> str | None:

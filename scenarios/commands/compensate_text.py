@@ -17,6 +17,7 @@ from rich.text import Text
 from diagnosis.correction.compensation import Correction
 from diagnosis.correction.cross_validation import BeforeAfter
 from diagnosis.correction.left_of_readings import of_words
+from diagnosis.report.motion import correction_words
 from diagnosis.report.row_counts import counts_of, diagnosed_rows, left_out_words
 from diagnosis.report.temperature_text import lines
 from diagnosis.report.wording import decimals_of, rms_shown
@@ -34,7 +35,8 @@ _NARROW = 72
 class MadeOf:
     """What a correction was made of: a name, what became of the readings in words, and how well it is known [deg].
 
-    ``readings`` is empty for a twin. ``temperature``: what they say of it, line by line; ``faults``: of their words.
+    ``readings`` is empty for a twin. ``temperature``: what they say of it, line by line; ``faults``: of their words;
+    ``motion``: what has to be kept in mind where they had no reference.
     """
 
     name: str
@@ -42,6 +44,7 @@ class MadeOf:
     uncertainty_deg: float
     temperature: Sequence[str] = ()
     faults: Sequence[str] = ()
+    motion: Sequence[str] = ()
 
 
 def made_of(readings: Readings | None, name: str, tolerance_deg: float) -> MadeOf:
@@ -58,7 +61,14 @@ def made_of(readings: Readings | None, name: str, tolerance_deg: float) -> MadeO
     # Of the mean of so many readings; and no better than the orders that were left out.
     known_deg = float(np.degrees(readings.calibration.sigma_rad)) / np.sqrt(fitted)
     faults = [f"not removed: {left_words(left)}" for left in of_words(readings.as_read)]
-    return MadeOf(name, f"{rows} readings; {told}", max(known_deg, tolerance_deg), _of_temperature(readings), faults)
+    return MadeOf(
+        name,
+        f"{rows} readings; {told}",
+        max(known_deg, tolerance_deg),
+        _of_temperature(readings),
+        faults,
+        correction_words(readings.estimated),
+    )
 
 
 def show(made: MadeOf, correction: Correction, rows: Rows, console: Console | None = None) -> None:
@@ -74,7 +84,7 @@ def show(made: MadeOf, correction: Correction, rows: Rows, console: Console | No
             f"the largest {_largest_deg(correction):.{decimals}f} deg{_following(correction)}"
         )
     )
-    for line in made.temperature:
+    for line in (*made.motion, *made.temperature):
         console.print(Text(line))
     if correction.left_out:
         left_out = ", ".join(correction.left_out)

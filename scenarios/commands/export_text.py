@@ -8,6 +8,7 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
+from diagnosis.report.motion import correction_words
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.wording import plain, rms_shown
 from scenarios.commands.compensate_judge import Judged
@@ -23,7 +24,7 @@ def show(made: Exported, of: MadeOf, rows: Rows, console: Console | None = None)
     """Print what the table is, how it does, and what it leaves."""
     console = console or Console(highlight=False)
     console.print(Text(f"{of.name}   {of.readings}" if of.readings else of.name))
-    for line in (*_what(made), *of.temperature):
+    for line in (*_what(made), *of.motion, *of.temperature):
         console.print(Text(line))
     console.print(figures(rows, console.width))
     if made.not_removed:
@@ -41,10 +42,16 @@ def about(made: Exported, provenance: Provenance) -> tuple[str, ...]:
         f"Made by halltwin {provenance.version} on {provenance.date} from {made.source.name}, seed {provenance.seed}"
         f"{'' if provenance.command is None else f': {provenance.command}'}",
         *_what(made)[1:],
+        *(f"{line[:1].upper()}{line[1:]}." for line in _motion(made)),
         *(f"Angle error {one.name}: {_short(one)}" for one in judged),
         *(f"Not removed: {left_words(left)}" for left in made.not_removed),
         f"To load it: {made.asked.target.load}.",
     )
+
+
+def _motion(made: Exported) -> list[str]:
+    """What has to be kept in mind where the readings had no reference."""
+    return [] if made.source.readings is None else correction_words(made.source.readings.estimated)
 
 
 def _with_sound(made: Exported) -> list[Judged]:
@@ -91,6 +98,7 @@ def to_dict(made: Exported, provenance: Provenance) -> dict[str, Any]:
         "slope": correction.slope,
         "zero_deg": float(np.degrees(correction.zero_rad)),
         "read_back": {"largest_deg": float(np.max(np.abs(made.away_deg))), "rms_deg": _rms(made.away_deg)},
+        "not_separable": None if made.source.readings is None else made.source.readings.not_separable,
         "judged": [_judged(one) for one in _with_sound(made)],
         "not_removed": [
             {

@@ -1,0 +1,84 @@
+"""The commands on logs of a sensor alone: what a correction of them warns of, and what a report says of them."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.command_line import Array, csv_text, explained, halltwin
+
+TIME = np.arange(0.0, 8.0, 0.001)
+
+
+def words_of(angle_deg: Array) -> Array:
+    """An angle as a sensor of 14 bits gives it, in degrees."""
+    return np.floor(angle_deg * 16384.0 / 360.0) % 16384.0 * 360.0 / 16384.0
+
+
+def log(folder: Path, turns_per_s: Any = 3.0, *, name: str = "log.csv", seed: int = 5) -> Path:
+    """A shaft whose cogging, of order 4, swings it, and a sensor of 14 bits with an error of orders 1 and 2."""
+    speed = np.broadcast_to(np.asarray(turns_per_s, dtype=np.float64), TIME.shape)
+    angle = 360.0 * (np.cumsum(speed) - speed[0]) * 0.001
+    turn = np.radians(angle)
+    swing = 0.4 * (3.0 / speed) ** 2 * np.sin(4.0 * turn + 0.4)
+    noise = 0.02 * np.random.default_rng(seed).standard_normal(TIME.size)
+    reading = angle + swing + 123.0 + 0.8 * np.sin(turn + 0.5) + 0.35 * np.sin(2.0 * turn - 1.0) + noise
+    path = folder / name
+    path.write_text(csv_text({"time_s": TIME, "measured_deg": words_of(reading)}))
+    return path
+
+
+def test_a_word_of_few_bits_hides_no_torque(tmp_path: Path) -> None:
+    """The steps of the word make of one order many; a torque of that order is among what may be meant all the same."""
+    angle = 3240.0 * TIME[:4000]
+    reading = angle + 0.5 * np.cos(np.radians(5.0 * angle)) + 0.03 * np.random.default_rng(1).standard_normal(4000)
+    path, report = tmp_path / "log.csv", tmp_path / "report.html"
+    path.write_text(csv_text({"time_s": TIME[:4000], "measured_deg": words_of(reading)}))
+    (cause,) = explained(path, "--report", report)["causes"]
+    assert cause["parameters"]["order"]["value"] == 5.0
+    assert "torque_ripple" in cause["indistinguishable_from"]
+    assert "a log at a second speed" in cause["to_tell_apart"]
+    page = report.read_text(encoding="utf-8")
+    assert "Without a reference" in page
+    assert "Not told from a torque locked to the angle: orders 1 to 16" in page
+
+
+@pytest.mark.parametrize(("speeds", "open_orders"), [(3.0, "orders 1 to 16"), (np.linspace(27.0, 6.0, TIME.size), "")])
+def test_a_correction_says_what_of_it_may_be_a_torque(speeds: Any, open_orders: str, tmp_path: Path) -> None:
+    path = log(tmp_path, speeds)
+    files = [tmp_path / name for name in ("table.csv", "header.h", "table.toml")]
+    ended = halltwin("compensate", path, "--table", files[0], "--header", files[1], "--toml", files[2])
+    assert ended.code == 0, ended.err
+    for said in (ended.out, *(file.read_text() for file in files)):
+        words = " ".join(said.replace("\n *", " ").split())
+        assert "made without a reference" in words
+        assert ("orders 1 to 16 of it may be a torque's" in words) == bool(open_orders)
+        assert ("a log at a second speed" in words) == bool(open_orders)
+    assert tomllib.loads(files[2].read_text())["not_separable"] == (list(range(1, 17)) if open_orders else [])
+    assert "as the reference counted it" not in files[1].read_text()
+
+
+def test_a_drives_table_says_it_too(tmp_path: Path) -> None:
+    table, answer = tmp_path / "table.h", tmp_path / "answer.json"
+    ended = halltwin("export", log(tmp_path), "--for", "simplefoc", "-o", table, "--json", answer)
+    assert ended.code == 0, ended.err
+    for said in (ended.out, table.read_text().replace("\n *", " ")):
+        assert "orders 1 to 16 of it may be a torque's" in " ".join(said.split())
+    assert json.loads(answer.read_text())["not_separable"] == list(range(1, 17))
+
+
+def test_a_reference_leaves_nothing_to_be_said(tmp_path: Path) -> None:
+    angle = np.arange(0.0, 720.0, 2.0)
+    path = tmp_path / "sweep.csv"
+    path.write_text(csv_text({"reference_deg": angle, "measured_deg": (angle + np.cos(np.radians(angle))) % 360.0}))
+    files = [tmp_path / name for name in ("table.csv", "header.h", "table.toml")]
+    ended = halltwin("compensate", path, "--table", files[0], "--header", files[1], "--toml", files[2])
+    assert ended.code == 0, ended.err
+    for said in (ended.out, *(file.read_text() for file in files)):
+        assert "without a reference" not in said
+    assert "as the reference counted it" in files[1].read_text()

@@ -10,11 +10,14 @@ import numpy as np
 
 from twin.angles import Array, IntArray
 from twin.errors import SweepError
+from twin.logs.turn_seen import turns_seen
 from twin.periods import checked_pole_pairs
 from twin.sweep_checks import as_recorded, check_both_channels, rows_in_use
 
 FEWEST_ROWS = 64
 """Readings of which a motion and an error are told; a turn of fewer tells neither."""
+_STILL_DEG = 3.0
+"""Span of the readings of a shaft that stands: what sensors scatter by, and words of eight bits flicker by."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +90,7 @@ class Spin:
             )
         data = as_recorded(columns, name=name)
         if "measured_deg" not in data and {"vx", "vy"} <= set(data):
+            _check_centred(data["vx"], data["vy"], name=name)
             data["measured_deg"] = np.degrees(np.arctan2(data["vy"], data["vx"]))
         if "measured_deg" not in data:
             raise SweepError(f"{name}: no cell of measured_deg holds a number; expected the sensor's readings")
@@ -105,6 +109,12 @@ def _check(measured: Array, time: Array | None, *, rows: IntArray, rejected: int
             f"{name}: {measured.size} usable rows{lost} and no reference_deg; without a reference expected at least "
             f"{FEWEST_ROWS} readings of a turning shaft with time_s; or add reference_deg"
         )
+    why = why_no_turn(measured)
+    if why is not None:
+        raise SweepError(
+            f"{name}: no reference_deg, and by its readings {why}; without a reference expected a shaft that coasts or "
+            "turns steadily for some whole turns; or add reference_deg"
+        )
     if time is None:
         return
     back = np.flatnonzero(np.diff(time) < 0.0)
@@ -116,3 +126,37 @@ def _check(measured: Array, time: Array | None, *, rows: IntArray, rejected: int
         )
     if time[-1] == time[0]:
         raise SweepError(f"{name}: column time_s: every row is {time[0]:g}; expected the time of each reading")
+
+
+def _check_centred(vx: Array, vy: Array, *, name: str) -> None:
+    """Raise SweepError for channels whose middle lies so far from zero that their angle goes round nothing."""
+    for channel, values in (("vx", vx), ("vy", vy)):
+        known = values[np.isfinite(values)]
+        if known.size and (np.min(known) > 0.0 or np.max(known) < 0.0):
+            middle = float(np.min(known) + np.max(known)) / 2.0
+            raise SweepError(
+                f"{name}: column {channel} goes from {np.min(known):g} to {np.max(known):g} and never changes its "
+                f"sign, so that atan2(vy, vx) makes no turn; take the middle of its range off, about {middle:.4g}, "
+                f'from either channel, as halltwin import does: --columns "time_s=NAME, vx=NAME-MIDDLE, '
+                f'vy=NAME-MIDDLE"'
+            )
+
+
+def why_no_turn(measured_deg: Array) -> str | None:
+    """What a shaft does whose readings (n,) [deg], one after another, make no whole turn; None where they do."""
+    travel = np.unwrap(measured_deg, period=360.0)
+    span = float(np.ptp(travel))
+    if span >= 360.0:
+        return None
+    if seen := turns_seen(measured_deg):
+        return (
+            f"these begin anew after {seen[0][0]:.4g} deg, which is no turn: another unit, or another number of counts, "
+            "which halltwin doctor tells"
+        )
+    # A word of few bits that flickers stands still; so does what noise moves about one place.
+    if span < _STILL_DEG:
+        return f"the shaft stands still, at {float(np.median(travel)) % 360.0:.4g} deg"
+    first, last = float(np.median(travel[: travel.size // 8 + 1])), float(np.median(travel[-(travel.size // 8 + 1) :]))
+    if abs(last - first) > 0.7 * span:
+        return f"the shaft turns by {span:.4g} deg in all, less than a turn"
+    return f"the shaft rocks over {span:.4g} deg, and makes no whole turn"

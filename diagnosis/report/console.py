@@ -55,7 +55,7 @@ def show(answer: Mapping[str, Any], console: Console | None = None) -> None:
     for number, part in enumerate(part for part in parts if part is not None):
         if number:
             console.print()
-        console.print(part)
+        console.print(part, crop=False)
 
 
 def text(answer: Mapping[str, Any], *, width: int) -> str:

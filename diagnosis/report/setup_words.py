@@ -20,6 +20,14 @@ def setup_block(findings: Sequence[Mapping[str, Any]], title: str) -> Renderable
         parts.append(Text.assemble(f"{number:3}  ", (found["kind"], style), f"  {found['what']}"))
         lines = [f"seen in: {found['evidence']}", f"so: {found['consequence']}", f"do: {found['remedy']}"]
         options = [found["columns"]] if found["columns"] else found.get("options", ())
-        lines += [f'--columns "{option}"' for option in options]
         parts.extend(Padding(Text(line), (0, 0, 0, _INSET)) for line in lines)
+        parts.extend(columns_line(option, inset=_INSET) for option in options)
     return Group(*parts)
+
+
+def columns_line(statement: str, *, inset: int, before: str = "") -> Text:
+    """A statement as an option of a command, to be copied: on one line, however long, with no blank behind it.
+
+    It has to be printed with ``soft_wrap``, or where it is a part of something with ``crop=False``.
+    """
+    return Text(f'{" " * inset}{before}--columns "{statement}"', no_wrap=True, overflow="ignore")

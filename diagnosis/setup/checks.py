@@ -21,6 +21,14 @@ from diagnosis.setup.ratio import counts_a_turn, counts_the_other_way, pole_pair
 from diagnosis.setup.record import Record
 from diagnosis.setup.roles import coarse_reference, swapped_roles
 from diagnosis.setup.sampling import aliased_frequency, aliased_order, few_points, part_of_a_turn
+from diagnosis.setup.sensor_alone import (
+    backwards_alone,
+    gaps_in_time,
+    jitter_of_time_alone,
+    no_turning,
+    other_turn,
+    unit_of_time_alone,
+)
 from diagnosis.setup.typing_error import typing_error
 from diagnosis.setup.word import OF_WORD, without_faults_of_word
 from twin.sweep import Sweep
@@ -71,9 +79,21 @@ CHECKS: tuple[Check, ...] = (
     Check(("other_status",), other_status, ("status",)),
 )
 """Every check, in order."""
+_ALONE, _ALONE_CLOCK = ("measured_deg",), ("measured_deg", "time_s")
+WITHOUT_REFERENCE: tuple[Check, ...] = (
+    Check(("no_turning",), no_turning, _ALONE),
+    Check(("units", "wrong_counts"), other_turn, _ALONE),
+    Check(("gaps_in_time",), gaps_in_time, _ALONE_CLOCK),
+    Check(("time_backwards",), backwards_alone, _ALONE_CLOCK),
+    Check(("time_unit",), unit_of_time_alone, _ALONE_CLOCK),
+    Check(("time_coarse", "time_jitter"), jitter_of_time_alone, _ALONE_CLOCK),
+)
+"""Checks that take the place of those of the same kinds where the sensor stands alone."""
 AMBIGUOUS = "ambiguous"
 """Of a log that can be read in several ways, see :mod:`diagnosis.setup.several_readings`."""
-KINDS = (AMBIGUOUS, *OF_WORD, *(kind for check in CHECKS for kind in check.kinds))
+KINDS = tuple(
+    dict.fromkeys((AMBIGUOUS, *OF_WORD, *(kind for check in (*CHECKS, *WITHOUT_REFERENCE) for kind in check.kinds)))
+)
 """The words of all findings."""
 
 
@@ -94,7 +114,9 @@ def checked(record: Record, found_before: tuple[Finding, ...] = ()) -> Checked:
     findings = [*found_before, *of_words]
     lacking: dict[str, tuple[str, ...]] = {}
     ended = False
-    for check in CHECKS:
+    alone = () if "reference_deg" in record.columns else WITHOUT_REFERENCE
+    replaced = {kind for check in alone for kind in check.kinds}
+    for check in (*(one for one in CHECKS if not replaced & set(one.kinds)), *alone):
         if ended and "reference_deg" in check.needs:
             continue
         missing = tuple(name for name in check.needs if name not in record.columns)
@@ -114,14 +136,21 @@ def checked_sweep(sweep: Sweep) -> tuple[Finding, ...]:
     Faults of the word are left out: ``explain`` names them as causes.
     """
     if sweep.recordings is None:
-        return _but_of_words(checked(Record.of(sweep)))
+        return _of_turn(sweep) + _but_of_words(checked(Record.of(sweep)))
     rows = np.arange(len(sweep))
     alone = replace(sweep, recordings=None)
     return tuple(
         replace(finding, evidence=f"recording {number}: {finding.evidence}")
         for number, part in enumerate(sweep.recordings.slices, 1)
-        for finding in _but_of_words(checked(Record.of(alone.part(rows[part]))))
+        for one in (alone.part(rows[part]),)
+        for finding in _of_turn(one) + _but_of_words(checked(Record.of(one)))
     )
+
+
+def _of_turn(sweep: Sweep) -> tuple[Finding, ...]:
+    """Of an estimated motion, whether the readings begin anew with the turn: the motion is made of them."""
+    found = None if sweep.estimated is None else other_turn(Record.of(sweep))
+    return () if found is None else (found,)
 
 
 def _but_of_words(found: Checked) -> tuple[Finding, ...]:

@@ -14,10 +14,11 @@ def missing_reference(record: Record) -> Finding | None:
         return None
     return Finding(
         kind="no_reference",
+        level="note",
         what="the log holds one angle, and no reference",
         evidence=f"{int(np.isfinite(record.columns['measured_deg']).sum())} readings of the sensor alone",
         consequence="an error is a difference from a reference: without one it is told only against the shaft's own "
         "even turning, and its zero, slow drift and what a reversal leaves are not told at all",
         remedy="record a reference encoder, a stepper's count or a jig's angle beside it, as reference_deg; or let the "
-        "shaft coast down and record time_s: explain and compensate take such a log as it is",
+        "shaft coast down and record time_s: explain and compensate take such a log",
     )

@@ -11,7 +11,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from diagnosis.report.provenance import Provenance
-from diagnosis.report.setup_words import setup_block
+from diagnosis.report.setup_words import columns_line, setup_block
 from diagnosis.setup.checks import KINDS, Checked
 from diagnosis.setup.of_log import LogRecord, read_record, with_pole_pairs
 from diagnosis.setup.several_readings import checked_log
@@ -76,14 +76,15 @@ def show(answer: Mapping[str, Any]) -> None:
     log = answer["log"]
     read = "; ".join([f"{log['rows']} rows", *log["read"]])
     console.print(Text.assemble((log["name"], "bold"), f"   {read}"))
-    read_as = [f'read as: --columns "{log["read_as"]}"'] if log["read_as"] else []
-    lines = [*read_as, *(f"taken for granted: {note}" for note in log["notes"])]
+    if log["read_as"]:
+        console.print(columns_line(log["read_as"], inset=2, before="read as: "), soft_wrap=True)
+    lines = [f"taken for granted: {note}" for note in log["notes"]]
     if log["not_used"]:
         lines.append(f"not used: {', '.join(log['not_used'])}")
     for line in lines:
         console.print(Padding(Text(line), (0, 0, 0, 2)))
     console.print()
-    console.print(setup_block(answer["setup"], _title(answer)))
+    console.print(setup_block(answer["setup"], _title(answer)), crop=False)
     lacking = _lacking(answer["not_checked"], log["not_used"])
     if lacking:
         console.print()

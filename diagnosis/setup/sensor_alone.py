@@ -1,0 +1,127 @@
+"""What the readings of a sensor alone and their time stamps tell of a set-up: the turn, the shaft's way, the clock."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.setup.clock import backwards, jitter_of_time, unit_of_time
+from diagnosis.setup.finding import Finding
+from diagnosis.setup.record import FEWEST, Record
+from twin.angles import Array
+from twin.logs.angles import COUNTS_PER_TURN, TURN, AngleUnit
+from twin.logs.statement import Column, text_of
+from twin.logs.turn_seen import turns_seen
+from twin.logs.units import UNITS
+from twin.spin import why_no_turn
+
+_ROUNDED = 1e-3
+"""Share of a turn by which its values, printed with few digits, may fall short of it."""
+_EVEN, _EVEN_SHARE, _GAP = 0.05, 0.9, 1.5
+"""Stamps whose steps lie for the most part so near to the usual one are those of an even clock; a reading is missing
+from a step that is half as long again."""
+
+
+def other_turn(record: Record) -> Finding | None:
+    """Readings that begin anew after another angle than a turn: another unit, or another number of counts."""
+    measured = record.columns["measured_deg"]
+    seen = turns_seen(measured)
+    if not seen or any(low * (1.0 - _ROUNDED) <= 360.0 <= high for low, high in seen):
+        return None
+    own = next((one for one in record.statement if one.target == "measured_deg"), None)
+    meant = None if own is None else _meant(own, seen)
+    if record.statement and meant is None:
+        return None
+    turns = 0.5 * sum(seen[0]) / 360.0
+    counted = own is not None and bool(own.term.steps)
+    what = "the reading begins anew after another angle than a turn"
+    return Finding(
+        kind="wrong_counts" if counted or own is None else "units",
+        what=what if meant is None else f"{what}: it is in {meant[0]}",
+        evidence=f"as it is read it goes from {np.nanmin(measured):.6g} to {np.nanmax(measured):.6g} deg and begins "
+        f"anew there, after {turns:.4g} turns",
+        consequence=f"what is told of a turn would be told of {1.0 / turns:.4g} of one, and its orders are others",
+        remedy="say how many counts make a turn, or which unit it is; a sensor that counts several turns before it "
+        "begins anew is right as it is",
+        columns="" if meant is None else text_of(tuple(meant[1] if one is own else one for one in record.statement)),
+    )
+
+
+def _meant(own: Column, seen: list[tuple[float, float]]) -> tuple[AngleUnit, Column] | None:
+    """The unit in which a column begins anew after a turn, and the column in it."""
+    if own.across is not None or own.plus is not None or own.per is not None:
+        return None
+    scale = 1.0 if own.unit is None else UNITS[own.unit].factor
+    for sign, number in own.term.steps:
+        scale *= number if sign == "*" else 1.0 / number if sign == "/" else 1.0
+    units = [*map(AngleUnit, TURN), *(AngleUnit(counts=n) for n in COUNTS_PER_TURN)]
+    turns = [*TURN.values(), *map(float, COUNTS_PER_TURN)]
+    for low, high in ((low / abs(scale), high / abs(scale)) for low, high in seen):
+        for unit, turn in zip(units, turns, strict=True):
+            if low * (1.0 - _ROUNDED * bool(unit.name)) <= turn <= high:
+                return unit, unit.column(own.target, own.term.source)
+    return None
+
+
+def no_turning(record: Record) -> Finding | None:
+    """A shaft that stands still, or makes no whole turn."""
+    measured = record.columns["measured_deg"]
+    known = measured[np.isfinite(measured)]
+    why = why_no_turn(known) if known.size >= FEWEST else None
+    if why is None or other_turn(record) is not None:
+        return None
+    return Finding(
+        kind="no_turning",
+        what=f"by its readings {why}",
+        evidence=f"{known.size} readings, one after another",
+        consequence="without a reference an error is told by whole turns alone: there is none, and explain refuses it",
+        remedy="let the shaft coast or turn steadily for some turns; or record a reference beside it",
+    )
+
+
+def gaps_in_time(record: Record) -> Finding | None:
+    """Steps of an even clock that are longer than one reading: readings are missing."""
+    time = record.columns["time_s"]
+    rows = np.flatnonzero(np.isfinite(time))
+    step = np.diff(time[rows])
+    usual = float(np.median(step)) if step.size >= FEWEST else 0.0
+    if usual <= 0.0 or np.mean(np.abs(step - usual) <= _EVEN * usual) < _EVEN_SHARE:
+        return None
+    long = np.flatnonzero(step > _GAP * usual)
+    if not long.size:
+        return None
+    missing = int(np.sum(np.round(step[long] / usual) - 1.0))
+    return Finding(
+        kind="gaps_in_time",
+        level="note",
+        what="readings are missing",
+        evidence=f"{long.size} gaps in stamps that are {usual:.4g} s apart otherwise; about {missing} readings",
+        consequence="nothing is made up for them; behind a long gap a stretch of its own begins",
+        remedy="read the recorder's buffer more often, where more readings are wanted",
+        rows=tuple(int(row) for row in record.numbers[rows[long + 1]]),
+    )
+
+
+def _by_reading(record: Record) -> Record:
+    """The record with the shaft's way told by the reading, which is near enough for what is asked of a clock."""
+    return replace(record, columns={**record.columns, "reference_deg": _wrapped(record.columns["measured_deg"])})
+
+
+def _wrapped(angle_deg: Array) -> Array:
+    return np.asarray(np.mod(angle_deg, 360.0))
+
+
+def backwards_alone(record: Record) -> Finding | None:
+    """See :func:`diagnosis.setup.clock.backwards`."""
+    return backwards(_by_reading(record))
+
+
+def unit_of_time_alone(record: Record) -> Finding | None:
+    """See :func:`diagnosis.setup.clock.unit_of_time`."""
+    return unit_of_time(_by_reading(record))
+
+
+def jitter_of_time_alone(record: Record) -> Finding | None:
+    """See :func:`diagnosis.setup.clock.jitter_of_time`."""
+    return jitter_of_time(_by_reading(record))

@@ -150,8 +150,8 @@ def why_no_turn(measured_deg: Array) -> str | None:
         return None
     if seen := turns_seen(measured_deg):
         return (
-            f"these begin anew after {seen[0][0]:.4g} deg, which is no turn: another unit, or another number of counts, "
-            "which halltwin doctor tells"
+            f"these begin anew after {seen[0][0]:.4g} deg, which is no turn: another unit, or another number of "
+            "counts, which halltwin doctor tells"
         )
     # A word of few bits that flickers stands still; so does what noise moves about one place.
     if span < _STILL_DEG:

@@ -129,10 +129,14 @@ class Readings:
 
 
 def readings_of(decoded: Sequence[Decoded], *, tolerance_deg: float, seed: int) -> Readings:
-    """The readings of sweeps. Raises UserError for several that are no measurement over temperature."""
+    """The readings of sweeps. Raises UserError for several that are no measurement over temperature.
+
+    Without a reference several are taken at whichever temperature: their motions were estimated together, so that they
+    have one zero, and their speeds tell torques from the sensor's errors.
+    """
     found = Readings(tuple(decoded), tolerance_deg, seed)
     sweeps = found.sweeps
-    if len(sweeps) > 1 and not found.over_temperature:
+    if len(sweeps) > 1 and not found.over_temperature and found.estimated is None:
         for sweep in sweeps:
             if sweep.temperature_c is None:
                 raise UserError(

@@ -82,3 +82,17 @@ def test_a_reference_leaves_nothing_to_be_said(tmp_path: Path) -> None:
     for said in (ended.out, *(file.read_text() for file in files)):
         assert "without a reference" not in said
     assert "as the reference counted it" in files[1].read_text()
+
+
+def test_logs_of_two_speeds_make_one_correction(tmp_path: Path) -> None:
+    """The cogging, 0.4 deg at the slower of them, is told from the sensor's orders 1 and 2, and is not in the table."""
+    paths = [log(tmp_path, 3.0, name="slow.csv"), log(tmp_path, 9.0, name="fast.csv", seed=6)]
+    table = tmp_path / "table.csv"
+    ended = halltwin("compensate", *paths, "--table", table)
+    assert ended.code == 0, ended.err
+    assert "orders 1 to 16 of it may be a torque's" not in " ".join(ended.out.split())
+    rows = np.genfromtxt(table, delimiter=",", comments="#", skip_header=2)
+    reading, added = np.radians(rows[:, 0]), rows[:, 1]
+    sizes = [abs(2.0 * np.mean(added * np.exp(-1j * order * reading))) for order in (1, 2, 4)]
+    assert sizes[:2] == pytest.approx([0.8, 0.35], abs=0.02)
+    assert sizes[2] < 0.04

@@ -109,14 +109,17 @@ def _check(measured: Array, time: Array | None, *, rows: IntArray, rejected: int
             f"{name}: {measured.size} usable rows{lost} and no reference_deg; without a reference expected at least "
             f"{FEWEST_ROWS} readings of a turning shaft with time_s; or add reference_deg"
         )
+    if time is not None:
+        _check_time(time, rows=rows, name=name)
     why = why_no_turn(measured)
     if why is not None:
         raise SweepError(
             f"{name}: no reference_deg, and by its readings {why}; without a reference expected a shaft that coasts or "
             "turns steadily for some whole turns; or add reference_deg"
         )
-    if time is None:
-        return
+
+
+def _check_time(time: Array, *, rows: IntArray, name: str) -> None:
     back = np.flatnonzero(np.diff(time) < 0.0)
     if back.size:
         row = int(back[0]) + 1

@@ -29,7 +29,7 @@ from diagnosis.report.wording import (
 _LACKS = {
     "a reference": ("no reference", "record a reference encoder beside it"),
     "both directions": ("one direction", "turn in both directions"),
-    "moving shaft": ("the shaft stood still at each reading", "record while the shaft moves, with time_s or speed_rpm"),
+    "moving shaft": ("stopped at each reading, or no speed_rpm", "record speed_rpm while the shaft moves, with time_s"),
     "one turn": ("less than a turn", "cover a whole turn"),
     "several turns": ("less than two turns one way", "record several turns one way"),
     "temperature_c": ("no temperature_c", "record temperature_c"),
@@ -164,14 +164,14 @@ class FactorRow(NamedTuple):
 
 
 def factor_rows(answer: Mapping[str, Any]) -> list[FactorRow]:
-    """The factors, in the order of the paper; ``after`` is empty where no cause changes any of them."""
-    before = _values(answer["baseline"]["parameters"])
-    after = _values(answer["extended"]["parameters"])
+    """The paper's factors in order, without a reference but the zero; ``after`` is empty where no cause changes any."""
+    before, after = (_values(answer[of]["parameters"]) for of in ("baseline", "extended"))
     # What touches single readings or their scatter alone leaves every factor as it is.
     changed = extends(answer) and before != after
+    keys = [key for key in LABELS if key != "zero_deg" or "motion" not in answer]
     return [
-        FactorRow(key, label, before[key], after[key] if changed else "", UNITS[key], _flag(answer, key))
-        for key, label in LABELS.items()
+        FactorRow(key, LABELS[key], before[key], after[key] if changed else "", UNITS[key], _flag(answer, key))
+        for key in keys
     ]
 
 

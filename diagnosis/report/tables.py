@@ -7,7 +7,7 @@ from html import escape
 from typing import Any
 
 from diagnosis.report.change_words import change_line, change_name, change_rivals_words
-from diagnosis.report.factor_names import LABELS, SCALES, UNITS
+from diagnosis.report.factor_names import SCALES
 from diagnosis.report.statements import after_head, factor_rows, held_words, not_visible
 from diagnosis.report.wording import (
     chance,
@@ -70,11 +70,10 @@ def factors(answer: Mapping[str, Any]) -> str:
     several = [answer["baseline"]["parameters"]]
     if shown[0].after:
         several.append(answer["extended"]["parameters"])
-    flags = {row.key: row.flag for row in shown}
     rows = []
-    for key, text in LABELS.items():
-        cells = [cell for parameters in several for cell in _with_interval(parameters[key], SCALES[key])]
-        rows.append([escape(text), *cells, escape(UNITS[key]), escape(flags[key])])
+    for row in shown:
+        cells = [cell for parameters in several for cell in _with_interval(parameters[row.key], SCALES[row.key])]
+        rows.append([escape(row.label), *cells, escape(row.unit), escape(row.flag)])
     heads = ["factor", "before", "95 % interval", after_head(answer), "95 % interval"][: 1 + 2 * len(several)]
     return table([*heads, "unit", ""], rows, numbers=range(1, len(heads)))
 

@@ -18,9 +18,9 @@ from twin.spin import why_no_turn
 
 _ROUNDED = 1e-3
 """Share of a turn by which its values, printed with few digits, may fall short of it."""
-_EVEN, _EVEN_SHARE, _GAP = 0.05, 0.9, 1.5
-"""Stamps whose steps lie for the most part so near to the usual one are those of an even clock; a reading is missing
-from a step that is half as long again."""
+_EVEN, _EVEN_SHARE, _NEAR_WHOLE = 0.05, 0.9, 0.25
+"""Stamps whose steps lie for the most part so near to the usual one are those of an even clock; readings are missing
+from a step that is so nearly a whole number of usual ones. A late stamp makes any step."""
 
 
 def other_turn(record: Record) -> Finding | None:
@@ -88,10 +88,11 @@ def gaps_in_time(record: Record) -> Finding | None:
     usual = float(np.median(step)) if step.size >= FEWEST else 0.0
     if usual <= 0.0 or np.mean(np.abs(step - usual) <= _EVEN * usual) < _EVEN_SHARE:
         return None
-    long = np.flatnonzero(step > _GAP * usual)
+    many = step / usual
+    long = np.flatnonzero((many > 2.0 - _NEAR_WHOLE) & (np.abs(many - np.round(many)) < _NEAR_WHOLE))
     if not long.size:
         return None
-    missing = int(np.sum(np.round(step[long] / usual) - 1.0))
+    missing = int(np.sum(np.round(many[long]) - 1.0))
     return Finding(
         kind="gaps_in_time",
         level="note",

@@ -158,7 +158,7 @@ def _write(
             outputs.header: lambda: header(
                 correction, source=f"from {source}", prefix=outputs.prefix, about=about, counted=not about
             ),
-            outputs.table: lambda: table(correction, outputs.points, tolerance_deg, about=about),
+            outputs.table: lambda: table(correction, outputs.points, tolerance_deg),
             outputs.toml: lambda: _toml(correction, readings),
             outputs.plot: lambda: _picture(judged, readings),
         }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -13,8 +12,8 @@ from twin.angles import TAU, Array, wrap
 _MOST_TEMPERATURES = 33
 
 
-def table(correction: Correction, points: int, tolerance_deg: float, *, about: Sequence[str] = ()) -> str:
-    """CSV: reading, correction to add to slope x reading - zero, and the shaft angle; ``about`` in a comment above.
+def table(correction: Correction, points: int, tolerance_deg: float) -> str:
+    """CSV: reading, correction to add to slope x reading - zero, and the shaft angle.
 
     A correction that follows the temperature has a block of rows for each of so many temperatures that a straight line
     between two of them stays within the tolerance.
@@ -22,7 +21,6 @@ def table(correction: Correction, points: int, tolerance_deg: float, *, about: S
     reading = TAU * np.arange(points) / points
     out = io.StringIO()
     follows = correction.drift is not None
-    out.writelines(f"# {line}\n" for line in about)
     out.write(("temperature_c," if follows else "") + "reading_deg,correction_deg,shaft_deg\n")
     for temperature in temperatures_c(correction, tolerance_deg):
         first = [np.full(points, temperature)] if follows else []

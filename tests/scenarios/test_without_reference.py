@@ -54,7 +54,7 @@ def test_a_correction_says_what_of_it_may_be_a_torque(speeds: Any, open_orders: 
     files = [tmp_path / name for name in ("table.csv", "header.h", "table.toml")]
     ended = halltwin("compensate", path, "--table", files[0], "--header", files[1], "--toml", files[2])
     assert ended.code == 0, ended.err
-    for said in (ended.out, *(file.read_text() for file in files)):
+    for said in (ended.out, *(file.read_text() for file in files[1:])):
         words = " ".join(said.replace("\n *", " ").split())
         assert "made without a reference" in words
         assert ("orders 1 to 16 of it may be a torque's" in words) == bool(open_orders)
@@ -91,7 +91,7 @@ def test_logs_of_two_speeds_make_one_correction(tmp_path: Path) -> None:
     ended = halltwin("compensate", *paths, "--table", table)
     assert ended.code == 0, ended.err
     assert "orders 1 to 16 of it may be a torque's" not in " ".join(ended.out.split())
-    rows = np.genfromtxt(table, delimiter=",", comments="#", skip_header=2)
+    rows = np.genfromtxt(table, delimiter=",", skip_header=1)
     reading, added = np.radians(rows[:, 0]), rows[:, 1]
     sizes = [abs(2.0 * np.mean(added * np.exp(-1j * order * reading))) for order in (1, 2, 4)]
     assert sizes[:2] == pytest.approx([0.8, 0.35], abs=0.02)

@@ -95,7 +95,7 @@ def test_compensate_takes_such_a_log(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("columns", "said"),
     [
-        ({"time_s": TIME, "measured_deg": np.full(TIME.size, 20.0)}, "the shaft turns evenly in 0"),
+        ({"time_s": TIME, "measured_deg": np.full(TIME.size, 20.0)}, "the shaft stands still, at 20 deg"),
         ({"time_s": TIME[::-1], "measured_deg": 90.0 * TIME}, "row 2, column time_s: found 3.998 after 3.999"),
         ({"time_s": TIME[:20], "measured_deg": 90.0 * TIME[:20]}, "20 usable rows and no reference_deg"),
         ({"time_s": 0.0 * TIME, "measured_deg": 90.0 * TIME}, "column time_s: every row is 0"),

@@ -45,10 +45,10 @@ def test_a_word_of_few_bits_hides_no_torque(tmp_path: Path) -> None:
     assert "a log at a second speed" in cause["to_tell_apart"]
     page = report.read_text(encoding="utf-8")
     assert "Without a reference" in page
-    assert "Not told from a torque locked to the angle: orders 1 to 16" in page
+    assert "Not told from a torque locked to the angle: orders 1 to 32" in page
 
 
-@pytest.mark.parametrize(("speeds", "open_orders"), [(3.0, "orders 1 to 16"), (np.linspace(27.0, 6.0, TIME.size), "")])
+@pytest.mark.parametrize(("speeds", "open_orders"), [(3.0, "orders 1 to 32"), (np.linspace(27.0, 6.0, TIME.size), "")])
 def test_a_correction_says_what_of_it_may_be_a_torque(speeds: Any, open_orders: str, tmp_path: Path) -> None:
     path = log(tmp_path, speeds)
     files = [tmp_path / name for name in ("table.csv", "header.h", "table.toml")]
@@ -57,9 +57,9 @@ def test_a_correction_says_what_of_it_may_be_a_torque(speeds: Any, open_orders: 
     for said in (ended.out, *(file.read_text() for file in files[1:])):
         words = " ".join(said.replace("\n *", " ").split())
         assert "made without a reference" in words
-        assert ("orders 1 to 16 of it may be a torque's" in words) == bool(open_orders)
+        assert ("orders 1 to 32 of it may be a torque's" in words) == bool(open_orders)
         assert ("a log at a second speed" in words) == bool(open_orders)
-    assert tomllib.loads(files[2].read_text())["not_separable"] == (list(range(1, 17)) if open_orders else [])
+    assert tomllib.loads(files[2].read_text())["not_separable"] == (list(range(1, 33)) if open_orders else [])
     assert "as the reference counted it" not in files[1].read_text()
 
 
@@ -68,8 +68,8 @@ def test_a_drives_table_says_it_too(tmp_path: Path) -> None:
     ended = halltwin("export", log(tmp_path), "--for", "simplefoc", "-o", table, "--json", answer)
     assert ended.code == 0, ended.err
     for said in (ended.out, table.read_text().replace("\n *", " ")):
-        assert "orders 1 to 16 of it may be a torque's" in " ".join(said.split())
-    assert json.loads(answer.read_text())["not_separable"] == list(range(1, 17))
+        assert "orders 1 to 32 of it may be a torque's" in " ".join(said.split())
+    assert json.loads(answer.read_text())["not_separable"] == list(range(1, 33))
 
 
 def test_a_reference_leaves_nothing_to_be_said(tmp_path: Path) -> None:
@@ -90,7 +90,7 @@ def test_logs_of_two_speeds_make_one_correction(tmp_path: Path) -> None:
     table = tmp_path / "table.csv"
     ended = halltwin("compensate", *paths, "--table", table)
     assert ended.code == 0, ended.err
-    assert "orders 1 to 16 of it may be a torque's" not in " ".join(ended.out.split())
+    assert "orders 1 to 32 of it may be a torque's" not in " ".join(ended.out.split())
     rows = np.genfromtxt(table, delimiter=",", skip_header=1)
     reading, added = np.radians(rows[:, 0]), rows[:, 1]
     sizes = [abs(2.0 * np.mean(added * np.exp(-1j * order * reading))) for order in (1, 2, 4)]

@@ -21,14 +21,7 @@ from diagnosis.setup.ratio import counts_a_turn, counts_the_other_way, pole_pair
 from diagnosis.setup.record import Record
 from diagnosis.setup.roles import coarse_reference, swapped_roles
 from diagnosis.setup.sampling import aliased_frequency, aliased_order, few_points, part_of_a_turn
-from diagnosis.setup.sensor_alone import (
-    backwards_alone,
-    gaps_in_time,
-    jitter_of_time_alone,
-    no_turning,
-    other_turn,
-    unit_of_time_alone,
-)
+from diagnosis.setup.sensor_alone import by_reading, gaps_in_time, no_turning, other_turn
 from diagnosis.setup.typing_error import typing_error
 from diagnosis.setup.word import OF_WORD, without_faults_of_word
 from twin.sweep import Sweep
@@ -84,9 +77,9 @@ WITHOUT_REFERENCE: tuple[Check, ...] = (
     Check(("no_turning",), no_turning, _ALONE),
     Check(("units", "wrong_counts"), other_turn, _ALONE),
     Check(("gaps_in_time",), gaps_in_time, _ALONE_CLOCK),
-    Check(("time_backwards",), backwards_alone, _ALONE_CLOCK),
-    Check(("time_unit",), unit_of_time_alone, _ALONE_CLOCK),
-    Check(("time_coarse", "time_jitter"), jitter_of_time_alone, _ALONE_CLOCK),
+    Check(("time_backwards",), by_reading(backwards), _ALONE_CLOCK),
+    Check(("time_unit",), by_reading(unit_of_time), _ALONE_CLOCK),
+    Check(("time_coarse", "time_jitter"), by_reading(jitter_of_time), _ALONE_CLOCK),
 )
 """Checks that take the place of those of the same kinds where the sensor stands alone."""
 AMBIGUOUS = "ambiguous"

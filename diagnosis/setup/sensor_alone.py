@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.setup.clock import backwards, jitter_of_time, unit_of_time
 from diagnosis.setup.finding import Finding
 from diagnosis.setup.record import FEWEST, Record
-from twin.angles import Array
-from twin.logs.angles import COUNTS_PER_TURN, TURN, AngleUnit
+from twin.logs.alone import units_of_turn
+from twin.logs.angles import AngleUnit
 from twin.logs.statement import Column, text_of
-from twin.logs.turn_seen import turns_seen
+from twin.logs.turn_seen import Turn, is_turn, turns_seen
 from twin.logs.units import UNITS
 from twin.spin import why_no_turn
 
-_ROUNDED = 1e-3
-"""Share of a turn by which its values, printed with few digits, may fall short of it."""
 _EVEN, _EVEN_SHARE, _NEAR_WHOLE = 0.05, 0.9, 0.25
 """Stamps whose steps lie for the most part so near to the usual one are those of an even clock; readings are missing
 from a step that is so nearly a whole number of usual ones. A late stamp makes any step."""
@@ -27,7 +25,7 @@ def other_turn(record: Record) -> Finding | None:
     """Readings that begin anew after another angle than a turn: another unit, or another number of counts."""
     measured = record.columns["measured_deg"]
     seen = turns_seen(measured)
-    if not seen or any(low * (1.0 - _ROUNDED) <= 360.0 <= high for low, high in seen):
+    if not seen or any(is_turn(360.0, one) for one in seen):
         return None
     own = next((one for one in record.statement if one.target == "measured_deg"), None)
     meant = None if own is None else _meant(own, seen)
@@ -48,20 +46,16 @@ def other_turn(record: Record) -> Finding | None:
     )
 
 
-def _meant(own: Column, seen: list[tuple[float, float]]) -> tuple[AngleUnit, Column] | None:
+def _meant(own: Column, seen: Sequence[Turn]) -> tuple[AngleUnit, Column] | None:
     """The unit in which a column begins anew after a turn, and the column in it."""
     if own.across is not None or own.plus is not None or own.per is not None:
         return None
     scale = 1.0 if own.unit is None else UNITS[own.unit].factor
     for sign, number in own.term.steps:
         scale *= number if sign == "*" else 1.0 / number if sign == "/" else 1.0
-    units = [*map(AngleUnit, TURN), *(AngleUnit(counts=n) for n in COUNTS_PER_TURN)]
-    turns = [*TURN.values(), *map(float, COUNTS_PER_TURN)]
-    for low, high in ((low / abs(scale), high / abs(scale)) for low, high in seen):
-        for unit, turn in zip(units, turns, strict=True):
-            if low * (1.0 - _ROUNDED * bool(unit.name)) <= turn <= high:
-                return unit, unit.column(own.target, own.term.source)
-    return None
+    as_recorded = ((low / abs(scale), high / abs(scale)) for low, high in seen)
+    unit = next((unit for one in as_recorded for units in units_of_turn(one) for unit in units), None)
+    return None if unit is None else (unit, unit.column(own.target, own.term.source))
 
 
 def no_turning(record: Record) -> Finding | None:
@@ -104,25 +98,11 @@ def gaps_in_time(record: Record) -> Finding | None:
     )
 
 
-def _by_reading(record: Record) -> Record:
-    """The record with the shaft's way told by the reading, which is near enough for what is asked of a clock."""
-    return replace(record, columns={**record.columns, "reference_deg": _wrapped(record.columns["measured_deg"])})
+def by_reading(check: Callable[[Record], Finding | None]) -> Callable[[Record], Finding | None]:
+    """A check of the clock for a sensor alone: the reading tells the shaft's way near enough for that."""
 
+    def of_clock(record: Record) -> Finding | None:
+        way = np.mod(record.columns["measured_deg"], 360.0)
+        return check(replace(record, columns={**record.columns, "reference_deg": way}))
 
-def _wrapped(angle_deg: Array) -> Array:
-    return np.asarray(np.mod(angle_deg, 360.0))
-
-
-def backwards_alone(record: Record) -> Finding | None:
-    """See :func:`diagnosis.setup.clock.backwards`."""
-    return backwards(_by_reading(record))
-
-
-def unit_of_time_alone(record: Record) -> Finding | None:
-    """See :func:`diagnosis.setup.clock.unit_of_time`."""
-    return unit_of_time(_by_reading(record))
-
-
-def jitter_of_time_alone(record: Record) -> Finding | None:
-    """See :func:`diagnosis.setup.clock.jitter_of_time`."""
-    return jitter_of_time(_by_reading(record))
+    return of_clock

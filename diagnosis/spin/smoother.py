@@ -47,10 +47,10 @@ class MotionFit:
 
     ``shaft_rad`` is the part that is smooth in time with what the torques do. ``knee_rad_s`` (n,) is the angular
     frequency below which the motion is freer than the readings' noise is loud. ``noise_rad`` is the RMS of a reading
-    about it all. ``terms`` are the coefficients: cosine and sine of each order of the error
-    [rad], of each order's torque [rad/s^2], of what of it grows with the speed [rad/s^2 for each rad/s] and of what
-    reverses with it [rad/s^2] up to the order 4, and of an error of order 2 that grows with the speed [rad for each
-    rad/s]. ``separable`` (orders,): whether a torque that makes all that is seen of an order would be told.
+    about it all. ``terms`` are the coefficients: cosine and sine of each order of the error [rad], of each order's
+    torque [rad/s^2], of what of it grows with the speed [rad/s^2 for each rad/s] and of what reverses with it [rad/s^2]
+    up to the order 4, and of an error of order 2 that grows with the speed [rad for each rad/s]. ``separable``
+    (orders,): whether a torque that makes all that is seen of an order would be told.
     """
 
     shaft_rad: Array

@@ -10,17 +10,16 @@ import numpy as np
 from twin.angles import Array
 from twin.logs.angles import COUNTS_PER_TURN, TURN, AngleUnit
 from twin.logs.asked_back import raise_open, raise_several, raise_untold
+from twin.logs.channels import angle_of
 from twin.logs.names import Meaning
 from twin.logs.others import Found, others
 from twin.logs.statement import Column, Term, text_of
 from twin.logs.table import Table
-from twin.logs.turn_seen import Turn, turns_seen
+from twin.logs.turn_seen import Turn, is_turn, turns_seen
 from twin.sweep_columns import COLUMNS
 
 _SURE = 2
 """What a name weighs that is said of a reference alone."""
-_ROUNDED = 1e-3
-"""Share of a turn by which its unit may fall short of the span of the values, which are printed with few digits."""
 
 
 def alone(table: Table, said: tuple[Meaning, ...], usable: Sequence[int], of_channels: Found) -> Found | None:
@@ -36,7 +35,7 @@ def alone(table: Table, said: tuple[Meaning, ...], usable: Sequence[int], of_cha
         return None
     if not any(said[place].role == "time" for place in usable):
         return None
-    angles = [_of_channels(of_channels)] if not named else _of_values(table, said, named[0])
+    angles = [angle_of(of_channels.columns)] if not named else _of_values(table, said, named[0])
     beside = others(table, said, list(usable), angles[0].of(table))
     rest = (*of_channels.columns, *beside.columns)
     if not any(column.target == "time_s" for column in rest):
@@ -60,17 +59,17 @@ def units_seen(values: Array, said: Meaning) -> list[AngleUnit]:
 
 
 def _units_of(seen: Turn, said: Meaning, *, whole: bool) -> list[AngleUnit]:
-    low, high = seen
-    counts = [AngleUnit(counts=n) for n in said.turns or COUNTS_PER_TURN if low < n <= high]
-    named = [AngleUnit(name) for name, turn in TURN.items() if low * (1.0 - _ROUNDED) <= turn <= high]
+    named, counts = units_of_turn(seen, said.turns or COUNTS_PER_TURN)
     if said.counts or (whole and not any(unit.name == "deg" for unit in named)):
         return counts
     return named
 
 
-def _of_channels(found: Found) -> Column:
-    x, y = found.columns[0].term, found.columns[1].term
-    return Column("measured_deg", y, across=x)
+def units_of_turn(seen: Turn, counts: Sequence[int] = COUNTS_PER_TURN) -> tuple[list[AngleUnit], list[AngleUnit]]:
+    """The units of which a turn is as long as was seen: those that have a name, and counts a turn."""
+    low, high = seen
+    named = [AngleUnit(name) for name, turn in TURN.items() if is_turn(turn, seen)]
+    return named, [AngleUnit(counts=n) for n in counts if low < n <= high]
 
 
 def _of_values(table: Table, said: tuple[Meaning, ...], place: int) -> list[Column]:
@@ -107,7 +106,7 @@ def _contradicts(values: Array, own: Meaning, units: list[AngleUnit]) -> bool:
     if own.unit is None or not units:
         return False
     turn = 360.0 / own.unit.factor
-    return not any(low * (1.0 - _ROUNDED) <= turn <= high for low, high in turns_seen(values))
+    return not any(is_turn(turn, seen) for seen in turns_seen(values))
 
 
 def _with_time(table: Table, said: tuple[Meaning, ...], angle: Column) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from twin.angles import Array
@@ -52,3 +54,9 @@ def _centred(source: str, values: Array) -> Term:
     half = min(halves, key=lambda one: abs(one - middle))
     near = abs(half - middle) <= _NEAR_MIDDLE * amplitude
     return Term(source, (("-", half),)) if near else Term(source)
+
+
+def angle_of(channels: Sequence[Column]) -> Column:
+    """The sensor's angle, of the columns ``vx`` and ``vy``."""
+    x, y = (column.term for column in channels)
+    return Column("measured_deg", y, across=x)

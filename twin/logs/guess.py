@@ -14,7 +14,7 @@ from twin.errors import SweepError
 from twin.logs.alone import alone, in_order
 from twin.logs.angles import AngleUnit, Pair, units_of_pair
 from twin.logs.asked_back import raise_open, raise_several
-from twin.logs.channels import channels
+from twin.logs.channels import angle_of, channels
 from twin.logs.devices import meanings_of
 from twin.logs.errors_listed import statements_of_errors
 from twin.logs.lookups import statements_of
@@ -239,8 +239,7 @@ def _by_channels(
 ) -> tuple[Column, Column] | None:
     """A reference, and the angle of the two channels as the sensor's; None where there is none. Raises OpenGuess."""
     if len(found) == 2:
-        x, y = found[0].term, found[1].term
-        measured = Column("measured_deg", y, across=x)
+        measured = angle_of(found)
         values = measured.of(table)
         own = Meaning("angle", unit=None, sensor=2)
         fitting = [

@@ -64,7 +64,7 @@ def by_statement(columns: tuple[Column, ...], table: Table) -> Guess:
     return Guess(columns, unused=unused_by(columns, table))
 
 
-NEEDS_REFERENCE = "here a reference is needed; explain and compensate take this log without one, by"
+_NEEDS_REFERENCE = "here a reference is needed; explain and compensate take this log without one, by"
 LARGEST_ADVISED_BYTES = 5_000_000
 """Of a longer file that was refused nothing is guessed: reading it once took its time."""
 
@@ -92,5 +92,5 @@ def refused(path: Path, said: str, *, spin: bool = False) -> str:
     as_it_is = all(str(column) == f"{column.target}={column.target}" for column in guess.columns)
     said_so = in_words([guess.text])
     if not spin and is_spin([column.target for column in guess.columns]):
-        return said if as_it_is else f"{said}; {NEEDS_REFERENCE}: {said_so}"
+        return said if as_it_is else f"{said}; {_NEEDS_REFERENCE}: {said_so}"
     return said if as_it_is else f"{advised}: {said_so}"

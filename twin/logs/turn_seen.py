@@ -19,6 +19,16 @@ Turn = tuple[float, float]
 """Two numbers between which a turn lies."""
 
 
+_ROUNDED = 1e-3
+"""Share of a turn by which its unit may fall short of the span of the values, which are printed with few digits."""
+
+
+def is_turn(turn: float, seen: Turn) -> bool:
+    """Whether a turn is this long in a unit that has a name, for what was seen of it."""
+    low, high = seen
+    return low * (1.0 - _ROUNDED) <= turn <= high
+
+
 def turns_seen(values: Array) -> list[Turn]:
     """Between which two numbers the turn lies of an angle that begins anew, the likeliest first.
 

@@ -35,18 +35,22 @@ def ringing(fit: Fit) -> Noise | None:
     bins = rows // each
     squares = np.mean(fit.cosine_residual[0][: bins * each].reshape(bins, each) ** 2, axis=1)
 
-    def cost(noise: Noise) -> float:
-        spectrum = noise.spectrum(bins)
+    def cost(spectrum: Array) -> float:
         return float(np.log(np.mean(squares / spectrum)) + np.mean(np.log(spectrum)))
 
-    best = min(_tried(rows), key=cost, default=None)
+    tried = (
+        (cost(white + (1.0 - white) * spectrum), replace(noise, white_share=white))
+        for noise in _tried(rows)
+        for spectrum in (noise.spectrum(bins),)
+        for white in _WHITE_SHARES
+    )
+    lowest, best = min(tried, key=lambda one: one[0], default=(np.inf, None))
     if best is None:
         return None
-    lowest = cost(best)
     for halving in range(1, _HALVINGS + 1):
         for step in itertools.product((-1.0, 0.0, 1.0), repeat=3):
             near = _moved(best, 0.5**halving * np.array(step))
-            if (here := cost(near)) < lowest:
+            if (here := cost(near.spectrum(bins))) < lowest:
                 best, lowest = near, here
     return best
 
@@ -56,8 +60,7 @@ def _tried(rows: int) -> Iterator[Noise]:
     for quality in _QUALITIES:
         place = _LEAST_WIDTH * quality / rows
         while place < 0.5:
-            for white in _WHITE_SHARES:
-                yield Noise(ringing_per_reading=float(place), ringing_quality=float(quality), white_share=white)
+            yield Noise(ringing_per_reading=float(place), ringing_quality=float(quality))
             place *= 1.0 + 0.5 / quality
 
 
@@ -75,7 +78,7 @@ def _moved(noise: Noise, by: Array) -> Noise:
 def within_band(noise: Noise, columns: Array) -> Array:
     """The share (q,) of the squares of cosine coefficients (q, n) that lies in the band of a resonance.
 
-    Twice as far to both sides as it is wide at half of its height: there stand six sevenths of its own.
+    Twice as far to both sides as it is wide at half of its height: there stand five sixths of its own.
     """
     place, width = noise.ringing_per_reading, noise.ringing_per_reading / noise.ringing_quality
     frequency = (np.arange(columns.shape[-1]) + 0.5) / (2.0 * columns.shape[-1])

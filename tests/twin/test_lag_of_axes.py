@@ -39,8 +39,11 @@ def test_is_what_plays_of_all_radii_up_to_one_do() -> None:
     assert np.max(found) == pytest.approx(0.25 * reach, rel=1e-3)
 
 
-@pytest.mark.parametrize("fall", [1.5, 2.0, 4.0])
-@pytest.mark.parametrize("memory_deg", [0.3, 12.0, 45.0])
+@pytest.mark.parametrize(
+    ("memory_deg", "fall"),
+    # The polygon of 24 plays leaves the steepest fall by so much that its longest memory is shorter.
+    [*((memory, fall) for memory in (0.3, 12.0, 60.0) for fall in (1.5, 2.0)), (0.3, 4.0), (12.0, 4.0), (45.0, 4.0)],
+)
 def test_lags_by_the_stated_one_in_the_mean(memory_deg: float, fall: float) -> None:
     """However long the memory; a lag of 0.01 deg moves the turning points of the axes by as much, of 90 degrees."""
     forth = _error_deg(_there_and_back(), lag_deg=0.01, memory_deg=memory_deg, on_axes=1.0, fall=fall)[1440:2880]

@@ -29,7 +29,7 @@ from diagnosis.report.wording import (
 _LACKS = {
     "a reference": ("no reference", "record a reference encoder beside it"),
     "both directions": ("one direction", "turn in both directions"),
-    "moving shaft": ("stopped at each reading, or no speed_rpm", "record speed_rpm while the shaft moves, with time_s"),
+    "moving shaft": ("at rest at each reading, or no speed_rpm", "record speed_rpm while the shaft moves, with time_s"),
     "one turn": ("less than a turn", "cover a whole turn"),
     "several turns": ("less than two turns one way", "record several turns one way"),
     "temperature_c": ("no temperature_c", "record temperature_c"),

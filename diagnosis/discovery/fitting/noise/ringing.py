@@ -23,7 +23,7 @@ _MOST_BINS = 1500
 
 
 def ringing(fit: Fit) -> Noise | None:
-    """The resonance that explains best what the fit leaves of the angle; None where the record cannot show one.
+    """The resonance that explains best what the fit leaves of the angle; None where none can be told.
 
     By the likelihood of the cosine coefficients, each of which has the variance that the spectrum says (P. Whittle,
     Ark. Mat. 2 (1953) 423): first on a grid as fine as the bands are wide, then about its best point.
@@ -34,6 +34,8 @@ def ringing(fit: Fit) -> Noise | None:
     each = -(-rows // _MOST_BINS)
     bins = rows // each
     squares = np.mean(fit.cosine_residual[0][: bins * each].reshape(bins, each) ** 2, axis=1)
+    if not squares.any():
+        return None
 
     def cost(spectrum: Array) -> float:
         return float(np.log(np.mean(squares / spectrum)) + np.mean(np.log(spectrum)))

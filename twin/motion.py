@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -11,12 +10,9 @@ import numpy as np
 
 from twin.angles import TAU, Array, IntArray, wrap
 from twin.estimated_motion import EstimatedMotion
+from twin.pace import LEAST_SPEEDS, speed_over_time
 from twin.recordings import Recordings, Setup
 from twin.runs import runs
-
-STOP_AND_MEASURE_S = 0.02
-"""Readings farther apart than this, with no speed recorded, were taken at standstill."""
-
 
 LEAST_FIELD_RATIO = 1.1
 """Between two recordings, from which on what follows the field is told from what does not."""
@@ -27,10 +23,10 @@ RPM = TAU / 60.0
 """One revolution a minute [rad/s]."""
 LEAST_SPAN_K = 5.0
 """Span of temperatures, or difference between two recordings, from which on drifts may show."""
-LEAST_SPEEDS = 0.2
-"""Difference of two speeds, as a share of the faster, from which on what follows them may show."""
 LEAST_CURRENTS = 0.2
 """Span of the motor's currents, as a share of the largest, from which on what follows them may show."""
+AT_ONE_ANGLE_RAD = 1e-4
+"""Turn below which two readings were taken at one angle."""
 NOMINAL_C = 25.0
 """Temperature [C] at which figures are stated, from which drifts count, and of readings that record none."""
 
@@ -250,7 +246,7 @@ class Motion:
     @cached_property
     def points_per_turn(self) -> float:
         """Distinct angles a turn of travel: readings repeated in place count once."""
-        moved = int(np.count_nonzero(np.abs(np.diff(self.shaft_rad)) > 1e-4))
+        moved = int(np.count_nonzero(np.abs(np.diff(self.shaft_rad)) > AT_ONE_ANGLE_RAD))
         return (moved + 1) / max(self.turns, 1e-9) if self.turns > 0.5 else float(moved + 1)
 
     @cached_property
@@ -268,7 +264,7 @@ class Motion:
         if np.any(self.speed_rad_s != 0.0):
             found.add("moving shaft")
         # Where the bench goes from one steady speed to the next, a few rows alone are accelerated.
-        if {"time_s", "speed_rpm"} <= self.columns and _mostly_there(np.abs(self.acceleration_rad_s2)):
+        if "time_s" in self.columns and _mostly_there(np.abs(self.acceleration_rad_s2)):
             found.add("varying speed")
         if np.ptp(self.shaft_rad) > 0.95 * TAU * (1 - 1 / max(self.points_per_turn, 2)):
             found.add("one turn")
@@ -346,10 +342,9 @@ def _speed(shaft_rad: Array, way: Array, time_s: Array | None, speed_rad_s: Arra
     if speed_rad_s is not None:
         # A recorded speed may be unsigned: its sense is the direction's.
         return np.asarray(np.abs(np.asarray(speed_rad_s, dtype=np.float64)) * way)
-    n = shaft_rad.size
-    if time_s is not None and n > 2 and 0 < float(np.median(np.diff(time_s))) <= STOP_AND_MEASURE_S:
-        return infer_speed(shaft_rad, np.asarray(time_s), way)
-    return np.zeros(n)
+    if time_s is None or shaft_rad.size < 3:
+        return np.zeros(shaft_rad.size)
+    return speed_over_time(shaft_rad, np.asarray(time_s), way)
 
 
 def _without_gaps(column: Array | None) -> Array | None:
@@ -373,25 +368,3 @@ def infer_direction(shaft_rad: Array) -> Array:
     last = np.where(last < 0, np.flatnonzero(moving)[0], last)
     sign = np.sign(step[last])
     return np.concatenate([sign[:1], sign])
-
-
-def infer_speed(shaft_rad: Array, time_s: Array, direction: Array) -> Array:
-    """Signed speed [rad/s] (n,): the median over each stretch of one direction and one time step.
-
-    Steps over which the clock stands still or runs backwards take the pace of their neighbours.
-    """
-    dt = np.diff(time_s)
-    forward = np.flatnonzero(dt > 0)
-    if not forward.size:
-        return np.zeros(shaft_rad.size)
-    rate = np.interp(np.arange(dt.size), forward, np.diff(shaft_rad)[forward] / dt[forward])
-    # A stretch ends where the direction turns or where the pace changes by more than a fifth, for good.
-    padded = np.pad(rate, 4, mode="edge")
-    smooth = np.median(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1)
-    jump = np.abs(np.diff(smooth)) > 0.2 * np.maximum(np.abs(smooth[1:]), np.abs(smooth[:-1]))
-    cuts = [0, *(np.flatnonzero(jump) + 1).tolist(), rate.size]
-    speed = np.empty(shaft_rad.size)
-    for a, b in itertools.pairwise(cuts):
-        speed[a:b] = np.median(rate[a:b])
-    speed[-1] = speed[-2]
-    return np.abs(speed) * direction

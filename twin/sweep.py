@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, Self
 
@@ -282,6 +282,10 @@ class Sweep:
         Motion
             What was not recorded is inferred where the rows allow it, see :meth:`Motion.from_angle`.
         """
+        return self._motion
+
+    @cached_property
+    def _motion(self) -> Motion:
         if self.recordings is not None:
             rows, alone = np.arange(len(self)), replace(self, recordings=None)
             parts = [alone.part(rows[one]).motion() for one in self.recordings.slices]

@@ -21,6 +21,7 @@ from diagnosis.report.rivals_words import rivals_words
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.setup_words import setup_block
 from diagnosis.report.statements import FactorRow
+from diagnosis.report.sweep_words import sweep_facts
 from diagnosis.report.wording import assumed_words, chance
 
 _ALL_SAID = ("adequate", "explained")
@@ -66,7 +67,7 @@ def text(answer: Mapping[str, Any], *, width: int) -> str:
 
 
 def _sweep(sweep: Mapping[str, Any]) -> RenderableType:
-    said = f"{', '.join(statements.sweep_facts(sweep))}; {explained_rows(sweep)}"
+    said = f"{', '.join(sweep_facts(sweep))}; {explained_rows(sweep)}"
     return Text.assemble((sweep["name"], "bold"), "   ", said)
 
 

@@ -9,8 +9,11 @@ import numpy as np
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.result import Discovery
 from twin.angles import Array, wrap
-from twin.motion import RPM
+from twin.motion import AT_ONE_ANGLE_RAD, RPM, Motion
 from twin.sweep import Sweep
+
+TIME_AND_REFERENCE = "time_s and reference_deg"
+"""What tells the speed where no speed was recorded, and the stamps are those of a shaft in motion."""
 
 
 def facts(found: Discovery) -> dict[str, Any]:
@@ -22,14 +25,30 @@ def facts(found: Discovery) -> dict[str, Any]:
         "held_against": "given twin" if found.given is not None else "error model",
         "directions": int(np.unique(motion.direction).size),
         "points_per_turn": motion.points_per_turn,
+        "step_deg": _steps_deg(motion),
         "error_rms_deg": float(np.sqrt(np.mean(angle_error_deg(found.baseline, sweep)[kept] ** 2))),
     }
     if np.any(motion.speed_rad_s != 0.0):
         rpm = np.abs(motion.speed_rad_s) / RPM
         said["speed_rpm"] = [float(rpm.min()), float(rpm.max())]
+        said["speed_from"] = _speed_from(sweep, motion)
     if "temperature_c" in motion.columns:
         said["temperature_c"] = [float(motion.temperature_c.min()), float(motion.temperature_c.max())]
     return said
+
+
+def _steps_deg(motion: Motion) -> list[float]:
+    """Shortest and longest step [deg] from one angle to the next, a twentieth of all beyond either left out."""
+    step = np.abs(np.diff(motion.shaft_rad))
+    onward = step[step > AT_ONE_ANGLE_RAD]
+    return np.degrees(np.quantile(onward, [0.05, 0.95])).tolist() if onward.size else [0.0, 0.0]
+
+
+def _speed_from(sweep: Sweep, motion: Motion) -> str:
+    """The columns, or the estimate, that tell how fast the shaft turned."""
+    if sweep.estimated is not None:
+        return "estimated motion"
+    return "speed_rpm" if "speed_rpm" in motion.columns else TIME_AND_REFERENCE
 
 
 def angle_error_deg(fit: Fit, sweep: Sweep) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.result import Discovery
+from diagnosis.report.sweep_words import speeds_shown
 from diagnosis.report.wording import plain
 from twin.angles import TAU, Array
 from twin.catalogue import find
@@ -119,10 +120,9 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
     motion = answer.get("motion")
     if motion is None:
         return []
-    slow, fast = motion["turns_per_s"]
     said = [
         "No reference: the shaft's motion is estimated from the readings together with their errors, at "
-        f"{plain(slow, 3)} to {plain(fast, 3)} turns/s"
+        + speeds_shown([60.0 * one for one in motion["turns_per_s"]])
         + (f" in {motion['stretches']} stretches" if motion["stretches"] > 1 else "")
         + (f"; {motion['rows_aside']} rows without an even turning are left out" if motion["rows_aside"] else "")
     ]

@@ -11,7 +11,7 @@ from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.result import Discovery
 from diagnosis.report import causes as cause_pictures
 from diagnosis.report import pictures as drawn
-from diagnosis.report import statements, tables
+from diagnosis.report import statements, sweep_words, tables
 from diagnosis.report.change_words import change_name
 from diagnosis.report.data import Readings, readings, two_ways
 from diagnosis.report.facts import facts
@@ -107,9 +107,9 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
     sweep = answer["sweep"]
     cards = [
         ("readings fitted", number(sweep["fitted"]), f"of {sweep['rows']}"),
-        ("turns travelled", number(sweep["turns"], statements.turns_shown(sweep["turns"])), ""),
+        ("turns travelled", number(sweep["turns"], sweep_words.turns_shown(sweep["turns"])), ""),
         ("directions", str(said["directions"]), ""),
-        ("between readings", statements.step_shown(sweep), "deg"),
+        ("between readings", sweep_words.step_shown(sweep), "deg"),
     ]
     for key, unit in (("speed_rpm", "rpm"), ("temperature_c", "°C")):
         if key in said:
@@ -118,7 +118,7 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
     if sweep["output_bits"] is not None:
         cards.append(("grid of the output", number(sweep["output_bits"]), "bits"))
     columns = ", ".join(f"<code>{escape(column)}</code>" for column in sweep["columns"])
-    facts_said = f"{', '.join(statements.sweep_facts(sweep))}; {explained_rows(sweep)}"
+    facts_said = f"{', '.join(sweep_words.sweep_facts(sweep))}; {explained_rows(sweep)}"
     words = (
         f"<p>{_text(facts_said)}.</p>"
         f"<p>Columns: {columns}. The noise is best described as {escape(answer['noise'])}.</p>"

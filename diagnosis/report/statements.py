@@ -70,36 +70,6 @@ NOT_CHANGED = "All else of the given twin has not changed beyond chance"
 OTHERS_HELD = f"{NOT_CHANGED}, and stays as it was"
 FITTED_ANEW = f"{NOT_CHANGED}; it was fitted anew, as the twin had hardly told some of it from the rest"
 _MOST_DIGITS = 7
-_SEARCHED = "of these {used} were searched, in stretches spread over the record"
-
-
-# ---- the sweep --------------------------------------------------------------------------------------------------
-
-
-def sweep_facts(sweep: Mapping[str, Any]) -> list[str]:
-    """What was measured, fact by fact."""
-    turns = sweep["turns"]
-    said = [f"{sweep['rows']} readings"]
-    if sweep.get("set_aside"):
-        said.append(_SEARCHED.format(used=sweep["used"]))
-    said.append(f"{turns_shown(turns)} {'turn' if turns < 1.05 else 'turns'} travelled")
-    if "directions" in sweep:
-        said.append("both directions" if sweep["directions"] == 2 else "one direction")
-    if "points_per_turn" in sweep:
-        said.append(f"{step_shown(sweep)} deg apart")
-    if sweep["output_bits"] is not None:
-        said.append(f"output on a {sweep['output_bits']}-bit grid")
-    return said
-
-
-def turns_shown(turns: float) -> str:
-    """Turns travelled, to the digits that mean something."""
-    return plain(turns, 2 if turns < 10 else 3)
-
-
-def step_shown(sweep: Mapping[str, Any]) -> str:
-    """Degrees between readings."""
-    return plain(360.0 / sweep["points_per_turn"], 2)
 
 
 # ---- the baseline -----------------------------------------------------------------------------------------------

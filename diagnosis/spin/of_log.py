@@ -14,7 +14,7 @@ from diagnosis.spin.stretches import Turning, turning
 from twin.angles import TAU, Array, IntArray
 from twin.errors import SweepError
 from twin.estimated_motion import EstimatedMotion, Torque
-from twin.motion import LEAST_SPEEDS
+from twin.pace import LEAST_SPEEDS
 from twin.runs import runs
 from twin.spin import FEWEST_ROWS, Spin
 from twin.sweep import Sweep

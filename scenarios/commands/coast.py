@@ -12,7 +12,8 @@ from scenarios.commands.protocol import MOST_READINGS
 from twin.angles import Array
 from twin.errors import UserError
 from twin.limits import OutOfRangeError, require_within
-from twin.motion import RPM, STOP_AND_MEASURE_S, Motion
+from twin.motion import RPM, Motion
+from twin.pace import STOP_AND_MEASURE_S
 
 OPTIONS = {
     "start_rpm": "--start-rpm",

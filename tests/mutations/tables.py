@@ -11,6 +11,7 @@ from tests.mutations.gaps import GAPS
 from tests.mutations.logs import LOGS
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
+from tests.mutations.pace import PACE
 from tests.mutations.paper import PAPER
 from tests.mutations.parts import PARTS
 from tests.mutations.periods import PERIODS
@@ -45,6 +46,7 @@ def mutations() -> tuple[Mutation, ...]:
         *THERMAL,
         *WORDS,
         *SETUPS,
+        *PACE,
         *SPINS,
         *settings(),
         *signs(),

@@ -20,6 +20,7 @@ from diagnosis.report import row_counts, statements
 from diagnosis.report.factor_names import LABELS, SCALES
 from diagnosis.report.page import page
 from diagnosis.report.row_counts import explained_rows
+from diagnosis.report.sweep_words import sweep_facts
 from diagnosis.report.wording import figure
 from scenarios.commands.protocol import Protocol
 from tests.diagnosis.report.test_page import BASE, numbers_of
@@ -165,7 +166,7 @@ def check(found: Explanation) -> None:
 
 def stated(answer: dict[str, Any]) -> Iterator[str]:
     """Words that both show as they are: facts, figures with their intervals, causes with theirs, the verdict."""
-    yield ", ".join(statements.sweep_facts(answer["sweep"]))
+    yield ", ".join(sweep_facts(answer["sweep"]))
     yield explained_rows(answer["sweep"])
     yield statements.baseline_words(answer)
     yield statements.floor_words(answer)

@@ -168,3 +168,41 @@ def test_a_current_is_read_in_the_unit_of_its_name(name: str, factor: float, tmp
     path = tmp_path / "log.csv"
     path.write_text(table({"encoder_deg": REFERENCE_DEG, "sensor_deg": MEASURED_DEG, name: np.round(factor * current)}))
     np.testing.assert_allclose(read_log(path).columns["current_a"], np.round(factor * current) / factor)
+
+
+OTHER_LANGUAGES = {
+    "German": ("Zeit [s]", "Referenzwinkel [deg]", "Istwinkel [deg]"),
+    "German, as set": ("Zeitstempel [s]", "Sollwert [deg]", "Messwert [deg]"),
+    "French": ("Temps [s]", "Angle de référence [deg]", "Angle mesuré [deg]"),
+    "Italian": ("Tempo [s]", "Angolo di riferimento [deg]", "Angolo misurato [deg]"),
+    "Spanish": ("Tiempo [s]", "Ángulo de referencia [deg]", "Ángulo medido [deg]"),
+}
+
+
+@pytest.mark.parametrize("name", OTHER_LANGUAGES)
+@pytest.mark.parametrize("swapped", [False, True])
+def test_names_of_other_languages_say_which_angle_is_which(name: str, swapped: bool, tmp_path: Path) -> None:
+    time, reference, measured = OTHER_LANGUAGES[name]
+    columns = {time: 0.1 * np.arange(ROWS), reference: REFERENCE_DEG, measured: MEASURED_DEG}
+    path = tmp_path / "log.csv"
+    path.write_text(table(dict(reversed(columns.items())) if swapped else columns), encoding="utf-8")
+    found = read_log(path)
+    assert found.columns["reference_deg"] == pytest.approx(REFERENCE_DEG, abs=1e-3)
+    assert found.columns["measured_deg"] == pytest.approx(MEASURED_DEG, abs=1e-3)
+    assert "time_s" in found.columns
+
+
+def test_of_two_guesses_it_is_said_in_what_they_differ(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(table({"Zeit [s]": 0.1 * np.arange(ROWS), "A [deg]": REFERENCE_DEG, "B [deg]": MEASURED_DEG}))
+    with pytest.raises(SweepError, match="reference_deg is the angle that is taken as true") as caught:
+        read_log(path)
+    # Whichever is copied, the time is not lost.
+    assert str(caught.value).count("time_s='Zeit [s]'") == 2
+
+
+def test_an_error_and_a_correction_are_asked_back_by_their_signs(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(table({"Winkel [deg]": REFERENCE_DEG, "Korrektur [deg]": np.sin(np.radians(REFERENCE_DEG))}))
+    with pytest.raises(SweepError, match="an error is the reading less the true angle"):
+        read_log(path)

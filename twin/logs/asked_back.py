@@ -26,10 +26,11 @@ class OpenGuess(SweepError):
         self.example = example
 
 
-def raise_several(table: Table, fitting: Sequence[tuple[Column, ...]]) -> NoReturn:
-    """Raise OpenGuess: nothing speaks for one of the statements that fit."""
+def raise_several(table: Table, fitting: Sequence[tuple[Column, ...]], meaning: str = "") -> NoReturn:
+    """Raise OpenGuess: nothing speaks for one of the statements that fit. ``meaning`` says in what they differ."""
     count = "two" if len(fitting) == 2 else "several"
-    raise_open(table, f"{count} guesses fit", [text_of(one) for one in fitting], fit=True)
+    what = f"{count} guesses fit" + (f": {meaning}" if meaning else "")
+    raise_open(table, what, [text_of(one) for one in fitting], fit=True)
 
 
 def raise_open(table: Table, what: str, options: Sequence[str], *, fit: bool = False) -> NoReturn:

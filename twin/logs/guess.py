@@ -27,6 +27,7 @@ from twin.logs.table import LARGEST, Table
 
 _SIDES = 2
 _ERROR_IS = "an error is the reading less the true angle, a correction the reverse"
+_WHICH_IS_TRUE = "reference_deg is the angle that is taken as true, and neither names nor values say which is"
 _FEWEST = 4
 """Numbers that a column must hold to be judged."""
 _MOST_ANGLES = 12
@@ -78,7 +79,7 @@ def guessed(table: Table) -> Guess:
             f"{table.file}: {len(angles)} columns may be angles (found {table.listed()}); say which are meant: "
             '--columns "reference_deg=NAME, measured_deg=NAME"'
         )
-    pair = _pair(table, said, angles)
+    pair = _pair(table, said, angles, usable)
     found = channels(table, said, usable, None if pair is None else pair[1].of(table))
     if pair is None and not found.columns and (listed := statements_of_errors(table, said, usable)):
         return _one_of(listed, (_ERROR_IS,), table)
@@ -108,7 +109,7 @@ def _guessed_of_entries(table: Table) -> Guess:
 def _one_of(fitting: Sequence[tuple[Column, Column]], notes: tuple[str, ...], table: Table) -> Guess:
     """The one statement that fits. Raises OpenGuess where more do."""
     if len(fitting) > 1:
-        raise_several(table, fitting)
+        raise_several(table, fitting, "; ".join(notes))
     return Guess(fitting[0], notes, unused_by(fitting[0], table))
 
 
@@ -135,7 +136,9 @@ def _left(table: Table, place: int, why: str) -> str:
     return f"{table.names[place] or f'#{place + 1}'}{f' ({why})' if why else ''}"
 
 
-def _pair(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[Column, Column] | None:
+def _pair(
+    table: Table, said: tuple[Meaning, ...], angles: list[int], usable: list[int]
+) -> tuple[Column, Column] | None:
     """The reference and the sensor; None where there are not two angles. Raises SweepError, see :func:`guessed`."""
     fitting = list(_candidates(table, said, angles))
     if not fitting:
@@ -146,8 +149,18 @@ def _pair(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[C
         _raise_odd_factor(table, said, angles)
         return _by_name_alone(table, said, angles)
     if len(fitting) > 1:
-        raise_several(table, [one.columns(table) for one in fitting])
+        swapped = {(one.reference, one.measured) for one in fitting} >= {(fitting[0].measured, fitting[0].reference)}
+        whole = [_with_others(table, said, usable, one.columns(table)) for one in fitting]
+        raise_several(table, whole, _WHICH_IS_TRUE if swapped else "")
     return fitting[0].columns(table)
+
+
+def _with_others(
+    table: Table, said: tuple[Meaning, ...], usable: list[int], pair: tuple[Column, Column]
+) -> tuple[Column, ...]:
+    """A reference and a sensor, and what else of a sweep the log holds beside them."""
+    rest = others(table, said, usable, pair[0].of(table))
+    return in_order((*pair, *channels(table, said, usable, pair[1].of(table)).columns, *rest.columns))
 
 
 def _turned(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[Column, Column] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from dataclasses import dataclass
 
 from twin.logs.units import COUNTS, UNITS, Unit, unit_of
@@ -12,31 +13,37 @@ _CHIP = re.compile(
     r"as5\d{3}|tle5\d{3}|tli\d{4}|ma[3-7]\d\d|mt6\d{3}|mlx\d+|a133\d|aeat\d*|kmz\d*|tmag\d*|mag(?=_|\d|$)"
 )
 _WORDS = {
-    "reference": "ref reference true truth soll referenz nominal ideal expected heidenhain autocollimator",
+    "reference": "ref reference true truth soll referenz nominal ideal expected heidenhain autocollimator "
+    "consigne theorique referencia riferimento nominale vero vera verdadero",
     "driven": "enc encoder stage stepper step steps motor cmd commanded command target setpoint mech mechanical shaft "
-    "actual table rotary position_ref dividing index_table",
-    "sensor": "meas measured measurement sensor dut hall magnetic magnet ist gemessen sensed tmr amr gmr",
-    "read": "angle output out position pos reading theta phi winkel value rotor",
-    "time": "t time timestamp ts zeit elapsed uptime millis micros clock",
-    "temperature": "temp temperature temperatur",
-    "speed": "rpm speed velocity vel omega drehzahl",
-    "turn": "turn turns rev revolution revolutions lap umdrehung sweep cycle",
-    "direction": "dir direction richtung sense",
+    "actual table rotary position_ref dividing index_table geber drehgeber welle moteur motore codeur codificador",
+    "sensor": "meas measured measurement sensor dut hall magnetic magnet ist gemessen mess messung sensed tmr amr gmr "
+    "capteur mesure mesuree sensore misura misurato medido medida",
+    "read": "angle output out position pos reading theta phi winkel value rotor wert lage angolo angulo lecture "
+    "lettura lectura posizione posicion valeur valore valor",
+    "time": "t time timestamp ts zeit elapsed uptime millis micros clock temps tempo tiempo zeitstempel",
+    "temperature": "temp temperature temperatur temperatura",
+    "speed": "rpm speed velocity vel omega drehzahl geschwindigkeit vitesse velocita velocidad",
+    "turn": "turn turns rev revolution revolutions lap umdrehung sweep cycle tour giro vuelta",
+    "direction": "dir direction richtung drehrichtung sense sens senso sentido",
     "sin": "vy sin sine sinus",
     "cos": "vx cos cosine cosinus",
-    "gap": "gap airgap",
+    "gap": "gap airgap luftspalt entrefer traferro",
     "mounting": "mounting",
-    "current": "current amps iq",
+    "current": "current amps iq strom courant corrente corriente",
     "magnitude": "magnitude",
     "agc": "agc",
     "status": "status",
     "frame": "frame frames framecounter",
-    "error": "error err deviation dev abweichung fehler",
-    "correction": "correction corrections corr comp compensation korrektur",
+    "error": "error err deviation dev abweichung fehler erreur errore",
+    "correction": "correction corrections corr comp compensation korrektur correzione correccion",
     "other": "index idx sample samples n no nr row i id flag flags diff mag_field "
     "voltage torque crc counter load power valid ok note comment",
 }
+"""Words of names, without accents, in English, German, French, Italian and Spanish."""
 _MEANING = {word: role for role, words in _WORDS.items() for word in words.split()}
+_SHORTEST_PART = 3
+"""Letters of either word that a compound is made of, as Referenzwinkel and Istwert are."""
 _ROLE_QUANTITY = {"time": "time", "temperature": "temperature", "speed": "speed", "gap": "length", "current": "current"}
 _ANGLES = frozenset({"reference", "driven", "sensor", "read"})
 _PARTED = (
@@ -152,5 +159,18 @@ def _last_word(text: str) -> tuple[str, str]:
 
 
 def _words(bare: str) -> list[str]:
-    """The words of a name in small letters, also of ``encAngle`` and ``ENC_ANGLE``."""
-    return [word.lower() for word in re.findall(r"[A-ZÄÖÜ]+(?![a-zäöü])|[A-ZÄÖÜ]?[a-zäöüß]+", bare)]
+    """The words of a name in small letters without accents, also of ``encAngle``, ``ENC_ANGLE`` and ``Sollwinkel``."""
+    plain = "".join(letter for letter in unicodedata.normalize("NFKD", bare) if not unicodedata.combining(letter))
+    found = [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-zß]+", plain)]
+    return [part for word in found for part in _parts(word)]
+
+
+def _parts(word: str) -> tuple[str, ...]:
+    """The two words that one is made of, where it is none that is known by itself."""
+    if word in _MEANING:
+        return (word,)
+    for end in range(_SHORTEST_PART, len(word) - _SHORTEST_PART + 1):
+        parts = word[:end], word[end:]
+        if all(part in _MEANING for part in parts):
+            return parts
+    return (word,)

@@ -12,9 +12,8 @@ from diagnosis.factors.gap_model import per_product
 from diagnosis.factors.modulus import modulus_interval
 from diagnosis.factors.mounting import coefficients
 from twin.angles import Array, wrap_deg
+from twin.confidence import Z95
 from twin.magnet.magnet import Magnet
-
-_NORMAL_95 = 1.96
 
 
 @dataclass(frozen=True)
@@ -176,7 +175,7 @@ def _half_angle(value: complex, covariance: Array) -> float:
     """Half width [deg] of the 95 % interval of a direction, 360 where it is open."""
     across = np.array([-value.imag, value.real]) / max(abs(value), 1e-300)
     error = float(np.sqrt(across @ covariance @ across))
-    return float(min(np.degrees(_NORMAL_95 * error / max(abs(value), 1e-300)), 360.0))
+    return float(min(np.degrees(Z95 * error / max(abs(value), 1e-300)), 360.0))
 
 
 def _as_matrix(factor: complex) -> Array:

@@ -13,6 +13,7 @@ from diagnosis.factors.gap_model import ROWS
 from diagnosis.factors.gap_sets import ON_AXIS
 from diagnosis.factors.mounting import HELD_WORDS, Mounting
 from twin.baseline import FACTORS
+from twin.confidence import Z95
 
 _MOST_PLACES = 3
 _CLEAR_SIGMA = 3.0
@@ -130,7 +131,7 @@ def _electronics(found: AirGaps) -> str:
     )
     return (
         f"air gaps: {part} (gain ratio {1.0 + value.real:.5f}, phase {np.degrees(value.imag):+.3f} deg, "
-        f"±{1.96 * error:.2g} and ±{np.degrees(1.96 * error):.2g} deg) keep their share: the electronics{other}"
+        f"±{Z95 * error:.2g} and ±{np.degrees(Z95 * error):.2g} deg) keep their share: the electronics{other}"
     )
 
 
@@ -176,7 +177,7 @@ def _order_1(found: AirGaps) -> Iterator[str]:
         value, error = found.best.pair("voltage")
         yield (
             "air gaps: the offset falls with the field, as a constant voltage and a stray field of "
-            f"{value.real:.3g}, {value.imag:.3g} mT (±{1.96 * error:.2g}) do: turning the housing in the stray field "
+            f"{value.real:.3g}, {value.imag:.3g} mT (±{Z95 * error:.2g}) do: turning the housing in the stray field "
             "parts the two"
         )
     if "reference" in causes:

@@ -17,6 +17,7 @@ from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.modulus import modulus_interval
 from diagnosis.factors.mounting import Mounting, coefficients
 from twin.angles import Array
+from twin.confidence import Z95
 from twin.magnet.magnet import Magnet
 from twin.magnet.placement import LARGEST_GAP_MM, SMALLEST_GAP_MM
 from twin.magnet.stray_field import FIELD_MT
@@ -25,7 +26,6 @@ _NODES = 201
 _LARGEST_SHARE_OF_REACH = 2.0 / 3.0
 _LARGEST_TILT_DEG = 45.0
 _STEP = 1e-6
-_NORMAL_95 = 1.96
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,7 +110,7 @@ def _off_axis(
     value, low, high = (_solve(_shares(place.magnet, gap, "sensor_x_mm"), share) for share in shares)
     if place.assumed or value is None:
         return value, low, high
-    reach = _NORMAL_95 * place.gap_error_mm
+    reach = Z95 * place.gap_error_mm
     beside = [
         _solve(_shares(place.magnet, gap + far, "sensor_x_mm"), shares[0])
         for far in (-reach, reach)

@@ -12,9 +12,9 @@ from diagnosis.factors.gap_model import ROWS, causes_of, expected
 from diagnosis.report.plotting import CURVE
 from twin.angles import Array
 from twin.baseline import FACTORS
+from twin.confidence import Z95
 
 _POINTS = 61
-_NORMAL_95 = 1.96
 _MARGIN = 0.08
 """Of the range of gaps, by which the curves run on."""
 
@@ -31,7 +31,7 @@ def draw_over_gaps(axes: Any, found: AirGaps) -> None:
         factor = FACTORS[row]
         scale = factor.per_coordinate
         value = scale * np.array([sweep.point[row] for sweep in sweeps])
-        half = scale * _NORMAL_95 * np.sqrt([sweep.covariance[k, k] for sweep in sweeps])
+        half = scale * Z95 * np.sqrt([sweep.covariance[k, k] for sweep in sweeps])
         axis.errorbar(fit.gap_mm, value, half, fmt="o", ms=3.5, lw=1.0, color="#4477aa", label="sweeps, 95 %")
         axis.plot(gaps, scale * curves[:, k], lw=1.2, color=CURVE, label=_words(found, fit))
         unit = f" [{factor.shown_unit}]" if factor.shown_unit else " [1]"

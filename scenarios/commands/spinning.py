@@ -11,6 +11,7 @@ import numpy as np
 from diagnosis.report.plotting import style
 from diagnosis.report.wording import plain
 from scenarios.commands.outputs import PICTURE, TABLE, OutputFiles
+from twin.confidence import Z95
 from twin.hall.spinning_current import (
     PHASES,
     TYPICAL,
@@ -70,7 +71,7 @@ def _stated(corner_Hz: float, error_Hz: float, frequency_Hz: np.ndarray) -> str:
     lowest = frequency_Hz[0]
     if corner_Hz < lowest:
         return f"below {_two_digits(lowest)} Hz"
-    half = 1.96 * error_Hz
+    half = Z95 * error_Hz
     digits = 1 - math.floor(math.log10(half))
     return f"{round(corner_Hz, digits):g} ±{round(half, digits):g} Hz"
 

@@ -194,7 +194,7 @@ FACTORS: tuple[Mutation, ...] = (
     Mutation(
         "mechanical.gap_known_exactly",
         "diagnosis/factors/mechanical.py",
-        "reach = _NORMAL_95 * place.gap_error_mm",
+        "reach = Z95 * place.gap_error_mm",
         "reach = 1e-9 * place.gap_error_mm",
         (
             "tests/diagnosis/factors/test_mounting.py::test_the_interval_of_a_displacement_holds_what_the_gap_leaves_open",

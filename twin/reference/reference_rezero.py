@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from twin.angles import Array, radians
+from twin.confidence import Z95
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
@@ -30,7 +31,7 @@ def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]
     zeros = np.ravel(values.get("zeros_deg", 0.0))
     spread = float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0
     # The scatter of a scatter: log-normal with a relative deviation of 1/sqrt(2 (turns - 1)).
-    factor = float(np.exp(1.96 / np.sqrt(2.0 * max(zeros.size - 1, 1))))
+    factor = float(np.exp(Z95 / np.sqrt(2.0 * max(zeros.size - 1, 1))))
     return {"spread_deg": (spread, spread / factor, spread * factor, "deg")}
 
 

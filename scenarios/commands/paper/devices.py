@@ -21,6 +21,7 @@ from scenarios.commands.paper.held import Held
 from scenarios.commands.paper.table_2 import DEVICES, Q_PER_MT, visible, with_device
 from scenarios.commands.protocol import Protocol
 from twin.angles import Array, IntArray, wrap_deg
+from twin.confidence import Z95
 from twin.presets import read_preset
 from twin.sweep import Sweep
 
@@ -103,8 +104,8 @@ def _parameters(device: Device) -> Iterator[Held]:
             what=f"{what}, from the raw channels",
             printed=there,
             ours=float(value),
-            low=float(value - 1.96 * error),
-            high=float(value + 1.96 * error),
+            low=float(value - Z95 * error),
+            high=float(value + Z95 * error),
             unit="V",
         )
 

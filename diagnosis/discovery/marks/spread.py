@@ -59,6 +59,8 @@ def squares(fit: Fit) -> Array:
     slopes = _whitened(fit, fit.cosine_jacobian[:, 0])
     taken = np.sum(slopes * (np.where(np.isfinite(covariance), covariance, 0.0) @ slopes), axis=0)
     left = _whitened(fit, fit.cosine_residual[0]) ** 2
+    # Of parameters that nothing tells apart, as on a square wave, rounding leaves variances below zero.
+    taken = np.maximum(taken, 0.0)
     return np.asarray((left + taken)[fit.observations.usable])
 
 

@@ -192,10 +192,12 @@ _MIRRORED = ("Vy_over_Ay", "beta_deg", "zero_deg")
 
 
 def senses_words(answer: Mapping[str, Any]) -> str:
-    """That sensor and output may as well count the other way; empty where the readings tell."""
+    """Which senses sensor and output count in, where signs hang on it, or that they may as well count the other way."""
     senses = answer.get("senses")
-    if senses is None or senses["decided"] or not senses["mirrored"]:
+    if senses is None:
         return ""
+    if senses["decided"] or not senses["mirrored"]:
+        return _signs_words(senses, zero="motion" not in answer) if senses["sensor"] < 0 else ""
     mirrored = senses["mirrored"]
     parameters = (answer["extended"] if answer["causes"] else answer["baseline"])["parameters"]
     there = []
@@ -208,6 +210,14 @@ def senses_words(answer: Mapping[str, Any]) -> str:
         there.append(f"{LABELS[key]} {text} {UNITS[key]}")
     pair = f"s = {-senses['sensor']:+d}, h = {-senses['output']:+d}"
     return f"The mirrored twin ({pair}) fits as well, with {listed(there)}"
+
+
+def _signs_words(senses: Mapping[str, Any], *, zero: bool) -> str:
+    """Whose signs those of offset y and phase are, and of a zero that is told."""
+    pair, other = (f"s = {k * senses['sensor']:+d}, h = {k * senses['output']:+d}" for k in (1, -1))
+    which = "Offset y, phase and zero" if zero else "Offset y and phase"
+    formula = ", in which the reading is h (s x shaft + zero) and an error" if zero else ""
+    return f"{which} are those of {pair}{formula}; the same sensor counted with {other} has them with the opposite sign"
 
 
 def sentence(words: str) -> str:

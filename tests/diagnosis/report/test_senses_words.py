@@ -22,3 +22,13 @@ def test_a_mirrored_description_is_said_to_fit_as_well() -> None:
     assert "fits as well, with offset x " in senses_words(answer)
     answer["senses"] |= {"decided": True, "mirrored": None}
     assert senses_words(answer) == ""
+
+
+def test_the_signs_of_a_sensor_that_counts_backwards_are_explained() -> None:
+    """Reading = shaft + 120 deg, with s = h = -1: the zero is -120 deg there, and 120 deg with s = h = 1."""
+    senses = {"sensor": -1, "output": -1, "decided": True, "log_odds": 6.3, "mirrored": None}
+    said = senses_words({"senses": senses})
+    assert "zero are those of s = -1, h = -1, in which the reading is h (s x shaft + zero)" in said
+    assert said.endswith("s = +1, h = +1 has them with the opposite sign")
+    assert "zero" not in senses_words({"senses": senses, "motion": {}})
+    assert senses_words({"senses": senses | {"sensor": 1, "output": 1}}) == ""

@@ -23,7 +23,7 @@ from diagnosis.discovery.proof.changes import Change
 from diagnosis.discovery.proof.predictive_check import why_not_checked
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.as_well import as_well
-from diagnosis.report.facts import facts
+from diagnosis.report.facts import facts, recorded_columns
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
 from diagnosis.report.motion import motion_answer
 from diagnosis.report.over_class import over_class
@@ -157,7 +157,7 @@ def _sweep(found: Discovery) -> dict[str, Any]:
         "rejected_rows_left_out": max(len(sweep.rejected) - MOST_LISTED, 0),
         **counts(found),
         "turns": found.fit.observations.motion.turns,
-        "columns": list(sweep.columns),
+        "columns": recorded_columns(sweep),
         **facts(found),
         "output_bits": found.bits,
         "wild": len(numbers),

@@ -24,7 +24,7 @@ MOST_ROWS = 6
 
 
 def residual_figure(found: Discovery) -> Figure:
-    """Three panels over the reference angle [deg], directions apart; of several recordings a row each.
+    """Three panels over the reference's angle [deg], directions apart; of several recordings a row each.
 
     Of the readings that the fits were made of; how many are not drawn stands above.
     Raises UserError without matplotlib.
@@ -50,7 +50,7 @@ def residual_figure(found: Discovery) -> Figure:
                 _panel(axis, angle[mask], way[mask], values[mask], title)
             row[0].set_ylabel(f"{name}\nangle error [deg]" if name else "angle error [deg]")
         for axis in axes[-1]:
-            axis.set_xlabel("reference angle [deg]")
+            axis.set_xlabel("reference angle [deg]" if sweep.estimated is None else "estimated shaft angle [deg]")
         limit = 1.1 * max(float(np.max(np.abs(values[drawn]))) for _, values in columns[1:])
         for axis in axes[0, 1:]:
             axis.set_ylim(-limit, limit)

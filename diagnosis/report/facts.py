@@ -37,6 +37,15 @@ def facts(found: Discovery) -> dict[str, Any]:
     return said
 
 
+_ESTIMATED = ("reference_deg", "direction", "speed_rpm")
+"""Columns of a sweep that hold what was estimated where no reference was recorded."""
+
+
+def recorded_columns(sweep: Sweep) -> list[str]:
+    """Names of the columns that were recorded."""
+    return [name for name in sweep.columns if sweep.estimated is None or name not in _ESTIMATED]
+
+
 def _steps_deg(motion: Motion) -> list[float]:
     """Shortest and longest step [deg] from one angle to the next, a twentieth of all beyond either left out."""
     step = np.abs(np.diff(motion.shaft_rad))

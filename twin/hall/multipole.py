@@ -99,7 +99,7 @@ MULTIPOLE = Effect(
         also=(
             "mechanics",
             "from mechanics (p teeth of a gear or belt): count them, or the sensor's own periods, and say these by "
-            "--pole-pairs",
+            "--pole-pairs, of a recording with a reference",
         ),
     ),
     drawing=drawing,

@@ -196,6 +196,8 @@ def test_the_command_lists_draws_and_checks(tmp_path: Path, capsys: pytest.Captu
     assert [answer[key] for key in ("version", "date", "seed", "command")] == [version(), day(), 0, "again"]
     out = capsys.readouterr().out
     assert "of 4 designs keep 0.5 deg" in " ".join(out.split())
+    assert "with the sensor of imc-14bit" in " ".join(out.split())
+    assert "take N35H 8 x 2.5 mm at 2.50 mm: of those that keep the demand" in " ".join(out.split())
     assert "magpylib has" in " ".join(out.split())
     for name in ("map.png", "designs.csv", "best.json", "best.toml"):
         assert (tmp_path / "s" / name).stat().st_size > 0
@@ -210,8 +212,17 @@ def test_the_command_lists_draws_and_checks(tmp_path: Path, capsys: pytest.Captu
     assert twin.read_bytes() == written
 
 
+def test_a_demand_that_no_design_keeps_is_no_offer(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    chosen = study(diameter_mm="6", air_gap_mm="2,2.5")
+    hopeless = replace(chosen.demand, max_error_deg=1e-3)
+    results, machines = Results(plot=False), Machines(workers=1)
+    run("imc-14bit", tmp_path, space=chosen.space, demand=hopeless, results=results, machines=machines, seed=0)
+    assert "take none; N35H 6 x 2.5 mm at" in " ".join(capsys.readouterr().out.split())
+
+
 @pytest.mark.parametrize(
-    ("limit", "words"), [(0.5, ("keeps error", "best: N35H, 8 mm")), (1e-3, ("nowhere:", "closest:"))]
+    ("limit", "words"),
+    [(0.5, ("keeps error", "best: N35H, 8 mm")), (1e-3, ("nowhere:", "closest, which does not keep it:"))],
 )
 def test_the_map_names_the_design_that_it_marks(tmp_path: Path, limit: float, words: tuple[str, str]) -> None:
     pytest.importorskip("matplotlib")
@@ -222,6 +233,8 @@ def test_the_map_names_the_design_that_it_marks(tmp_path: Path, limit: float, wo
     said = [text.get_text() for text in figure.legends[0].get_texts()]
     for line, word in zip(said, words, strict=True):
         assert line.startswith(word)
+    marks = [line.get_marker() for line in figure.axes[0].lines if line.get_marker() != "None"]
+    assert marks == (["*"] if limit == 0.5 else ["X"])
     assert figure.get_suptitle() == "Each place shows the best over height"
 
 

@@ -15,19 +15,22 @@ _MOST = 6
 def distance_figure(found: Sequence[Distance]) -> Any:
     """Two panels over the air gap: the first magnet's error by cause, and each magnet's error with its least marked."""
     plt = style()
-    figure, panels = plt.subplots(1, 2, figsize=(10.5, 4.8), layout="constrained", sharey=True)
+    figure, panels = plt.subplots(1, 2, figsize=(10.5, 4.8), layout="constrained")
     first = found[0]
     panels[0].plot(first.air_gap_mm, first.error_deg, color="black", linewidth=2.0, label="all together")
     for name, error in first.causes_deg.items():
         panels[0].plot(first.air_gap_mm, error, linewidth=1.1, label=name)
-    _mark(panels[0], first, "black")
-    panels[0].set(title=first.name, ylabel="largest error over a turn [deg]")
+    _mark(panels[0], first, "black", mark="*", size=12.0)
+    panels[0].set(title=f"{first.name}; star: least non-linear distance", ylabel="largest error over a turn [deg]")
     for one in found[:_MOST]:
         (line,) = panels[1].plot(one.air_gap_mm, one.error_deg, label=_label(one))
-        _mark(panels[1], one, line.get_color())
-    panels[1].set(title="magnets of the best designs; star: least non-linear distance")
+        # Stars of magnets that are alike would lie on one another; strokes stand side by side.
+        _mark(panels[1], one, line.get_color(), mark="|", size=22.0)
+    panels[1].set(title="magnets of the best designs; stroke: least non-linear distance")
+    panels[0].set(ylim=(0.0, None))
+    panels[1].margins(y=0.1)
     for panel in panels:
-        panel.set(xlabel="air gap [mm]", ylim=(0.0, None))
+        panel.set(xlabel="air gap [mm]")
         panel.title.set_fontsize(9)
         panel.grid(alpha=0.3)
         panel.legend(fontsize=7)
@@ -36,9 +39,9 @@ def distance_figure(found: Sequence[Distance]) -> Any:
     return figure
 
 
-def _mark(panel: Any, one: Distance, colour: str) -> None:
-    place = one.least
-    panel.plot(one.air_gap_mm[place], one.error_deg[place], "*", ms=12, mfc="white", mec=colour, color=colour, zorder=5)
+def _mark(panel: Any, one: Distance, colour: str, *, mark: str, size: float) -> None:
+    place = one.air_gap_mm[one.least], one.error_deg[one.least]
+    panel.plot(*place, mark, ms=size, mfc="white", mec=colour, mew=1.6, zorder=5)
 
 
 def _label(one: Distance) -> str:

@@ -27,16 +27,16 @@ def map_figure(found: Mapping[str, Array], study: DesignStudy) -> Any:
     )
     winner = int(ranking(found, study.demand)[0])
     best = found["design"][winner]
+    # A star is for the taking; what keeps no demand is crossed out.
+    mark = {"marker": "*" if feasible(found, study.demand)[winner] else "X", "ms": 13, "mfc": "white", "mec": "black"}
     for panel, name, label, colours in shown:
         _panel(figure, panel, found, study, name=name, label=label, colours=colours)
-        panel.plot(best[_DIAMETER], best[_GAP], "*", ms=13, mfc="white", mec="black", clip_on=False, zorder=5)
+        panel.plot(best[_DIAMETER], best[_GAP], ls="", **mark, clip_on=False, zorder=5)
         panel.set_xlabel("diameter of the magnet (mm)")
     panels[0].set_ylabel("air gap (mm)")
     handles = [
         plt.Line2D([], [], color=_KEEPS, lw=2.2, label=_demand_in_words(found, study.demand)),
-        plt.Line2D(
-            [], [], ls="", marker="*", ms=13, mfc="white", mec="black", label=_in_words(best, winner, found, study)
-        ),
+        plt.Line2D([], [], ls="", **mark, label=_in_words(best, winner, found, study)),
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=1, frameon=False)
     if study.space.sampling == "grid" and (besides := _besides(study)):
@@ -66,7 +66,7 @@ def _demand_in_words(found: Mapping[str, Array], demand: Demand) -> str:
 
 def _in_words(design: Array, row: int, found: Mapping[str, Array], study: DesignStudy) -> str:
     """The design that the star stands for."""
-    chosen = "best" if feasible(found, study.demand)[row] else "closest"
+    chosen = "best" if feasible(found, study.demand)[row] else "closest, which does not keep it"
     return (
         f"{chosen}: {study.space.grades[int(found['grade'][row])]}, {design[_DIAMETER]:.3g} mm across, "
         f"{design[_HEIGHT]:.3g} mm high, air gap {design[_GAP]:.3g} mm; error {found['error_p95_deg'][row]:.2g}°, "

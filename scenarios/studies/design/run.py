@@ -131,7 +131,7 @@ def run(
         check = check_design(study, found["design"][winner], found["grade"][winner])
         listed = order[: results.best]
         over = distances(study, found["design"][listed], found["grade"][listed].astype(int))
-        show(found, listed, study, check)
+        show(found, listed, study, check, sensor=twin)
         show_distances(over)
         told = _answer(found, listed, study, check, made)
         contents: dict[Path | None, Any] = {

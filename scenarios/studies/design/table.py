@@ -13,16 +13,26 @@ from scenarios.studies.design.distance import Distance
 from scenarios.studies.design.study import DesignStudy, feasible
 from twin.angles import Array, IntArray
 
+_COLUMNS = (
+    "field: at the sensor, from the warmest to the coldest; margin: from it to the nearer end of the window, below 0 "
+    "outside of it",
+    "error: as designed, at its worst over turn and temperature; 95 %: what 95 % of the mountings keep; 1 mT: what so "
+    "much stray field adds",
+    "noise: bits that it leaves of a turn; yield: mountings that keep the demand",
+)
+"""What the columns of the table mean."""
+_WHY = "largest yield, and of equal ones the smallest error of 95 % of the mountings"
 
-def show(found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: Check) -> None:
-    """Print how many designs keep the demand, the best of them, what their errors are made of, and the check."""
+
+def show(found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: Check, *, sensor: str) -> None:
+    """Print how many designs of a sensor keep the demand, which to take, what its error is made of, and the check."""
     console, demand, space = Console(highlight=False), study.demand, study.space
     good = int(np.count_nonzero(feasible(found, demand)))
     low, high = demand.temperature_c
     console.print(
         f"[bold]{good} of {space.designs} designs[/bold] keep {demand.max_error_deg:g} deg and "
         f"{demand.window_mT[0]:g} to {demand.window_mT[1]:g} mT from {low:g} to {high:g} C in "
-        f"{100 * demand.min_yield:g} % of {demand.mountings} mountings"
+        f"{100 * demand.min_yield:g} % of {demand.mountings} mountings, with the sensor of {sensor}"
     )
     if not good:
         console.print("None does: what follows comes closest. A wider --air-gap, --diameter or --tolerance may.")
@@ -43,7 +53,14 @@ def show(found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: 
     for row in rows:
         table.add_row(*(write(int(row)) for write in columns.values()))
     console.print(table)
-    console.print("95 %: error that 95 % of the mountings keep; 1 mT: what so much stray field adds", style="dim")
+    for words in _COLUMNS:
+        console.print(words, style="dim")
+    if good:
+        console.print(
+            f"[bold]take {_named(found, rows[0], study)}[/bold]: of those that keep the demand it has the {_WHY}"
+        )
+    else:
+        console.print(f"take none; {_named(found, rows[0], study)} comes closest, by yield and then by error")
     causes = {
         name.partition(".")[2]: column[rows[0]] for name, column in found.items() if name.startswith("error_deg.")
     }
@@ -55,13 +72,21 @@ def show(found: Mapping[str, Array], rows: IntArray, study: DesignStudy, check: 
     )
 
 
+def _named(found: Mapping[str, Array], row: int, study: DesignStudy) -> str:
+    design = found["design"][row]
+    return f"{study.space.grades[int(found['grade'][row])]} {_size(design)} at {design[3]:.2f} mm"
+
+
 def show_distances(found: Sequence[Distance]) -> None:
     """Print at which distance each magnet of the best designs is least non-linear."""
     console = Console(highlight=False)
     if not found:
         console.print("least non-linear distance: none, as nothing in this twin depends on the field")
         return
-    console.print("least non-linear distance, where what depends on the field errs least (25 C, on the axis):")
+    console.print(
+        "least non-linear distance of each magnet, where what depends on the field errs least (25 C, on the axis, "
+        "mountings and window not asked):"
+    )
     for one in found:
         console.print(f"  {one.words()}")
 

@@ -45,6 +45,12 @@ class Readings:
             return self.motion.time_s - self.motion.time_s[0], "time / s"
         return np.arange(1.0, len(self.motion) + 1.0), "reading number"
 
+    @property
+    def extended(self) -> bool:
+        """Whether the extended twin leaves anything else than the baseline, beyond rounding."""
+        apart = float(np.max(np.abs(self.after_deg - self.before_deg)))
+        return apart > 1e-6 * float(np.max(np.abs(self.before_deg)))
+
 
 def readings(found: Discovery) -> Readings:
     """The readings of a sweep with what the baseline and the extended twin leave of them."""

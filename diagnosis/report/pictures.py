@@ -94,11 +94,16 @@ def _limits(values: Array) -> tuple[float, float]:
 def over_clock(read: Readings) -> Plot:
     """The residual before and after in the order in which the readings were taken."""
     clock, name = read.clock
-    layers = [
-        *by_way(read, clock, read.before_deg, "baseline", colour="c-before"),
-        *by_way(read, clock, read.after_deg, "extended twin", colour="c-after"),
-    ]
+    layers = _before_and_after(read, clock, clock)
     return Plot(Axis(name), Axis(_RESIDUAL), layers, f"residual before and after over {name}")
+
+
+def _before_and_after(read: Readings, before_at: Array, after_at: Array) -> list[Layer]:
+    """The residual of the baseline, and that of the extended twin where it is another one."""
+    layers = [*by_way(read, before_at, read.before_deg, "baseline", colour="c-before")]
+    if read.extended:
+        layers += by_way(read, after_at, read.after_deg, "extended twin", colour="c-after")
+    return layers
 
 
 def over_condition(read: Readings, values: Array, label: str) -> Plot:
@@ -113,10 +118,7 @@ def over_condition(read: Readings, values: Array, label: str) -> Plot:
     if np.unique(np.round(values, 1)).size <= 12:
         spread = np.mod(np.arange(values.size) * 0.618034, 1.0)
         left, right = -0.5 * margin * spread, 0.5 * margin * spread
-    layers = [
-        *by_way(read, values + left, read.before_deg, "baseline", colour="c-before"),
-        *by_way(read, values + right, read.after_deg, "extended twin", colour="c-after"),
-    ]
+    layers = _before_and_after(read, values + left, values + right)
     return Plot(Axis(label, limits), Axis(_RESIDUAL), layers, f"residual before and after over {label}")
 
 
@@ -138,7 +140,7 @@ def spectra(read: Readings, orders: list[float]) -> Plot:
     level = noise_level(at, after, both=two_ways(read.motion))
     layers = [
         Layer("line", *_peaks(at, before), "baseline", "c-before"),
-        Layer("line", *_peaks(at, after), "extended twin", "c-after"),
+        *([Layer("line", *_peaks(at, after), "extended twin", "c-after")] if read.extended else []),
         Layer("line", at, level, "noise passes this at 1 order in 20", "c-model dashed"),
     ]
     floor = 0.1 * float(np.median(level))

@@ -18,23 +18,26 @@ _BEFORE, _AFTER = "#cc3311", "#4477aa"
 
 
 def before_after_figure(judged: Sequence[Judged]) -> Any:
-    """One panel a tested sweep, on readings that the correction never saw."""
+    """A row a tested sweep, on readings that the correction never saw: both errors, and what is left by itself."""
     plt = style()
     figure, axes = plt.subplots(
-        len(judged), 1, figsize=(7.0, max(3.2 * len(judged), 3.8)), squeeze=False, layout="constrained"
+        len(judged), 2, figsize=(10.5, max(3.2 * len(judged), 3.8)), squeeze=False, layout="constrained", sharex=True
     )
-    for axis, one in zip(axes[:, 0], judged, strict=True):
+    for (both, alone), one in zip(axes, judged, strict=True):
         found, shaft = one.found, np.remainder(np.degrees(one.tested.reference_rad), 360.0)
         before, after = np.degrees(found.before_rad), np.degrees(found.after_rad)
         way = one.tested.direction
-        for errors, colour, when in ((before, _BEFORE, "before"), (after, _AFTER, "after")):
-            _draw(axis, shaft, errors, way, colour=colour, name=when)
+        _draw(both, shaft, before, way, colour=_BEFORE, name="before")
+        _draw(both, shaft, after, way, colour=_AFTER, name="after")
+        _draw(alone, shaft, after, way, colour=_AFTER, name="after")
         rms, rms_after = (rms_shown(value, shaft.size) for value in found.rms_deg)
         said = f"{one.name}, own zero taken out" if one.own_zeros else one.name
         words = said if one.title in said else f"{one.title}, {said}"
-        axis.set_title(f"{words}: RMS {rms} to {rms_after} deg", fontsize=9)
-        axis.set(xlim=(0, 360), xticks=range(0, 361, 90), xlabel="shaft angle [deg]", ylabel="angle error [deg]")
-        axis.grid(alpha=0.25)
+        both.set_title(f"{words}: RMS {rms} to {rms_after} deg", fontsize=9)
+        alone.set_title("after, on a scale of its own", fontsize=9)
+        for axis in (both, alone):
+            axis.set(xlim=(0, 360), xticks=range(0, 361, 90), xlabel="shaft angle [deg]", ylabel="angle error [deg]")
+            axis.grid(alpha=0.25)
     handles = {label: mark for axis in axes.flat for mark, label in zip(*axis.get_legend_handles_labels(), strict=True)}
     figure.legend(
         list(handles.values()), list(handles), loc="outside lower center", ncols=4, frameon=False, markerscale=2.0

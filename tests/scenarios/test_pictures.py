@@ -126,3 +126,11 @@ def test_more_sweeps_than_a_picture_holds_are_refused_before_any_work(
     ended = halltwin(*given, "--plot", tmp_path / "p.png")
     assert (ended.code, ended.out) == (2, "")
     assert ended.err == "halltwin: p.png: 17 sweeps do not fit in one picture; draw at most 16\n"
+
+
+def test_what_a_correction_leaves_has_a_scale_of_its_own() -> None:
+    """An error that is a thousandth of the one before is a flat line beside it."""
+    errors = np.linspace(-0.01, 0.01, len(BOTH))
+    figure = before_after_figure([Judged("on it", "it", BeforeAfter(errors, 1e-3 * errors), joined([_sweep()]))])
+    both, alone = shown(figure)
+    assert np.ptp(alone.get_ylim()) < 0.01 * np.ptp(both.get_ylim())

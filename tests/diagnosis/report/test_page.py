@@ -60,6 +60,16 @@ def test_it_needs_nothing_from_elsewhere(explained: tuple[Discovery, dict[str, A
     assert "@media print" in html
 
 
+@pytest.mark.parametrize(("name", "twice"), [("clean", False), ("hysteresis", True)])
+def test_what_no_cause_changes_is_drawn_once(name: str, twice: bool) -> None:
+    """Points of two colours on one another are grey."""
+    html = explained_case(name)[2]
+    for title in ("In the order of the readings", "Spectrum of the residual"):
+        picture = html.split(title)[1].split("</figure>")[0]
+        assert "c-before" in picture
+        assert ("c-after" in picture) == twice
+
+
 def test_it_names_every_cause_and_draws_each(explained: tuple[Discovery, dict[str, Any], str]) -> None:
     _, answer, html = explained
     assert answer["verdict"] in html

@@ -29,6 +29,7 @@ def words_of(shaft: Array, measured: Array) -> Words:
     return Words(shaft, measured, np.ones(shaft.size, dtype=bool))
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
 @pytest.mark.parametrize(("level", "points", "noise_deg"), [(0.02, 256, 0.05), (0.06, 72, 0.0), (0.25, 180, 0.02)])
 def test_it_is_clipping(level: float, points: int, noise_deg: float) -> None:
     shaft, measured = record(level, points=points, noise_deg=noise_deg)

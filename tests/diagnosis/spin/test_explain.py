@@ -11,6 +11,7 @@ import pytest
 
 from diagnosis import Explanation, explain
 from diagnosis.report.console import text
+from diagnosis.report.explain_plot import residual_figure
 from tests.command_line import halltwin
 from tests.hidden.spins.generator import draw
 from tests.hidden.spins.judging import left_by
@@ -31,6 +32,14 @@ def even(turns_per_s: float, *, order: int = 1, error_deg: float = 0.5, seed: in
 @cache
 def at_one_speed() -> Explanation:
     return explain(even(9.0, order=5))
+
+
+def test_what_was_estimated_is_no_column_of_the_log() -> None:
+    found = at_one_speed()
+    assert found.to_dict()["sweep"]["columns"] == ["time_s", "measured_deg"]
+    labels = {axis.get_xlabel() for axis in residual_figure(found.discovery).axes}
+    assert "estimated shaft angle [deg]" in labels
+    assert not any("reference" in label for label in labels)
 
 
 def test_at_one_speed_a_cause_may_be_a_torque() -> None:

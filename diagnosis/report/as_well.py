@@ -58,7 +58,8 @@ def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     if effect.comb is not None and effect.comb.also is not None:
         orders = {round(order) for line in own for order in effect.comb.orders(line)}
         # What turns the shaft unevenly turns the field as a whole: the channels' radius stays.
-        if not any(waves_in_radius(found.fit, order) for order in orders):
+        more_than_turned = any(one.acts(line) for one in effect.operations[1:] for line in own)
+        if not more_than_turned and not any(waves_in_radius(found.fit, order) for order in orders):
             beside.append(effect.comb.also)
     beside += may_be_torque(found, cause)
     beside += _other_makers(effect, own)

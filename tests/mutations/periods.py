@@ -6,6 +6,7 @@ from tests.mutations.mutation import Mutation
 
 _SEARCH = "tests/diagnosis/discovery/search/test_parts.py"
 _FALLING = "tests/diagnosis/discovery/search/test_falling_lines.py"
+_BESIDE = "tests/diagnosis/discovery/test_magnet_beside_the_shaft.py"
 _SEAM = "tests/diagnosis/discovery/test_seam_and_current.py"
 _FORMS = "tests/diagnosis/discovery/test_forms.py"
 _STAGES = "tests/diagnosis/discovery/stages/test_one_source.py"
@@ -68,6 +69,27 @@ PERIODS: tuple[Mutation, ...] = tuple(
             "_ABSENT = 0.5\n",
             "_ABSENT = 1e-9\n",
             f"{_FALLING}::test_which_lines_belong_together",
+        ),
+        (
+            "periods.a_magnets_lines_are_none_of_the_radius",
+            "twin/magnet/magnet_harmonic.py",
+            'RADIUS_RATIOS if "vx" in motion.provides else RADIUS_RATIOS[:1]',
+            "RADIUS_RATIOS[:1]",
+            f"{_BESIDE}::test_a_wave_of_the_radius_that_belongs_to_a_line_of_the_angle_is_the_magnets[2031927089]",
+        ),
+        (
+            "periods.what_changes_the_radius_may_be_mechanics",
+            "diagnosis/report/as_well.py",
+            "if not more_than_turned and ",
+            "if ",
+            f"{_BESIDE}::test_a_wave_of_the_radius_that_belongs_to_a_line_of_the_angle_is_the_magnets[2]",
+        ),
+        (
+            "periods.any_quadratic_term_is_as_likely",
+            "twin/hall/quadratic_nonlinearity.py",
+            "            prior_sd=FAR_PERCENT,\n",
+            "",
+            f"{_FALLING}::test_orders_3_and_6_beside_the_quadratic_term_too",
         ),
         (
             "periods.lines_of_a_motor_are_entries_of_their_own",

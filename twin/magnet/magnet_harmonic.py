@@ -9,9 +9,13 @@ import numpy as np
 
 from twin.angles import Array, radians
 from twin.drawing import whole
-from twin.effect import Comb, Effect, Param, Parameters
+from twin.effect import Behind, Comb, Effect, Param, Parameters
 from twin.found_by import order_of
 from twin.motion import Motion
+
+RADIUS_RATIOS = 0.0, 1.0, -1.0
+"""The field's size on the axis, where a harmonic of the magnetisation has no field and bends that of the dipole alone;
+beside a cylinder, whose potential falls as a power of the distance; and inside one, where it rises as one."""
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
@@ -19,8 +23,17 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     return signal + turn * np.sin(np.asarray(values["order"]) * signal + radians(values["phase_deg"]))
 
 
+def field_size(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
+    """The field is stronger where its direction turns one way and weaker a quarter of a period on."""
+    turn = radians(values["amplitude_deg"]) * np.asarray(values["radius_ratio"])
+    place = np.asarray(values["order"]) * motion.shaft_rad + radians(values["phase_deg"])
+    return np.asarray(signal * (1.0 + turn * np.cos(place)))
+
+
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
-    return [{"order": float(order)} for order in range(3, 9) if 2 * order < motion.points_per_turn]
+    ratios = RADIUS_RATIOS if "vx" in motion.provides else RADIUS_RATIOS[:1]
+    orders = [order for order in range(3, 9) if 2 * order < motion.points_per_turn]
+    return [{"order": float(order), "radius_ratio": ratio} for ratio in ratios for order in orders]
 
 
 def falls_off(values: Parameters) -> Any:
@@ -61,8 +74,20 @@ MAGNET_HARMONIC = Effect(
             distance_power=falls_off,
         ),
         "phase_deg": Param(unit="deg", null=0.0, lower=-360.0, upper=360.0, doc="phase", role="phase"),
+        "radius_ratio": Param(
+            unit="1",
+            null=0.0,
+            lower=-2.0,
+            upper=2.0,
+            doc="relative change of the field's size over that of its direction; 1: beside a cylinder, -1: inside one",
+            role="shape",
+            typical=0.5,
+            aside=True,
+            detail=True,
+        ),
     },
     forward=forward,
+    behind=Behind(acts_on="channels", forward=field_size, params=("radius_ratio",)),
     needs=frozenset({"one turn"}),
     shapes=shapes,
     comb=Comb(
@@ -76,5 +101,5 @@ MAGNET_HARMONIC = Effect(
     repeatable=True,
     drawing=drawing,
     source="azimuthal Fourier series of the field of an imperfectly magnetised cylinder",
-    signature="one line at order n, 3 to 8, any phase",
+    signature="one line at order n, 3 to 8, any phase; in the radius none, or one of the same order and about as large",
 )

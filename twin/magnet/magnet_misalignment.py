@@ -245,7 +245,7 @@ MAGNET_MISALIGNMENT = Effect(
             unit="mm2",
             null=0.0,
             lower=0.0,
-            upper=1.0,
+            upper=4.0,
             doc="sensor's displacement times that of the magnet's field, where both are off the axis; of moments 1 "
             "and 3 the sensor's, squared",
             typical=0.05,

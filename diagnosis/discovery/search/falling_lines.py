@@ -15,6 +15,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.intervals import standard_deviations
 from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.usual_factors import with_usual_factors
 from diagnosis.discovery.search.lines import in_their_place, lines_of
 from diagnosis.discovery.search.parts import of_parts
 from diagnosis.discovery.search.screening import Base, screen_one
@@ -81,7 +82,7 @@ def as_lines_of_a_body(fit: Fit, keys: Sequence[str], effect: Effect) -> tuple[F
     well as the cause does.
     """
     lines = lines_of(fit, keys)
-    orders = [int(shape["order"]) for shape in effect.shapes(fit.linear.motion)]
+    orders = sorted({int(shape["order"]) for shape in effect.shapes(fit.linear.motion)})
     held = [key for key, own in lines.items() if len(own) == 1 and own[0] in orders]
     for key, own in lines.items():
         cause = find(key, fit.chain.effects)
@@ -95,7 +96,7 @@ def as_lines_of_a_body(fit: Fit, keys: Sequence[str], effect: Effect) -> tuple[F
         if trial is None:
             continue
         joint, added = trial
-        found = _at_all_orders(joint, effect, dict(zip(covered, added, strict=True)), orders)
+        found = _at_all_orders(with_usual_factors(joint), effect, dict(zip(covered, added, strict=True)), orders)
         if found is not None and falling_odds(found, own, effect.params["amplitude_deg"].upper) > 0.0:
             return joint, (*(one for one in keys if one not in replaced), *added)
     return None

@@ -63,3 +63,10 @@ def test_lines_alone_are_a_sensors() -> None:
     found = handed((4, 8))
     assert [base_name(key) for key in found.keys] == ["multipole"]
     assert one_source(found) is found
+
+
+@pytest.mark.parametrize("size_deg", [0.03, 0.06, 0.1])
+def test_orders_3_and_6_beside_the_quadratic_term_too(size_deg: float) -> None:
+    """The quadratic term makes order 3 as well: how large a line of order 3 is only the usual size of the term says."""
+    magnet = one_source(handed((3, 4, 5, 6), size_deg))
+    assert {base_name(key) for key in magnet.keys} == {"magnet_harmonic"}

@@ -7,6 +7,7 @@ from tests.mutations.mutation import Mutation
 _SEARCH = "tests/diagnosis/discovery/search/test_parts.py"
 _FALLING = "tests/diagnosis/discovery/search/test_falling_lines.py"
 _BESIDE = "tests/diagnosis/discovery/test_magnet_beside_the_shaft.py"
+_SERIES = "tests/diagnosis/discovery/search/test_series_of_lines.py"
 _SEAM = "tests/diagnosis/discovery/test_seam_and_current.py"
 _FORMS = "tests/diagnosis/discovery/test_forms.py"
 _STAGES = "tests/diagnosis/discovery/stages/test_one_source.py"
@@ -90,6 +91,27 @@ PERIODS: tuple[Mutation, ...] = tuple(
             "            prior_sd=FAR_PERCENT,\n",
             "",
             f"{_FALLING}::test_orders_3_and_6_beside_the_quadratic_term_too",
+        ),
+        (
+            "periods.no_line_is_the_next_of_a_series",
+            "diagnosis/discovery/stages/one_source.py",
+            "state if following is None else",
+            "state if True else",
+            f"{_SERIES}::test_the_next_multiple_is_of_the_series",
+        ),
+        (
+            "periods.two_lines_are_a_series",
+            "diagnosis/discovery/search/series_of_lines.py",
+            "_LEAST = 3\n",
+            "_LEAST = 1\n",
+            f"{_SERIES}::test_others_stay",
+        ),
+        (
+            "periods.any_larger_line_is_the_next",
+            "diagnosis/discovery/search/series_of_lines.py",
+            'if near and _of(fit, key, "amplitude_deg") < _of(fit, last, "amplitude_deg"):',
+            "if near:",
+            f"{_SERIES}::test_others_stay",
         ),
         (
             "periods.lines_of_a_motor_are_entries_of_their_own",

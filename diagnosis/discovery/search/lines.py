@@ -19,9 +19,14 @@ _WHOLE = 0.1
 """A fitted order counts as the whole number that it lies so near to, as a share of what the record resolves."""
 
 
+def resolved(fit: Fit) -> float:
+    """By how much two orders of a line may differ that a fit does not tell apart."""
+    return _WHOLE / max(fit.observations.motion.turns, 1.0)
+
+
 def lines_of(fit: Fit, keys: Sequence[str]) -> dict[str, tuple[int, ...]]:
     """The whole orders of the lines that each of these causes makes, of those that make nothing else."""
-    near = _WHOLE / max(fit.observations.motion.turns, 1.0)
+    near = resolved(fit)
     found = {}
     for key in keys:
         comb = find(key, fit.chain.effects).comb

@@ -1,6 +1,7 @@
 """One source: lines that were found one by one, and that one cause makes together, are put under its name.
 
-And lines that one cause would make, but that belong to a body which makes others beside them, are put under that.
+And lines that one cause would make, but that belong to a body which makes others beside them, are put under that; as
+is one at a whole order that is the next of a series without a name.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.search.falling_lines import as_lines_of_a_body
 from diagnosis.discovery.search.lines import in_their_place, lines_of
+from diagnosis.discovery.search.series_of_lines import as_next_of_a_series
 from diagnosis.discovery.state import State
 from twin.catalogue import base_name
 from twin.effect import Effect
@@ -23,7 +25,8 @@ def one_source(state: State) -> State:
         if effect.comb is not None and effect.comb.falling:
             found = as_lines_of_a_body(state.fit, state.keys, effect)
             state = state if found is None else state.with_(found[0], keys=found[1])
-    return state
+    following = as_next_of_a_series(state.fit, state.keys)
+    return state if following is None else state.with_(following[0], keys=following[1])
 
 
 def _united(state: State, effect: Effect) -> State:

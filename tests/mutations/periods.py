@@ -114,6 +114,14 @@ PERIODS: tuple[Mutation, ...] = tuple(
             f"{_SERIES}::test_others_stay",
         ),
         (
+            "periods.a_line_without_a_name_where_one_is",
+            "diagnosis/discovery/search/forward_step.py",
+            "[one for one in found if not _where_a_line_is(one, base.fit, taken)]",
+            "found",
+            "tests/diagnosis/discovery/search/test_iterate.py::"
+            "test_all_that_the_radius_does_has_to_be_the_work_of_causes",
+        ),
+        (
             "periods.lines_of_a_motor_are_entries_of_their_own",
             "twin/catalogue.py",
             "return found_together(effect) or ",

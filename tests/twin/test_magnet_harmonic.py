@@ -1,4 +1,4 @@
-"""A harmonic of the magnet: beside and inside a cylinder the size of its field changes with the direction."""
+"""A harmonic of the magnet: beside a cylinder the size of its field changes with the direction."""
 
 from __future__ import annotations
 
@@ -11,24 +11,17 @@ from twin.motion import Motion
 TURN = Motion.from_angle(np.arange(720) * np.pi / 360.0)
 
 
-@pytest.mark.parametrize("ratio", [1.0, -1.0])
 @pytest.mark.parametrize("order", [3, 5, 8])
-def test_the_field_of_a_cylinder_beside_its_dipoles(order: int, ratio: float) -> None:
-    """A potential that goes with the nth power of the distance has a field that turns n - 1 times more than the dipole.
+def test_the_field_of_a_cylinder_beside_its_dipoles(order: int) -> None:
+    """A potential that falls as the nth power of the distance has a field that turns n - 1 times more than a dipole.
 
-    Outside, where it falls, it turns with the dipole's, inside against it. Beside the effect the square of its share is
-    left, and order times that in the size, which is counted from where the shaft is.
+    Beside the effect the square of its share is left, and order times that in the size, which is counted from where the
+    shaft is.
     """
     share, phase = 0.002, 0.7
-    turned = np.exp(1j * ratio * (order * TURN.shaft_rad + phase))
-    field = np.exp(1j * TURN.shaft_rad) * (1.0 + share * ratio * turned)
-    line = {
-        "order": order,
-        "amplitude_deg": np.degrees(share),
-        "phase_deg": np.degrees(phase),
-        "radius_ratio": ratio,
-    }
-    x, y = Chain().with_effect("magnet_harmonic", **line).channels(TURN)
+    field = np.exp(1j * TURN.shaft_rad) * (1.0 + share * np.exp(1j * (order * TURN.shaft_rad + phase)))
+    line = {"order": order, "amplitude_deg": np.degrees(share), "phase_deg": np.degrees(phase)}
+    x, y = Chain().with_effect("magnet_harmonic", **line, radius_ratio=1.0).channels(TURN)
     np.testing.assert_allclose(x + 1j * y, field, atol=(1.0 + order) * share**2)
-    x, y = Chain().with_effect("magnet_harmonic", **{**line, "radius_ratio": 0.0}).channels(TURN)
+    x, y = Chain().with_effect("magnet_harmonic", **line).channels(TURN)
     np.testing.assert_allclose(np.hypot(x, y), 1.0, atol=1e-12)

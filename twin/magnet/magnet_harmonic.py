@@ -13,9 +13,10 @@ from twin.effect import Behind, Comb, Effect, Param, Parameters
 from twin.found_by import order_of
 from twin.motion import Motion
 
-RADIUS_RATIOS = 0.0, 1.0, -1.0
+RADIUS_RATIOS = 0.0, 1.0
 """The field's size on the axis, where a harmonic of the magnetisation has no field and bends that of the dipole alone;
-beside a cylinder, whose potential falls as a power of the distance; and inside one, where it rises as one."""
+and beside a cylinder, whose potential falls as a power of the distance. Where a potential rises, as inside a ring, it
+is -1: what order 4 does then is what a saturating concentrator does."""
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
@@ -77,9 +78,9 @@ MAGNET_HARMONIC = Effect(
         "radius_ratio": Param(
             unit="1",
             null=0.0,
-            lower=-2.0,
+            lower=0.0,
             upper=2.0,
-            doc="relative change of the field's size over that of its direction; 1: beside a cylinder, -1: inside one",
+            doc="relative change of the field's size over that of its direction; 1: beside a cylinder",
             role="shape",
             typical=0.5,
             aside=True,

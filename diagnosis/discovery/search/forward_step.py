@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +20,7 @@ from diagnosis.discovery.search.likelihood_ratio import (
     settle,
     take_out,
 )
+from diagnosis.discovery.search.lines import lines_of, resolved
 from diagnosis.discovery.search.parts import of_parts
 from diagnosis.discovery.search.screening import Base, Candidate, screen, screen_one
 from twin.catalogue import base_name, find, of_one_source, unnamed
@@ -37,7 +38,17 @@ def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> li
     further = (one_more(base, effect, keys) for effect in effects if effect.name in present)
     found += [candidate for candidate in further if candidate is not None]
     found += multiples(base, effects, keys)
+    taken = {order for own in lines_of(base.fit, [*filter(base.fit.chain.values.get, keys)]).values() for order in own}
+    found = [one for one in found if not _where_a_line_is(one, base.fit, taken)]
     return sorted(found, key=lambda c: c.log_p + handicap(c.effect, base.fit))
+
+
+def _where_a_line_is(candidate: Candidate, fit: Fit, taken: Set[int]) -> bool:
+    """Whether a line without a name is at an order where the fit has one: both would stand against each other."""
+    comb = candidate.effect.comb
+    if comb is None or not unnamed(candidate.effect.name):
+        return False
+    return any(abs(one - order) <= resolved(fit) for one in comb.orders(candidate.values) for order in taken)
 
 
 def may_come_again(effect: Effect) -> bool:

@@ -12,6 +12,7 @@ from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve, va
 from diagnosis.discovery.fitting.profile import CLOSE, reached
 from diagnosis.discovery.stages.stepwise import stepwise
 from tests.diagnosis.discovery.sweeps import Made, before
+from twin.hall.quadratic_nonlinearity import FAR_PERCENT
 
 KEY = "magnet_harmonic"
 AMPLITUDE, PHASE = Free(KEY, "amplitude_deg"), Free(KEY, "phase_deg")
@@ -57,7 +58,8 @@ def test_where_nothing_may_be_there_any_phase_may_be() -> None:
 def test_order_3_beside_the_quadratic_term_is_hardly_told(seed: int) -> None:
     """By angles alone the term makes order 1, as offsets do, and order 3: the region is a long bent valley.
 
-    The optimum is by chance so far along it that the parabola there tells a phase that is not the true one.
+    The optimum is by chance so far along it that the parabola there tells a phase that is not the true one; only that
+    the term is small is known.
     """
     fit = _fitted(0.05, order=3.0, seed=seed)
     ends = intervals_95(fit)
@@ -65,7 +67,9 @@ def test_order_3_beside_the_quadratic_term_is_hardly_told(seed: int) -> None:
     assert not phase - half < 40.0 < phase + half
     assert ends[KEY, PHASE.name][0] < 40.0 < ends[KEY, PHASE.name][1]
     assert 0.0 <= ends[KEY, AMPLITUDE.name][0] < 0.0525
-    assert ends["quadratic_nonlinearity", "q_percent"][0] < 0.3 < ends["quadratic_nonlinearity", "q_percent"][1]
+    low, high = ends["quadratic_nonlinearity", "q_percent"]
+    # The readings and what is known of it before them hold it together, so more closely than the latter alone.
+    assert high - low < 2.0 * quantile_95(fit) * FAR_PERCENT
 
 
 def test_where_the_parabola_holds_it_is_the_interval() -> None:

@@ -39,7 +39,7 @@ class Case(NamedTuple):
 CASES = (
     Case("saturation", "static", "normal", 1, "magnet_harmonic", "raw channels"),
     Case("saturation", "static", "weak", 2, "magnet_harmonic", "raw channels"),
-    Case("latency", "spin_both", "normal", 2, "hysteresis", "second speed"),
+    Case("latency", "spin_both", "normal", 5, "hysteresis", "second speed"),
     Case("latency", "spin_both", "normal", 1, "index_slip", "second speed"),
     Case("backlash", "static_both", "normal", 3, "hysteresis", "denser points after a reversal"),
     Case("backlash", "static_both", "normal", 2, "index_slip", "more turns"),

@@ -73,7 +73,7 @@ def test_all_that_the_radius_does_has_to_be_the_work_of_causes(case: Case) -> No
 def test_an_unexplained_radius_is_taken_for_noise_in_the_end() -> None:
     """The stage then searches once more without trusting it, and still finds what the angle shows."""
     made = replace(CLEAN, causes=(("magnet_harmonic", 0.1),))
-    after = stepwise(with_order(recorded(made), 6, 6.0))
+    after = stepwise(with_order(recorded(made), 7, 6.0))
     assert not after.fit.weighting.radius_trusted
     assert after.keys == ("magnet_harmonic",)
 

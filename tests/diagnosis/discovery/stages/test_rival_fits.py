@@ -28,7 +28,7 @@ tilts and its stray field do is among them."""
 @functools.cache
 def misaligned() -> Explanation:
     """The preset with a displaced magnet, from one turn of the angle alone."""
-    motion = replace(Protocol(), channels=False).motion()
+    motion = replace(Protocol(), points=1440, channels=False).motion()
     return explain(read_preset("hall-misaligned").simulate(motion, seed=5))
 
 

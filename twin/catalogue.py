@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import copyreg
 import pickle
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from twin import adc, concentrator, cordic, empirical, hall, link, magnet, mechanics, reference
@@ -72,11 +74,29 @@ def find(key: str, effects: tuple[Effect, ...] = CATALOGUE) -> Effect:
     Raises KeyError with the known names where there is none.
     """
     name = base_name(key)
-    for effect in effects:
-        if effect.name == name:
-            return effect
-    known = sorted(effect.name for effect in effects)
-    raise KeyError(f"no effect named '{name}'{nearest(name, known)}; known: {', '.join(known)}")
+    named = _by_name(SameEffects(effects))
+    if name not in named:
+        known = sorted(named)
+        raise KeyError(f"no effect named '{name}'{nearest(name, known)}; known: {', '.join(known)}")
+    return named[name]
+
+
+@dataclass(frozen=True, eq=False)
+class SameEffects:
+    """Effects that are told from others by being the same object: a fit asks for them a million times."""
+
+    effects: tuple[Effect, ...]
+
+    def __hash__(self) -> int:
+        return id(self.effects)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, SameEffects) and other.effects is self.effects
+
+
+@lru_cache(maxsize=16)
+def _by_name(same: SameEffects) -> Mapping[str, Effect]:
+    return {effect.name: effect for effect in reversed(same.effects)}
 
 
 def _pickled(effect: Effect) -> str | tuple[Any, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from twin.angles import Array, channels_of, wrap
-from twin.catalogue import ACTS_ON, CATALOGUE, STAGES, at_magnet, base_name, find
+from twin.catalogue import ACTS_ON, CATALOGUE, STAGES, at_magnet, find
 from twin.effect import ActsOn, Effect, Parameters
 from twin.known_names import nearest
 from twin.limits import OutOfRangeError
 from twin.magnet.assembly import Assembly
 from twin.motion import Motion
-from twin.operations import operations_of
-from twin.parameter_values import aligned, numbers
+from twin.operations import Acting, acting, operations_of
+from twin.parameter_values import numbers
 from twin.parts import Parts
 from twin.reference.encoder import Encoder
 from twin.shown import shown
@@ -202,19 +202,12 @@ class Chain:
 
         These are the described parts, each ahead of the effects of its stage, and the effects that are not at null.
         """
-        present: dict[str, list[str]] = {}
-        for key in sorted(self.values):
-            present.setdefault(base_name(key), []).append(key)
-        parts = [part for part in self.described if part.acts_on == acts_on]
-        for effect in (one for one in self.operations if one.acts_on == acts_on):
-            while parts and STAGES.index(parts[0].stage) <= STAGES.index(effect.stage):
-                part = parts.pop(0)
-                yield part.name, part, {}
-            for key in present.get(effect.name, ()):
-                values = {**effect.null(), **self.values[key]}
-                if effect.acts(values):
-                    yield key, effect, {name: aligned(value, effect, name) for name, value in values.items()}
-        yield from ((part.name, part, {}) for part in parts)
+        yield from self._acting.get(acts_on, ())
+
+    @cached_property
+    def _acting(self) -> Mapping[str, Sequence[Acting]]:
+        """The same by signal: a fit asks each chain for it several times."""
+        return acting(self.operations, self.described, self.values)
 
     @property
     def described(self) -> tuple[Effect, ...]:

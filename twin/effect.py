@@ -241,7 +241,7 @@ class Effect:
     def acts(self, values: Parameters) -> bool:
         """Whether it does anything with these parameters."""
         if self.acting:
-            return any(np.any(np.asarray(values[name]) != self.params[name].null) for name in self.acting)
+            return not all(self.params[name].at_null(values[name]) for name in self.acting)
         return not self.is_null(values)
 
     @property
@@ -261,8 +261,7 @@ class Effect:
 
     def is_null(self, values: Parameters) -> bool:
         """Whether every parameter that makes it act is at its null, so that the effect does nothing."""
-        nulls = ((name, self.params[name].null) for name in self.acts_by)
-        return all(np.all(np.asarray(values.get(name, null)) == null) for name, null in nulls)
+        return all(name not in values or self.params[name].at_null(values[name]) for name in self.acts_by)
 
     def visible_in(self, provides: frozenset[str]) -> bool:
         """Whether a sweep that provides this can show the effect at all."""

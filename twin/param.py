@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 Role = Literal["strength", "level", "phase", "shape", "per turn", "random"]
 """What a parameter is to a fit.
 
@@ -120,3 +122,8 @@ class Param:
     def __post_init__(self) -> None:
         if not self.lower <= self.null <= self.upper:
             raise ValueError(f"null {self.null} outside [{self.lower}, {self.upper}]")
+
+    def at_null(self, value: Any) -> bool:
+        """Whether all of its values, of any shape, are its null."""
+        # A fit asks this of single numbers a million times.
+        return value == self.null if isinstance(value, float) else bool(np.all(np.asarray(value) == self.null))

@@ -44,8 +44,12 @@ def _missed(value: Array, blur: Array) -> Array:
 def _missed_series(value: Array, blur: Array) -> Array:
     """The same in expectation: noise ahead of the converter smooths the square wave, each harmonic by its Gaussian."""
     out = np.zeros(np.broadcast_shapes(value.shape, np.shape(blur)))
+    wave = np.exp(1j * np.pi * value)
+    twice = wave * wave
     for k in range(1, 2 * HARMONICS, 2):
-        out += (-1.0) ** (k // 2) * (2.0 / (np.pi * k)) * _damped(k, blur) * np.cos(np.pi * k * value)
+        out += (-1.0) ** (k // 2) * (2.0 / (np.pi * k)) * _damped(k, blur) * wave.real
+        # Sines and cosines cost more than the power of the one before.
+        wave = wave * twice
     return out
 
 
@@ -57,10 +61,12 @@ def _made_up(value: Array, blur: Array) -> Array:
 def _made_up_series(value: Array, blur: Array) -> Array:
     """The same in expectation."""
     out = np.zeros(np.broadcast_shapes(value.shape, np.shape(blur)))
+    first = np.exp(1j * np.pi * (value + 0.25))
+    wave = first
     for k in range(1, 2 * HARMONICS):
-        phase = np.pi * k * (value + 0.25)
-        saw = np.sin(phase) / (np.pi * k) - (2.0 * np.cos(phase) / (np.pi * k) ** 2 if k % 2 else 0.0)
+        saw = wave.imag / (np.pi * k) - (2.0 * wave.real / (np.pi * k) ** 2 if k % 2 else 0.0)
         out += _damped(k, blur) * saw
+        wave = wave * first
     return out
 
 

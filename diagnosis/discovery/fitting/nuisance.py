@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from diagnosis.discovery.fitting.observations import Observations
@@ -28,11 +30,17 @@ def without_nuisance(observations: Observations, columns: Array) -> Array:
 
 def _free_of_scale(observations: Observations, radii: Array) -> None:
     """Take the scale and its drift off radii (..., n), in place."""
+    basis, full = _scale(observations)
+    radii -= (radii @ basis) @ full
+
+
+@lru_cache(maxsize=8)
+def _scale(observations: Observations) -> tuple[Array, Array]:
+    """A basis (n, k) of the scale and its drift over the rows in use, and what belongs to it (k, n) over all rows."""
     everywhere = np.stack(_nuisance(observations))
     basis, factors = np.linalg.qr((everywhere * observations.usable).T)
     # Of a recording that is left out altogether nothing tells the scale.
-    full = np.linalg.pinv(factors.T) @ everywhere
-    radii -= (radii @ basis) @ full
+    return basis, np.linalg.pinv(factors.T) @ everywhere
 
 
 def _nuisance(observations: Observations) -> list[Array]:

@@ -122,6 +122,13 @@ PERIODS: tuple[Mutation, ...] = tuple(
             "test_all_that_the_radius_does_has_to_be_the_work_of_causes",
         ),
         (
+            "periods.a_motor_takes_a_bodys_lines",
+            "diagnosis/discovery/stages/one_source.py",
+            "        if _of_a_body(state, covered):\n",
+            "        if False:\n",
+            f"{_FALLING}::test_lines_that_a_motor_would_make_are_a_magnets_that_has_those_between_them",
+        ),
+        (
             "periods.lines_of_a_motor_are_entries_of_their_own",
             "twin/catalogue.py",
             "return found_together(effect) or ",

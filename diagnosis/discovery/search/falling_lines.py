@@ -102,6 +102,19 @@ def as_lines_of_a_body(fit: Fit, keys: Sequence[str], effect: Effect) -> tuple[F
     return None
 
 
+def of_a_body(fit: Fit, keys: Sequence[str], own: Sequence[int], effect: Effect) -> bool:
+    """Whether lines of the orders ``own``, which these keys of the fit make one each, are those of such a body.
+
+    ``effect`` is a line of the body; where one of the orders is none of its, they are not.
+    """
+    orders = sorted({int(shape["order"]) for shape in effect.shapes(fit.linear.motion)})
+    held = {found[0]: key for key, found in lines_of(fit, keys).items() if len(found) == 1 and found[0] in orders}
+    if not set(own) <= set(held):
+        return False
+    found = _at_all_orders(with_usual_factors(fit), effect, held, orders)
+    return found is not None and falling_odds(found, own, effect.params["amplitude_deg"].upper) > 0.0
+
+
 def _at_all_orders(fit: Fit, effect: Effect, held: Mapping[int, str], orders: Sequence[int]) -> Lines | None:
     """The lines that the fit holds, by order, and what it leaves at the other orders; None where one is not told."""
     deviations, base = standard_deviations(fit), Base.of(fit)

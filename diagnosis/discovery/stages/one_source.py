@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from diagnosis.discovery.fitting.joint_fit import Fit
-from diagnosis.discovery.search.falling_lines import as_lines_of_a_body
+from diagnosis.discovery.search.falling_lines import as_lines_of_a_body, of_a_body
 from diagnosis.discovery.search.lines import in_their_place, lines_of
 from diagnosis.discovery.search.series_of_lines import as_next_of_a_series
 from diagnosis.discovery.state import State
@@ -40,6 +40,8 @@ def _united(state: State, effect: Effect) -> State:
         made = set(effect.comb.united(shape))
         replaced = [key for key, own in lines.items() if set(own) <= made]
         covered = sorted({order for key in replaced for order in lines[key]})
+        if _of_a_body(state, covered):
+            continue
         if len(effect.comb.unite(covered)) and not _there(fit, effect, replaced, shape):
             trial = in_their_place(fit, effect, replaced, shape=shape, orders=covered)
             if trial is not None:
@@ -47,6 +49,12 @@ def _united(state: State, effect: Effect) -> State:
                 return state.with_(joint, keys=(*(key for key in state.keys if key not in replaced), *added))
         break
     return state
+
+
+def _of_a_body(state: State, orders: Sequence[int]) -> bool:
+    """Whether lines of these orders belong to a body that has lines at the orders between them as well."""
+    bodies = (one for one in state.searched if one.comb is not None and one.comb.falling)
+    return any(of_a_body(state.fit, state.keys, orders, body) for body in bodies)
 
 
 def _there(fit: Fit, effect: Effect, keys: Sequence[str], shape: Mapping[str, float]) -> bool:

@@ -70,3 +70,13 @@ def test_orders_3_and_6_beside_the_quadratic_term_too(size_deg: float) -> None:
     """The quadratic term makes order 3 as well: how large a line of order 3 is only the usual size of the term says."""
     magnet = one_source(handed((3, 4, 5, 6), size_deg))
     assert {base_name(key) for key in magnet.keys} == {"magnet_harmonic"}
+
+
+def test_lines_that_a_motor_would_make_are_a_magnets_that_has_those_between_them() -> None:
+    """4, 6 and 8 are the lines of six slots and four poles; with 5 between them and falling they are of one body."""
+    state = before(stepwise, Made(points=240))
+    shaft = state.fit.observations.motion.shaft_rad
+    sizes = {4: 0.2, 5: 0.12, 6: 0.07, 8: 0.03}
+    waves = sum(np.radians(size) * np.sin(order * shaft + order) for order, size in sizes.items())
+    found = stepwise(with_residual(state, noise(len(state.sweep)) + np.asarray(waves)))
+    assert {base_name(key) for key in one_source(found).keys} == {"magnet_harmonic"}

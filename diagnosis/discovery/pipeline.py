@@ -33,6 +33,7 @@ from diagnosis.discovery.stages.rival_fits import rival_fits
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.stages.sense_check import sense_check
 from diagnosis.discovery.stages.spread import spread
+from diagnosis.discovery.stages.spread_check import spread_check
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.stages.variance import variance
 from diagnosis.discovery.state import Stage, State, until_still
@@ -57,6 +58,7 @@ PIPELINE: tuple[Stage, ...] = (
         spread,  # causes in the scatter; the rows weigh by it
     ),
     held_out_selection,  # what gains on readings that no fit has seen, and is not chance
+    spread_check,  # what makes rows louder, by the causes that are proven
     flipped_bits,  # single readings told by the size of their errors
     grid_cause,  # the output's rounding, where it limits the readings
     changes,  # which of a given twin's own parameters have moved; the others go back

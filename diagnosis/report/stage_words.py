@@ -26,6 +26,7 @@ STAGES = {
     "one_source": "asking whether several lines come of one motor",
     "spread": "looking for causes in the scatter",
     "held_out_selection": "proving the causes on readings they never saw",
+    "spread_check": "judging the scatter once more",
     "flipped_bits": "looking for flipped bits",
     "grid_cause": "judging the rounding of the output",
     "final_fit": "fitting the extended twin",

@@ -194,11 +194,12 @@ _MECHANISMS: tuple[Mutation, ...] = (
 _WHOLE = frozenset({"observe", "initial_fit", "row_masks", "variance", "listed"})
 """Stages whose absence shows in more than the answer: each has a test of its own among those of the pipeline."""
 _SEVERAL = "tests/diagnosis/test_several_recordings.py"
-_OF_SEVERAL = {
+_ELSEWHERE = {
     "recording_levels": f"{_SEVERAL}::test_one_set_of_parameters_explains_both",
     "recordings_alone": f"{_SEVERAL}::test_recordings_of_two_devices_are_told",
+    "spread_check": f"{_TESTS}/stages/test_spread_check.py::test_beside_lines_that_the_proof_takes_out_again",
 }
-"""Stages that do nothing to a single sweep."""
+"""Stages that do nothing to a single sweep, or only to one that has to be drawn for them."""
 
 
 def stages_left_out() -> tuple[Mutation, ...]:
@@ -214,7 +215,7 @@ def stages_left_out() -> tuple[Mutation, ...]:
             file,
             found[0],
             "",
-            (_OF_SEVERAL.get(found[1], tests if found[1] in _WHOLE else f"{one}[{found[1]}]"),),
+            (_ELSEWHERE.get(found[1], tests if found[1] in _WHOLE else f"{one}[{found[1]}]"),),
         )
         for found in re.finditer(r"^ +(\w+),  # .*\n", listed, re.MULTILINE)
     )

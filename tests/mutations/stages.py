@@ -24,6 +24,22 @@ STAGES: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
+        f"{_D}/stages/spread_check.py",
+        _T,
+        (
+            "spread_check.nothing_is_taken_back",
+            "if not gone:",
+            "if True:",
+            "stages/test_spread_check.py::test_what_the_proven_causes_do_not_leave_goes_and_the_rows_are_alike",
+        ),
+        (
+            "spread_check.all_is_taken_back",
+            "if effect.name not in improbable",
+            "if True",
+            "stages/test_spread_check.py::test_what_the_readings_bear_out_stays",
+        ),
+    ),
+    *of_one_file(
         f"{_D}/state.py",
         _T,
         (

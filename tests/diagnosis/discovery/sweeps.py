@@ -35,6 +35,7 @@ from diagnosis.discovery.stages.rival_fits import rival_fits
 from diagnosis.discovery.stages.row_masks import row_masks
 from diagnosis.discovery.stages.sense_check import sense_check
 from diagnosis.discovery.stages.spread import spread
+from diagnosis.discovery.stages.spread_check import spread_check
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.stages.variance import variance
 from diagnosis.discovery.state import Stage, State
@@ -58,7 +59,8 @@ LOOP: tuple[Stage, ...] = (
 ONCE: tuple[Stage, ...] = (
     *(observe, initial_fit, row_masks, own_parameters, quantisation),
     *LOOP,
-    *(held_out_selection, flipped_bits, grid_cause, changes, final_fit, recordings_alone, answer, listed),
+    *(held_out_selection, spread_check, flipped_bits, grid_cause, changes),
+    *(final_fit, recordings_alone, answer, listed),
     *(rival_fits, further_measurements, predictive_check),
 )
 """Every stage, each once."""

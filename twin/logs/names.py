@@ -16,7 +16,7 @@ _WORDS = {
     "reference": "ref reference true truth soll referenz nominal ideal expected heidenhain autocollimator "
     "consigne theorique referencia riferimento nominale vero vera verdadero",
     "driven": "enc encoder stage stepper step steps motor cmd commanded command target setpoint mech mechanical shaft "
-    "actual table rotary position_ref dividing index_table geber drehgeber welle moteur motore codeur codificador",
+    "actual table rotary position_ref dividing index_table drehgeber welle moteur motore codeur codificador",
     "sensor": "meas measured measurement sensor dut hall magnetic magnet ist gemessen mess messung sensed tmr amr gmr "
     "capteur mesure mesuree sensore misura misurato medido medida",
     "read": "angle output out position pos reading theta phi winkel value rotor wert lage angolo angulo lecture "

@@ -9,9 +9,9 @@ from diagnosis import explain
 from tests.diagnosis.discovery.test_forms import channels, named, sweep, turns
 
 
-@pytest.mark.parametrize("place_deg", [0.0, 137.0])
+@pytest.mark.parametrize("place_deg", [60.0, 137.0])
 def test_a_turn_that_drifts_has_a_seam(place_deg: float) -> None:
-    """In order of the rows it lies between the last and the first; in a table by angle anywhere."""
+    """In a table by angle it lies anywhere; between the last row and the first it may as well be a wrong scale."""
     shaft = turns(200, 1)
     drift = np.radians(0.3) * (np.mod(shaft - np.radians(place_deg), 2.0 * np.pi) / (2.0 * np.pi))
     found = explain(sweep(shaft, channels(shaft + drift), 17)).to_dict()

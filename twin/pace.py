@@ -8,14 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.angles import Array, IntArray
+from twin.running_median import running_median
 
 STOP_AND_MEASURE_S = 0.02
 """Readings farther apart than this, with no speed recorded, were taken at standstill."""
 LEAST_SPEEDS = 0.2
 """Difference of two speeds, as a share of the faster, from which on what follows them may show."""
 
-_NEIGHBOURS = 9
-"""Steps whose median is the pace about one of them: a late stamp or a pause among them does not move it."""
 _TOGETHER = (2, 4, 8, 16, 32)
 """Ticks over which the pace is taken where the clock jitters: of two that are off by a step each, 32 keep 6 %."""
 _FEWEST = 17
@@ -70,17 +69,16 @@ def speed_over_time(shaft_rad: Array, time_s: Array, direction: Array) -> Array:
     ticks = _without_pauses(ticks)
     jitters = _of_stamps(ticks)
     rate = _over_many(ticks) if jitters else _pace(ticks, 1)
-    smooth = _running_median(rate)
+    smooth = running_median(rate)
     jump = np.abs(np.diff(smooth)) > LEAST_SPEEDS * np.maximum(np.abs(smooth[1:]), np.abs(smooth[:-1]))
     cuts = [0, *(np.flatnonzero(jump) + 1).tolist(), rate.size]
     speed = np.empty(ticks.time.size)
     for a, b in itertools.pairwise(cuts):
         changing = _changing(ticks.angle[a : b + 1], ticks.time[a : b + 1])
         if changing is None:
-            speed[a:b] = _mean_pace(ticks, a, b) if jitters else np.median(rate[a:b])
+            speed[a : b + 1] = _mean_pace(ticks, a, b) if jitters else np.median(rate[a:b])
         else:
             speed[a : b + 1] = changing
-    speed[-1] = speed[-2] if changing is None else changing[-1]
     return np.asarray(np.abs(speed[ticks.of_row]) * direction)
 
 
@@ -107,8 +105,8 @@ def _spacing_s(shaft_rad: Array, ticks: _Ticks) -> float:
 def _without_pauses(ticks: _Ticks) -> _Ticks:
     """The same as if the shaft had gone on at its pace where it waited between two readings."""
     turn, step = ticks.steps
-    pace = _running_median(turn / step)
-    waited = (step > _LONG_PAUSE * _running_median(step)) & (_LONG_PAUSE * np.abs(turn) < np.abs(pace) * step)
+    pace = running_median(turn / step)
+    waited = (step > _LONG_PAUSE * running_median(step)) & (_LONG_PAUSE * np.abs(turn) < np.abs(pace) * step)
     if not waited.any():
         return ticks
     going = np.where(waited, np.abs(turn / np.where(waited, pace, 1.0)), step)
@@ -168,11 +166,6 @@ def _scatter(pace: Array) -> float:
     usual = float(np.median(np.abs(pace)))
     change = np.sort(np.abs(np.diff(pace)))[: max(1, pace.size - 1 - pace.size // 20)]
     return float(np.sqrt(np.mean(change**2))) / usual if usual > 0.0 and change.size else 0.0
-
-
-def _running_median(values: Array) -> Array:
-    padded = np.pad(values, _NEIGHBOURS // 2, mode="reflect")
-    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, _NEIGHBOURS), axis=-1))
 
 
 def _changing(angle: Array, time: Array) -> Array | None:

@@ -9,6 +9,7 @@ from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
 USUAL_PERCENT = 0.3
+"""Half width of the range over which devices of one kind differ in it."""
 FAR_PERCENT = 1.0
 """Standard deviation of what is known of it before any sweep, three times the usual half width.
 

@@ -8,6 +8,7 @@ from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import TAU, Array
 from twin.effect import BoolArray
 from twin.motion import Motion
+from twin.running_median import running_median
 
 
 def robust_rms(values: Array) -> float:
@@ -23,8 +24,7 @@ def local_residual(residual: Array) -> Array:
     """Residual (n,) against the median of its neighbours: what single readings do on their own."""
     if residual.size < 12:
         return np.asarray(residual - np.median(residual))
-    padded = np.pad(residual, 4, mode="reflect")
-    return np.asarray(residual - np.median(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=-1))
+    return residual - running_median(residual)
 
 
 def local_rms(residual: Array) -> float:

@@ -82,7 +82,7 @@ def as_lines_of_a_body(fit: Fit, keys: Sequence[str], effect: Effect) -> tuple[F
     well as the cause does.
     """
     lines = lines_of(fit, keys)
-    orders = sorted({int(shape["order"]) for shape in effect.shapes(fit.linear.motion)})
+    orders = _orders(fit, effect)
     held = [key for key, own in lines.items() if len(own) == 1 and own[0] in orders]
     for key, own in lines.items():
         cause = find(key, fit.chain.effects)
@@ -96,8 +96,7 @@ def as_lines_of_a_body(fit: Fit, keys: Sequence[str], effect: Effect) -> tuple[F
         if trial is None:
             continue
         joint, added = trial
-        found = _at_all_orders(with_usual_factors(joint), effect, dict(zip(covered, added, strict=True)), orders)
-        if found is not None and falling_odds(found, own, effect.params["amplitude_deg"].upper) > 0.0:
+        if _fall_off(joint, dict(zip(covered, added, strict=True)), own, effect):
             return joint, (*(one for one in keys if one not in replaced), *added)
     return None
 
@@ -107,18 +106,29 @@ def of_a_body(fit: Fit, keys: Sequence[str], own: Sequence[int], effect: Effect)
 
     ``effect`` is a line of the body; where one of the orders is none of its, they are not.
     """
-    orders = sorted({int(shape["order"]) for shape in effect.shapes(fit.linear.motion)})
+    orders = _orders(fit, effect)
     held = {found[0]: key for key, found in lines_of(fit, keys).items() if len(found) == 1 and found[0] in orders}
-    if not set(own) <= set(held):
-        return False
-    found = _at_all_orders(with_usual_factors(fit), effect, held, orders)
+    return set(own) <= set(held) and _fall_off(fit, held, own, effect)
+
+
+def _orders(fit: Fit, effect: Effect) -> list[int]:
+    """The orders, ascending, at which a body may have a line on this record."""
+    return sorted({int(shape["order"]) for shape in effect.shapes(fit.linear.motion)})
+
+
+def _fall_off(fit: Fit, held: Mapping[int, str], own: Sequence[int], effect: Effect) -> bool:
+    """Whether lines of the orders ``own`` are likelier draws from the law of all lines than of sizes of their own.
+
+    How large they are is counted beside usual factors: the quadratic term makes order 3 too, of any size.
+    """
+    found = _at_all_orders(with_usual_factors(fit), effect, held)
     return found is not None and falling_odds(found, own, effect.params["amplitude_deg"].upper) > 0.0
 
 
-def _at_all_orders(fit: Fit, effect: Effect, held: Mapping[int, str], orders: Sequence[int]) -> Lines | None:
+def _at_all_orders(fit: Fit, effect: Effect, held: Mapping[int, str]) -> Lines | None:
     """The lines that the fit holds, by order, and what it leaves at the other orders; None where one is not told."""
     deviations, base = standard_deviations(fit), Base.of(fit)
-    sizes, scatters = [], []
+    orders, sizes, scatters = _orders(fit, effect), [], []
     for order in orders:
         if order in held:
             sizes.append(float(fit.chain.values[held[order]]["amplitude_deg"]))

@@ -38,7 +38,8 @@ def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> li
     further = (one_more(base, effect, keys) for effect in effects if effect.name in present)
     found += [candidate for candidate in further if candidate is not None]
     found += multiples(base, effects, keys)
-    taken = {order for own in lines_of(base.fit, [*filter(base.fit.chain.values.get, keys)]).values() for order in own}
+    held = [key for key in keys if key in base.fit.chain.values]
+    taken = {order for own in lines_of(base.fit, held).values() for order in own}
     found = [one for one in found if not _where_a_line_is(one, base.fit, taken)]
     return sorted(found, key=lambda c: c.log_p + handicap(c.effect, base.fit))
 

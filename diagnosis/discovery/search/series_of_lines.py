@@ -28,7 +28,7 @@ def as_next_of_a_series(fit: Fit, keys: Sequence[str]) -> tuple[Fit, tuple[str, 
     first, last = series
     following = round(_of(fit, last, "order") / first) + 1
     for key, orders in lines_of(fit, keys).items():
-        if base_name(key) == UNNAMED_ORDER.name or find(key, fit.chain.effects).comb is None or len(orders) > 1:
+        if base_name(key) == UNNAMED_ORDER.name or len(orders) > 1:
             continue
         near = abs(orders[0] - following * first) <= following * resolved(fit)
         if near and _of(fit, key, "amplitude_deg") < _of(fit, last, "amplitude_deg"):
@@ -47,10 +47,10 @@ def _series(fit: Fit, keys: Sequence[str]) -> tuple[float, str] | None:
     if len(lines) < _LEAST:
         return None
     first = _of(fit, lines[0], "order")
-    away = (abs(_of(fit, key, "order") - place * first) for place, key in enumerate(lines, start=1))
-    if any(far > place * resolved(fit) for place, far in enumerate(away, start=1)):
-        return None
-    return first, lines[-1]
+    at_multiples = (
+        abs(_of(fit, key, "order") - place * first) <= place * resolved(fit) for place, key in enumerate(lines, start=1)
+    )
+    return (first, lines[-1]) if all(at_multiples) else None
 
 
 def _of(fit: Fit, key: str, name: str) -> float:

@@ -20,6 +20,7 @@ def spread_check(state: State) -> State:
     if not effects:
         return state
     fit = state.fit
+    # That it was chosen among several was paid for when it was found.
     improbable = {one.name for one in spread_shapes(fit, effects) if one.log_p < state.settings.footprint_log_p}
     gone = [effect.name for effect in effects if effect.name not in improbable]
     if not gone:

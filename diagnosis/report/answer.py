@@ -22,6 +22,7 @@ from diagnosis.discovery.marks.row_numbers import number_in_file
 from diagnosis.discovery.proof.changes import Change
 from diagnosis.discovery.proof.predictive_check import why_not_checked
 from diagnosis.discovery.result import Discovery
+from diagnosis.report.as_read import as_read, values_as_read
 from diagnosis.report.as_well import as_well
 from diagnosis.report.facts import facts, recorded_columns
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
@@ -29,6 +30,7 @@ from diagnosis.report.motion import motion_answer
 from diagnosis.report.over_class import over_class
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.recordings import in_recordings, recordings_answer
+from diagnosis.report.rounded import rounded
 from diagnosis.report.row_counts import MOST_LISTED
 from diagnosis.report.senses import senses
 from diagnosis.setup.checks import checked_sweep
@@ -50,7 +52,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
     kept = ~found.masked if found.masked.any() and not found.masked.all() else np.ones_like(found.masked)
     unnamed = [key for cause in found.causes if cause.name == "unnamed" for key in cause.keys]
     parameters_before, parameters_after = baseline_parameters(found.baseline), _extended_parameters(found)
-    answer: dict[str, Any] = _rounded(
+    answer: dict[str, Any] = rounded(
         {
             "schema": SCHEMA,
             **made.to_dict(),
@@ -305,7 +307,7 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
             told, value = figures[name], float(values[name])
             told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
     figures.update({name: _derived(fit, key, name, figure) for name, figure in derived.items()})
-    return figures
+    return as_read(effect, figures, output_sense=fit.chain.output_sense)
 
 
 def _derived(fit: Fit, key: str, name: str, figure: tuple[float, float, float, str]) -> dict[str, Any]:
@@ -376,7 +378,9 @@ def _counted(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
 
 
 def _structure(found: Discovery, key: str) -> dict[str, Any]:
-    effect, values = find(key, found.fit.chain.effects), found.fit.chain.values[key]
+    chain = found.fit.chain
+    effect = find(key, chain.effects)
+    values = values_as_read(effect, chain.values[key], output_sense=chain.output_sense)
     own = {name: float(value) for name, value in values.items() if np.ndim(value) == 0}
     rows = {name: figure["value"] for name, figure in _row_numbers(found, key).items()}
     return {"kind": effect.kind, **own, **effect.figures(values), **rows}
@@ -384,16 +388,3 @@ def _structure(found: Discovery, key: str) -> dict[str, Any]:
 
 def _rms(values: Any) -> float:
     return float(np.sqrt(np.mean(np.square(values)))) if np.size(values) else float("nan")
-
-
-def _rounded(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_rounded(item) for item in value]
-    if isinstance(value, float | np.floating):
-        number = float(value)
-        return float(f"{number:.7g}") if np.isfinite(number) else None
-    if isinstance(value, np.integer):
-        return int(value)
-    return value

@@ -249,6 +249,10 @@ class Effect:
         """Names of the parameters that a fit moves from their nulls only where that pays."""
         return tuple(name for name, param in self.params.items() if param.detail)
 
+    def details_told_by(self, provides: frozenset[str]) -> tuple[str, ...]:
+        """Those of them that a recording with this shows."""
+        return tuple(name for name in self.details if self.params[name].told_by <= provides)
+
     def null(self) -> dict[str, float]:
         """The parameters at which the effect vanishes exactly."""
         return {name: param.null for name, param in self.params.items()}

@@ -89,6 +89,8 @@ class Param:
         as another effect says the same more plainly.
     detail : bool
         Whether a fit moves it from its null only where the readings call for it, as they must for a cause.
+    told_by : frozenset of str
+        What a recording must hold for a fit to move a detail: without, it is told by what is left over of other errors.
     by_itself : bool
         Whether a shape acts with every strength at its null, so that it counts as one where the question is whether the
         effect does anything. Others mean nothing without a strength.
@@ -115,6 +117,7 @@ class Param:
     aside: bool = False
     sought: tuple[float, float] | None = None
     detail: bool = False
+    told_by: frozenset[str] = frozenset()
     by_itself: bool = False
     scatter: float = 0.0
     owner: Owner | None = None

@@ -133,7 +133,8 @@ def seam(rng: np.random.Generator) -> Case:
     """A turn that drifted, so that its end does not meet its beginning; the table begins elsewhere."""
     points = int(rng.choice([100, 128, 200, 256]))
     shaft, step = a_turn(rng, points=points), float(rng.choice([-1.0, 1.0]) * rng.uniform(0.1, 0.3))
-    began = int(rng.integers(points))
+    # Between the last row and the first a wrong scale does the same.
+    began = int(rng.integers(points // 8, points - points // 8))
     drift = step * ((np.arange(points) - began) % points) / points
     reading = some_sensor(rng, noise_deg=(0.01, 0.03)).reading_deg(shaft, rng) - drift
     return case(shaft, reading, truth={"step_deg": step, "at_deg": shaft[began], "point_deg": 360.0 / points})
@@ -145,8 +146,10 @@ def _right_seam(drawn: Case, answer: Answer) -> bool:
     if "step_deg" not in told:
         return False
     away = (told["centre_deg"]["value"] - drawn.truth["at_deg"] + 180.0) % 360.0 - 180.0
-    least = abs(drawn.truth["step_deg"])
-    return bool(abs(away) <= 2.0 * drawn.truth["point_deg"] and abs(told["step_deg"]["value"] - least) <= 0.25 * least)
+    step = drawn.truth["step_deg"]
+    return bool(
+        abs(away) <= 2.0 * drawn.truth["point_deg"] and abs(told["step_deg"]["value"] - step) <= 0.25 * abs(step)
+    )
 
 
 def error_code(rng: np.random.Generator) -> Case:
@@ -198,7 +201,7 @@ def belt(rng: np.random.Generator) -> Case:
     shaft = a_turn(rng, points=points, turns=2.0)
     error = rng.uniform(0.2, 0.5) * np.sin(np.radians(ratio * shaft) + rng.uniform(0.0, 2.0 * np.pi))
     error += rng.uniform(0.03, 0.08) * np.sin(np.radians(ratio * teeth * shaft) + rng.uniform(0.0, 2.0 * np.pi))
-    reading = some_sensor(rng, noise_deg=(0.01, 0.05)).reading_deg(shaft, rng) + error
+    reading = some_sensor(rng, noise_deg=(0.01, 0.05)).reading_deg(shaft + error, rng)
     return case(shaft, reading, truth={"order": ratio, "mesh": ratio * teeth})
 
 

@@ -85,6 +85,7 @@ MAGNET_HARMONIC = Effect(
             typical=0.5,
             aside=True,
             detail=True,
+            told_by=frozenset({"vx"}),
         ),
     },
     forward=forward,

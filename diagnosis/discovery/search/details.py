@@ -20,8 +20,9 @@ def detailed(fit: Fit, keys: Sequence[str], level: float, effects: Sequence[Effe
     of ``effects`` as a further cause explains the same surely better: a search that went on from the detail would not
     come to it.
     """
+    provides = fit.observations.motion.provides
     for key in keys:
-        for name in find(key, fit.chain.effects).details:
+        for name in find(key, fit.chain.effects).details_told_by(provides):
             fit = _judged(fit, Free(key, name), level, effects=effects, keys=keys)
     return fit
 

@@ -38,6 +38,7 @@ def explain(
     seed: int = 0,
     progress: Listener | None = None,
     on_interrupt: Literal["raise", "answer"] = "raise",
+    budget_s: float = float("inf"),
 ) -> Explanation:
     """Say what the simulation gets wrong about a measured sweep, by name, with proof; or that nothing is wrong.
 
@@ -86,6 +87,11 @@ def explain(
         since whoever interrupts is waiting. A second one raises. Such an answer says so in
         ``to_dict()["cut_short"]``, and its verdict is never ``"adequate"`` or ``"explained"``, but ``"stopped"`` where
         nothing had been found.
+    budget_s : float, optional
+        Seconds of computing, for each recording, after which the search ends where it stands and the answer is what it
+        holds, as after an interrupt. What is proven of it then takes about as long as half of the search, on long
+        recordings. Counted is what this thread computes, not what a clock shows, so a busy machine changes no answer;
+        an answer that was not cut is that without a budget, bit for bit.
 
     Returns
     -------
@@ -132,7 +138,7 @@ def explain(
     from diagnosis.blas_threads import one_blas_thread
     from diagnosis.discovery.pipeline import discover
     from diagnosis.discovery.settings import DiscoverySettings
-    from diagnosis.discovery.watch import Watch, stopped_by_interrupt
+    from diagnosis.discovery.watch import Watch, ended_by_budget, stopped_by_interrupt
     from diagnosis.known_periods import check_periods, check_seen
     from diagnosis.report.provenance import Provenance
     from twin.hall.multipole import with_periods
@@ -142,6 +148,7 @@ def explain(
     made = Provenance.today(seed=checked_seed(seed))
     _check_settings(settings)
     _check_on_interrupt(on_interrupt)
+    _check_budget(budget_s)
     searched = _searched(effects, twin)
     read = _read(sweep, mounting, pole_pairs, columns)
     if pole_pairs is not None and pole_pairs > 1:
@@ -153,9 +160,9 @@ def explain(
     start = _start(searched, mounting, given)
     used = vars(settings or DiscoverySettings()).items()
     LOG.info("seed %d; settings: %s", seed, ", ".join(f"{name} {value}" for name, value in used))
-    watch = Watch(progress)
+    watch = Watch(progress, budget_s=budget_s * len(read))
     listening = stopped_by_interrupt(watch) if on_interrupt == "answer" else nullcontext()
-    with one_blas_thread(), listening:
+    with one_blas_thread(), listening, ended_by_budget(watch):
         state = _begun(read, given=given, start=start, mounting=mounting, settings=settings, rng=rng, watch=watch)
         found = discover(state)
     return Explanation(found, made)
@@ -311,6 +318,15 @@ def _check_on_interrupt(on_interrupt: str) -> None:
 
     if on_interrupt not in ("raise", "answer"):
         raise UserError(f"on_interrupt is {shown(on_interrupt)}; expected 'raise' or 'answer'")
+
+
+def _check_budget(budget_s: float) -> None:
+    """Raise UserError for what is no time."""
+    from twin.errors import UserError
+    from twin.shown import shown
+
+    if not (isinstance(budget_s, int | float) and budget_s > 0.0):
+        raise UserError(f"budget_s is {shown(budget_s)}; expected seconds of computing, above 0")
 
 
 def _searched(own: OwnEffects, twin: TwinLike | None) -> tuple[Effect, ...]:

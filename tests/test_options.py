@@ -54,6 +54,7 @@ WORDS = frozenset(
 RIGHT: dict[str, str] = {
     "--seed": "0",
     "--band": "36.9",
+    "--budget": "36.9 1e308 inf",
     "--speed-rpm": "0 36.9",
     "bench --speed-rpm": "0",
     "--temperatures": "-1 0 36.9",

@@ -244,14 +244,9 @@ class Effect:
             return not all(self.params[name].at_null(values[name]) for name in self.acting)
         return not self.is_null(values)
 
-    @property
-    def details(self) -> tuple[str, ...]:
-        """Names of the parameters that a fit moves from their nulls only where that pays."""
-        return tuple(name for name, param in self.params.items() if param.detail)
-
-    def details_told_by(self, provides: frozenset[str]) -> tuple[str, ...]:
-        """Those of them that a recording with this shows."""
-        return tuple(name for name in self.details if self.params[name].told_by <= provides)
+    def details(self, provides: frozenset[str]) -> tuple[str, ...]:
+        """Names of what a fit of such a recording moves from its null only where that pays."""
+        return tuple(name for name, param in self.params.items() if param.detail and param.told_by <= provides)
 
     def null(self) -> dict[str, float]:
         """The parameters at which the effect vanishes exactly."""

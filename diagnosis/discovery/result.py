@@ -18,6 +18,7 @@ from diagnosis.discovery.proof.misfit import Misfit, misfits
 from diagnosis.discovery.proof.predictive_check import PredictiveCheck
 from diagnosis.discovery.proof.whole_recordings import are_halves
 from diagnosis.discovery.state import State
+from diagnosis.discovery.watch import EndedBy
 from twin.angles import Array
 from twin.catalogue import unnamed
 from twin.chain import Chain
@@ -36,15 +37,15 @@ class Discovery:
 
     ``baseline`` is the paper's error model alone, ``fit`` the extended one; ``masked`` the raw rows (n_raw,) that
     belong to single-reading causes; ``invisible`` the effects that this sweep cannot show, with what it lacks;
-    ``cut_short`` the stage in which the search was stopped, where it was; ``misfits`` what the extended twin does not
-    predict although neither a cause nor structure tells of it. ``changed`` are the parameters of a given twin that have
-    moved, ``other_device`` whether so many have that it is another device's, ``fitted_anew`` whether the others were
-    not held at the twin's values. ``in_factors`` are effects that an angle alone never tells from the error model's
-    factors, which hold what they do. ``rival_fits`` are the fits with another effect, whose name stands beside, in the
-    place of a cause. ``alone`` is each of several recordings fitted by itself, and ``whole_recordings`` whether these
-    were held out as a whole. ``words`` are the effects on the words as they were sent: ``sweep`` holds the readings
-    without them, ``fit`` is of these, and the device has them; ``told_back`` (n,) [rad] is what readings that
-    were told back had been off by, None where none was.
+    ``cut_short`` the stage in which the search was stopped, where it was, and ``cut_by`` what did it; ``misfits``
+    what the extended twin does not predict although neither a cause nor structure tells of it. ``changed`` are the
+    parameters of a given twin that have moved, ``other_device`` whether so many have that it is another device's,
+    ``fitted_anew`` whether the others were not held at the twin's values. ``in_factors`` are effects that an angle
+    alone never tells from the error model's factors, which hold what they do. ``rival_fits`` are the fits with
+    another effect, whose name stands beside, in the place of a cause. ``alone`` is each of several recordings
+    fitted by itself, and ``whole_recordings`` whether these were held out as a whole. ``words`` are the effects on
+    the words as they were sent: ``sweep`` holds the readings without them, ``fit`` is of these, and the device has
+    them; ``told_back`` (n,) [rad] is what readings that were told back had been off by, None where none was.
     """
 
     sweep: Sweep
@@ -68,6 +69,7 @@ class Discovery:
     lack: LackOfFit | None = None
     misfits: tuple[Misfit, ...] = ()
     cut_short: str | None = None
+    cut_by: EndedBy | None = None
     alone: tuple[Alone, ...] = ()
     rival_fits: tuple[tuple[str, Fit], ...] = ()
     whole_recordings: bool = False
@@ -116,6 +118,7 @@ class Discovery:
             lack=state.lack,
             misfits=misfits(fit, state.likeness, state.lack),
             cut_short=state.watch.stopped_in,
+            cut_by=state.watch.ended_by,
             alone=state.alone,
             rival_fits=state.rival_fits,
             words=state.words,

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 from diagnosis.progress import Listener, Progress
 from twin.log import LOG
 
 S = TypeVar("S")
+EndedBy = Literal["interrupt", "budget"]
+"""What ends a search where it stands: somebody's word, or that the computing time given to it is spent."""
 
 
 class Stopped(KeyboardInterrupt):
@@ -22,11 +26,15 @@ class Stopped(KeyboardInterrupt):
 class Watch:
     """Hears where a search stands, hands it on to a listener, and ends the search when asked to.
 
-    ``stopped_in`` is the stage that was cut short or never begun; None where the search came to its own end.
+    ``stopped_in`` is the stage that was cut short or never begun, and ``ended_by`` what did it; None where the search
+    came to its own end. ``budget_s`` is the computing time of this thread, from here on, at which it is ended. What is
+    computed is counted and not what the clock on the wall shows, so that a busy machine changes no answer.
     """
 
-    def __init__(self, listener: Listener | None = None) -> None:
+    def __init__(self, listener: Listener | None = None, *, budget_s: float = math.inf) -> None:
         self.stopped_in: str | None = None
+        self.ended_by: EndedBy | None = None
+        self._spent_at_s = time.thread_time() + budget_s
         self._listener = listener
         self._began_s = time.monotonic()
         self._stage = ""
@@ -50,6 +58,7 @@ class Watch:
         if self._searching and self.stopped_in is not None:
             # Code of the user's own has caught what was raised in it.
             raise Stopped
+        self.end_if_spent()
         try:
             self._tell()
         except StopIteration:
@@ -63,8 +72,7 @@ class Watch:
 
     def stop(self) -> None:
         """End the search where it stands, do not begin it; where it is over already, change nothing."""
-        if self.stopped_in is None and not self._over:
-            self.stopped_in = self._stage
+        self._end("interrupt")
         if not self._asked_to_stop:
             self._asked_to_stop = True
             # At once: what is left to do takes seconds, in which a person asks whether the word was heard.
@@ -72,6 +80,23 @@ class Watch:
                 self._tell()
         if self._searching:
             raise Stopped
+
+    @property
+    def left_s(self) -> float:
+        """What is left of the budget."""
+        return self._spent_at_s - time.thread_time()
+
+    def end_if_spent(self) -> None:
+        """End the search where it stands, or do not begin it, once the budget is spent."""
+        if self.left_s > 0.0 or self._over:
+            return
+        self._end("budget")
+        if self._searching:
+            raise Stopped
+
+    def _end(self, by: EndedBy) -> None:
+        if self.stopped_in is None and not self._over:
+            self.stopped_in, self.ended_by = self._stage, by
 
     def until_stopped(self, search: Callable[[S], S], state: S) -> S:
         """The state that a search ends with; the one last told of where it is stopped before."""
@@ -108,3 +133,35 @@ def stopped_by_interrupt(watch: Watch) -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+_LOOKED_AT_S = 0.05
+"""From one look at the budget to the next, at least: the process may have computed in other threads too."""
+
+
+@contextmanager
+def ended_by_budget(watch: Watch) -> Iterator[None]:
+    """A search ends within a stage too, as soon as its budget is spent.
+
+    In a thread, on a system without interval timers, or under a profiler that uses the one of the process, it ends when
+    the stage next tells where it stands.
+    """
+    if sys.platform == "win32" or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    if not math.isfinite(watch.left_s) or signal.getsignal(signal.SIGPROF) is not signal.SIG_DFL:
+        yield
+        return
+
+    def look(number: int, frame: Any) -> None:
+        if watch.left_s > 0.0:
+            signal.setitimer(signal.ITIMER_PROF, max(watch.left_s, _LOOKED_AT_S))
+        watch.end_if_spent()
+
+    signal.signal(signal.SIGPROF, look)
+    signal.setitimer(signal.ITIMER_PROF, max(watch.left_s, _LOOKED_AT_S))
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)

@@ -142,7 +142,7 @@ def _cut_short(found: Discovery) -> dict[str, str] | None:
         left = "whether any cause is there: none had been found that stands on held-out readings"
     else:
         left = "whether there are further causes, or better ones in the place of those found"
-    return {"stage": found.cut_short, "left_open": left}
+    return {"stage": found.cut_short, "left_open": left, "by": str(found.cut_by)}
 
 
 def _sweep(found: Discovery) -> dict[str, Any]:

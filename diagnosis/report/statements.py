@@ -287,7 +287,12 @@ def _stated_words(answer: Mapping[str, Any]) -> str:
 def cut_words(answer: Mapping[str, Any]) -> str:
     """That the search was stopped, and what that leaves open; empty where it came to its own end."""
     cut = answer.get("cut_short")
-    return f" The search was stopped before its end, which leaves open {cut['left_open']}." if cut else ""
+    if not cut:
+        return ""
+    if cut["by"] == "budget":
+        spent = "The search ended as its budget of computing time was spent (--budget)"
+        return f" {spent}, which leaves open {cut['left_open']}."
+    return f" The search was stopped before its end, which leaves open {cut['left_open']}."
 
 
 def lack_words(answer: Mapping[str, Any]) -> str:

@@ -17,6 +17,7 @@ from scenarios.cli.options import (
     PolePairs,
     Seed,
     fail_on_option,
+    running,
     written,
 )
 from scenarios.cli.reproduce import command_line
@@ -71,6 +72,14 @@ def explain(
     effects: EffectFiles = None,
     columns: Columns = None,
     max_size: MaxSize = "2GB",
+    budget: Annotated[
+        float,
+        running(
+            "End the search after so much computing, in s for each recording, and answer with what it holds; inf: "
+            "search to its end.",
+            metavar="SECONDS",
+        ),
+    ] = 120.0,
     seed: Seed = 0,
     fail_on: Annotated[
         list[str] | None,
@@ -81,7 +90,7 @@ def explain(
     ] = None,
 ) -> None:
     """Say what the simulation gets wrong about a measured sweep, name the cause, extend the twin, measure the gain."""
-    from scenarios.commands.explain import Outputs, run
+    from scenarios.commands.explain import Outputs, Search, run
     from scenarios.commands.inputs import SweepFiles
     from scenarios.commands.known import Known
     from twin.bounded_input import bytes_of
@@ -91,8 +100,7 @@ def explain(
         each=each,
         known=Known(twin=twin, magnet=magnet, air_gap=air_gap, turned=mounting),
         outputs=Outputs(json=json, report=report, extended=extended, plot=plot, force=force),
-        effect_files=effects or (),
-        seed=seed,
+        search=Search(effect_files=effects or (), budget_s=budget, seed=seed),
         fail_on=fail_on or (),
         command=command_line(context),
     )

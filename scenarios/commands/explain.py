@@ -42,19 +42,31 @@ class Outputs:
     force: bool = False
 
 
+@dataclass(frozen=True, kw_only=True)
+class Search:
+    """How it is searched: effects of one's own, the computing time for each recording, the seed."""
+
+    effect_files: Sequence[Path] = ()
+    budget_s: float
+    seed: int
+
+    def __post_init__(self) -> None:
+        if not self.budget_s > 0.0:
+            raise UserError(f"--budget is {self.budget_s:g}; expected seconds of computing above 0, or inf for no end")
+
+
 def run(
     sweeps: SweepFiles,
     *,
     each: bool = False,
     known: Known,
     outputs: Outputs,
-    effect_files: Sequence[Path] = (),
-    seed: int,
+    search: Search,
     fail_on: Sequence[str] = (),
     command: str | None = None,
 ) -> None:
     """The command: print the answer, write what was asked for. Raises UserError before anything is written."""
-    effects = effects_with(effect_files)
+    effects = effects_with(search.effect_files)
     words = _asked(fail_on, effects)
     paths = sweeps.paths() if sweeps.one is None else [sweeps.one]
     one_by_one = each and len(paths) > 1
@@ -62,13 +74,13 @@ def run(
         _check_one_by_one(outputs, known)
     files = OutputFiles.checked(
         [(outputs.json, JSON), (outputs.report, HTML), (outputs.extended, TOML), (outputs.plot, PICTURE)],
-        inputs=[*paths, known.twin, *effect_files],
+        inputs=[*paths, known.twin, *search.effect_files],
         force=outputs.force,
     )
     # Before a long recording is read: a name that is none needs no waiting for.
     held = None if known.twin is None else read_twin_or_preset(known.twin, effects=effects)
-    given: dict[str, Any] = {"twin": held, "mounting": known.mounting(), "effects": effect_files, "seed": seed}
-    given["pole_pairs"] = sweeps.pole_pairs
+    given: dict[str, Any] = {"twin": held, "mounting": known.mounting(), "pole_pairs": sweeps.pole_pairs}
+    given |= {"effects": search.effect_files, "seed": search.seed, "budget_s": search.budget_s}
     read = [sweeps.recording(p, name=name) for p, name in zip(paths, distinct_names(paths), strict=True)]
     if one_by_one:
         _one_by_one(read, given, files=files, json=outputs.json, command=command, words=words)
@@ -90,7 +102,7 @@ def run(
             }
         )
     files.tell_written()
-    if answer["cut_short"] is not None:
+    if _interrupted(answer):
         raise SystemExit(INTERRUPTED)
     raise_found(words, in_explanation(answer))
 
@@ -128,14 +140,20 @@ def _one_by_one(
             if len(answers) > 1:
                 print()
             show(answers[-1])
-            if answers[-1]["cut_short"] is not None:
+            if _interrupted(answers[-1]):
                 break
     finally:
         files.write({json: lambda: json_text({"schema": EACH, "answers": answers})})
     files.tell_written()
-    if answers[-1]["cut_short"] is not None:
+    if _interrupted(answers[-1]):
         raise SystemExit(INTERRUPTED)
     raise_found(words, {kind: count for answer in answers for kind, count in in_explanation(answer).items()})
+
+
+def _interrupted(answer: Mapping[str, Any]) -> bool:
+    """Whether a person has ended the search: one that ran out of its budget is an answer as asked for."""
+    cut = answer["cut_short"]
+    return cut is not None and cut["by"] == "interrupt"
 
 
 def _asked(given: Sequence[str], effects: Sequence[Effect]) -> tuple[str, ...]:

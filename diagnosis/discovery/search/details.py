@@ -22,7 +22,7 @@ def detailed(fit: Fit, keys: Sequence[str], level: float, effects: Sequence[Effe
     """
     provides = fit.observations.motion.provides
     for key in keys:
-        for name in find(key, fit.chain.effects).details_told_by(provides):
+        for name in find(key, fit.chain.effects).details(provides):
             fit = _judged(fit, Free(key, name), level, effects=effects, keys=keys)
     return fit
 

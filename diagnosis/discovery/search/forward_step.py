@@ -162,7 +162,9 @@ def _in_the_place_of_a_shape(
     if not gains:
         return []
     least = fit.settings.rival_share * max(gains)
-    named = (one for one in ranked if one.effect.details and not unnamed(one.effect.name) and one.gain > least)
+    provides = fit.observations.motion.provides
+    named = (one for one in ranked if one.effect.details(provides) and not unnamed(one.effect.name))
+    named = (one for one in named if one.gain > least)
     return [one for candidate in named if (one := in_detail(Trial.of(fit, candidate), threshold)) is not None]
 
 

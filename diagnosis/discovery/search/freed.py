@@ -32,7 +32,7 @@ def with_detail(fit: Fit, detail: Free, level: float) -> Fit | None:
 def in_detail(trial: Trial, level: float) -> Trial | None:
     """A trial with those details of its cause free that pay, see :func:`with_detail`; None where none does."""
     fit, count = trial.fit, 0
-    for name in trial.candidate.effect.details_told_by(fit.observations.motion.provides):
+    for name in trial.candidate.effect.details(fit.observations.motion.provides):
         wide = with_detail(fit, Free(trial.key, name), level)
         if wide is not None and detail_log_p(fit, wide) < level:
             fit, count = wide, count + 1

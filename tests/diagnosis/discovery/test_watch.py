@@ -7,6 +7,7 @@ import functools
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 
 import pytest
@@ -16,7 +17,7 @@ from diagnosis.discovery.pipeline import PIPELINE, discover
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.state import State, until_still
-from diagnosis.discovery.watch import Stopped, Watch, stopped_by_interrupt
+from diagnosis.discovery.watch import Stopped, Watch, ended_by_budget, stopped_by_interrupt
 from diagnosis.progress import Listener
 from tests.diagnosis.discovery.sweeps import ONCE, Made, before, start_of, sweep_of
 from twin.errors import UserError
@@ -233,3 +234,75 @@ def test_a_pipeline_of_ones_own_is_watched_too() -> None:
     start = start_of(Made(points=72))
     discover(start.with_(watch=Watch(heard.append)), (*PIPELINE, of_my_own))
     assert heard[-1].stage == "of_my_own"
+
+
+def compute(seconds: float) -> None:
+    """Busy for so much computing time of this thread."""
+    until_s = time.thread_time() + seconds
+    while time.thread_time() < until_s:
+        pass
+
+
+def test_a_search_that_has_spent_its_budget_is_finished_and_proven(monkeypatch: pytest.MonkeyPatch) -> None:
+    now_s = 0.0
+    monkeypatch.setattr(time, "thread_time", lambda: now_s)
+
+    def spend() -> None:
+        nonlocal now_s
+        now_s = 61.0
+
+    listen, heard = when(one_is_held, spend)
+    found = explain(sweep_of(TWO), progress=listen, budget_s=60.0)
+    cut = found.to_dict()["cut_short"]
+    assert (cut["stage"], cut["by"]) == ("stepwise", "budget")
+    (cause,) = found.causes
+    assert cause.heldout_rms_deg_after < cause.heldout_rms_deg_before
+    assert found.verdict == "partly explained"
+    assert "its budget of computing time was spent (--budget)" in " ".join(found.summary().split())
+    # Nobody has asked for it, so nobody is told that the word was heard.
+    assert not any(one.stopped for one in heard)
+
+
+def test_a_budget_ends_a_stage_that_says_nothing() -> None:
+    """A stage may compute for long without a word: the process' own timer looks, and the state told last is kept."""
+    watch = Watch(budget_s=0.2)
+    start = start_of(TWO)
+    began_s = time.thread_time()
+
+    def long(state: State) -> State:
+        compute(60.0)
+        raise AssertionError("the stage ran to its end")
+
+    with ended_by_budget(watch):
+        assert watch.until_stopped(long, start) is start
+    assert watch.ended_by == "budget"
+    # The timer of the process ticks every few milliseconds; a twentieth of the 60 s is far beyond any of them.
+    assert time.thread_time() - began_s < 3.0
+    assert signal.getsignal(signal.SIGPROF) is signal.SIG_DFL
+    assert signal.getitimer(signal.ITIMER_PROF)[0] == 0.0
+
+
+def test_a_budget_counts_what_its_own_thread_computes() -> None:
+    """What another thread computes meanwhile sets off the timer of the process, and ends nothing."""
+    busy = threading.Thread(target=lambda: compute(0.4), daemon=True)
+    watch = Watch(budget_s=0.3)
+    start = start_of(TWO)
+
+    def waits(state: State) -> State:
+        busy.start()
+        busy.join()
+        return state.with_(looked_at=99)
+
+    with ended_by_budget(watch):
+        assert watch.until_stopped(waits, start).looked_at == 99
+    assert watch.ended_by is None
+
+
+def test_a_budget_that_is_not_spent_changes_nothing() -> None:
+    assert explain(sweep_of(TWO), budget_s=600.0).to_dict() == unwatched().to_dict()
+
+
+@pytest.mark.parametrize("budget_s", [0.0, -1.0, float("nan"), "10"])
+def test_what_is_no_budget_is_refused(budget_s: object) -> None:
+    with pytest.raises(UserError, match="expected seconds of computing, above 0"):
+        explain(sweep_of(TWO), budget_s=budget_s)  # type: ignore[arg-type]

@@ -61,6 +61,13 @@ def test_a_detail_stays_at_its_null_where_another_cause_does_it() -> None:
 
 def test_a_cause_without_details_is_left_alone() -> None:
     fit = with_cause(before(stepwise, BACK), "saturation", k_percent=0.2).fit
-    assert find("saturation").details == ()
+    assert find("saturation").details(fit.observations.motion.provides) == ()
     assert detailed(fit, ["saturation"], LEVEL) is fit
     assert np.all(np.isfinite(fit.residual))
+
+
+def test_a_detail_that_the_channels_tell_is_left_alone_in_angles() -> None:
+    """A radius alters an angle by its product with other errors alone: what fits there tells of nothing."""
+    harmonic = find("magnet_harmonic")
+    assert harmonic.details(frozenset({"vx", "vy"})) == ("radius_ratio",)
+    assert harmonic.details(frozenset({"one turn"})) == ()

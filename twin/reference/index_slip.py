@@ -45,11 +45,15 @@ def find(words: Words) -> WordFault | None:
     before, motion = words.expected, words.motion
     rows = np.flatnonzero(words.usable & (np.abs(before.residual) < NEAR_RAD))
     least = words.step / np.sqrt(12.0)
-    if motion is None or rows.size < _FEWEST or before.sigma <= 2.0 * max(noise_of(before.residual[rows]), least):
+    if motion is None or rows.size < _FEWEST:
+        return None
+    left_rad = before.residual[rows]
+    # Not the robust deviation: a jump in the first or last tenth of a record leaves that as it is.
+    if np.std(left_rad) <= _NOISE_RATIO * max(noise_of(left_rad), least):
         return None
     off = wrap(words.measured - before.sense * words.reference - before.zero)[rows]
-    jumps, sizes, sigma = _jumps(words.reference[rows], off, before.sense, float(least))
-    if len(jumps) < 2 or np.min(np.abs(sizes)) < _LEAST_SIGMA * max(sigma, words.step) or sigma > 0.5 * before.sigma:
+    jumps, sizes = _jumps(words.reference[rows], off, before.sense, float(least))
+    if len(jumps) < 2:
         return None
     at = rows[jumps]
     if np.min(np.diff(np.sort(at))) < _FEWEST_BETWEEN or np.any(_moves_otherwise(motion, at)):
@@ -63,28 +67,31 @@ def find(words: Words) -> WordFault | None:
     return WordFault(told[0], -np.inf, after[0], none, words.measured - sizes @ after, also=tuple(told[1:]))
 
 
-def _jumps(reference: Array, off: Array, sense: float, least: float) -> tuple[list[int], Array, float]:
-    """Places (from 0) and sizes [rad] of the jumps in angles (n,) [rad], and the robust deviation of what is left.
+def _jumps(reference: Array, off: Array, sense: float, least: float) -> tuple[list[int], Array]:
+    """Places (from 0) and sizes [rad] of the clear jumps in angles (n,) [rad] that leave no more than noise; or none.
 
     ``least`` [rad] is the least that noise can be: that of the words' rounding.
     """
     jumps: list[int] = []
-    shaft = reference
-    for _ in range(MOST_JUMPS):
+    sizes, shaft, noisy = np.zeros(0), reference, False
+    for _ in range(MOST_JUMPS + 1):
         columns = of_orders(shaft, ORDERS)
-        jumps.append(_best(columns, off, jumps))
-        for place in range(len(jumps)) if len(jumps) > 1 else ():
-            jumps[place] = _best(columns, off, jumps[:place] + jumps[place + 1 :])
+        more = [*jumps, _best(columns, off, jumps)]
+        for place in range(len(more)) if jumps else ():
+            more[place] = _best(columns, off, more[:place] + more[place + 1 :])
         for _ in range(2):
             # Behind a jump the shaft stands elsewhere than the reference says, and so does the error's curve.
-            design = _with_jumps(of_orders(shaft, ORDERS), jumps)
+            design = _with_jumps(of_orders(shaft, ORDERS), more)
             found = np.linalg.lstsq(design, off, rcond=None)[0]
-            left, sizes = off - design @ found, np.asarray(found[-len(jumps) :])
-            shaft = reference + sense * design[:, -len(jumps) :] @ sizes
+            left, steps = off - design @ found, np.asarray(found[-len(more) :])
+            shaft = reference + sense * design[:, -len(more) :] @ steps
         sigma = float(1.4826 * np.median(np.abs(left)))
-        if sigma <= _NOISE_RATIO * max(noise_of(left), least):
-            return jumps, sizes, sigma
-    return [], np.zeros(0), 0.0
+        if noisy and np.min(np.abs(steps)) < _LEAST_SIGMA * max(sigma, np.sqrt(12.0) * least):
+            # Those found before leave noise in which no further one is clear.
+            return jumps, sizes
+        jumps, sizes = more, steps
+        noisy = sigma <= _NOISE_RATIO * max(noise_of(left), least)
+    return [], np.zeros(0)
 
 
 def _with_jumps(columns: Array, jumps: Sequence[int]) -> Array:
@@ -102,12 +109,22 @@ def _best(columns: Array, off: Array, others: Sequence[int]) -> int:
 def _moves_otherwise(motion: Motion, at: IntArray) -> BoolArray:
     """Whether direction, turn, speed or temperature is another some rows behind each of these (m,) than ahead of it."""
     ahead, behind = (np.clip(at + by, 0, len(motion) - 1) for by in (-_CLEAR, _CLEAR))
-    speed = motion.speed_rad_s
     changed = motion.direction[ahead] != motion.direction[behind]
     if "turn" in motion.columns:
         changed |= motion.turn[ahead] != motion.turn[behind]
-    changed |= np.abs(speed[ahead] - speed[behind]) > 0.05 * max(float(np.max(np.abs(speed))), 1e-9)
+    paces = np.array(
+        [[_pace(motion, row - _FEWEST_BETWEEN, row), _pace(motion, row, row + _FEWEST_BETWEEN)] for row in at]
+    )
+    changed |= np.abs(np.diff(paces, axis=1)[:, 0]) > 0.05 * np.max(np.abs(paces), axis=1)
     return np.asarray(changed | (np.abs(motion.temperature_c[ahead] - motion.temperature_c[behind]) > 1.0))
+
+
+def _pace(motion: Motion, first: int, end: int) -> float:
+    """Median speed [rad/s] from one of these rows to the next: of a jump at either end it knows nothing."""
+    rows = slice(max(first, 0), end)
+    duration = np.diff(motion.time_s[rows])
+    steps = wrap(np.diff(motion.shaft_rad[rows]))[duration > 0.0] / duration[duration > 0.0]
+    return float(np.median(steps)) if steps.size else 0.0
 
 
 def said(values: Mapping[str, float]) -> str:

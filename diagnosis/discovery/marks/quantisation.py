@@ -59,13 +59,18 @@ def finite_set(
 
     ``step`` is the output grid [rad] that the set is rounded to. Chance is the share of the grid's cells that are in
     the set, to the power of the different words; a reading outside it is an error of the link, as rare as these are.
+    Readings at even steps all round tell of no set: they were chosen, as the index of a table is.
     Returns the parameters and the log of the chance at any of those tried; none and 0: no such set.
     """
     assert effect.attainable is not None
     resolution = step if step > 0.0 else np.radians(2e-4)
     cells = round(TAU / resolution)
     words = np.round(measured / resolution).astype(np.int64) % cells
-    distinct = np.unique(words).size
+    different = np.unique(words)
+    distinct = different.size
+    if np.ptp(np.diff(different, append=different[0] + cells)) <= 2:
+        # Each is rounded to a cell, so that two steps differ by up to two.
+        return {}, 0.0
     best: tuple[Mapping[str, float], float] = ({}, 0.0)
     for values in tried:
         cell = np.round(effect.attainable(values) / resolution).astype(np.int64)[:, None]

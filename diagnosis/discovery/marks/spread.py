@@ -165,12 +165,17 @@ def _half_chi_square(gain: float) -> float:
     return float(log_ndtr(-np.sqrt(max(gain, 0.0))))
 
 
-def bursts(fit: Fit) -> SpreadFinding | None:
-    """The stretch of rows with the most outstanding variance, if its noise is clearly louder than that of the rest."""
+def bursts(fit: Fit, *, against_neighbours: bool = False) -> SpreadFinding | None:
+    """The stretch of rows with the most outstanding variance, if its noise is clearly louder than that of the rest.
+
+    ``against_neighbours`` judges each row by how far it is off the mean of the two beside it. Where the search is still
+    to come, what a slip or a seam leaves on one side of it is as far off as loud noise is, but off together.
+    """
     if not _scatter_tells(fit):
         return None
     use = fit.observations.usable
-    stretch = _loudest_stretch(np.where(use, np.minimum(white_rows(fit) ** 2, _FARTHEST), 0.0), use)
+    rows = _against_neighbours(white_rows(fit), use) if against_neighbours else white_rows(fit)
+    stretch = _loudest_stretch(np.where(use, np.minimum(rows**2, _FARTHEST), 0.0), use)
     if stretch is None or stretch.ratio < fit.settings.burst_ratio:
         return None
     sigma = float(np.sqrt(np.mean(fit.residual[0][use] ** 2)))
@@ -182,9 +187,31 @@ def bursts(fit: Fit) -> SpreadFinding | None:
         "last_row": float(stretch.last),
         "rms_deg": float(np.degrees(base * np.sqrt(stretch.ratio - 1.0))),
     }
-    square = np.minimum(white_rows(fit)[use] ** 2, _FARTHEST)
-    log_p = _half_chi_square(stretch.gain / _inflation(square / share[use])) + float(np.log(max(stretch.looks, 1)))
+    inflation = _inflation(np.minimum(rows[use] ** 2, _FARTHEST) / share[use])
+    if against_neighbours:
+        inflation *= _OVERLAP
+    log_p = _half_chi_square(stretch.gain / inflation) + float(np.log(max(stretch.looks, 1)))
     return SpreadFinding(UNNAMED_BURST.name, values, stretch.gain, log_p, base**2 * share, {})
+
+
+_OVERLAP = 1.0 + 2.0 * ((2.0 / 3.0) ** 2 + (1.0 / 6.0) ** 2)
+"""By how much more the mean of squared differences from neighbours scatters than that of as many independent squares:
+1, and twice the squared correlations of what are one and two rows apart, -2/3 and 1/6 for white noise."""
+
+
+def _against_neighbours(rows: Array, use: BoolArray) -> Array:
+    """Rows (n,) less the mean of the rows in use beside each, as large for white noise as they are; ends have one."""
+    place = np.flatnonzero(use)
+    if place.size < 3:
+        return rows
+    used = rows[place]
+    left, right = np.concatenate([used[1:2], used[:-1]]), np.concatenate([used[1:], used[-2:-1]])
+    off = np.sqrt(2.0 / 3.0) * (used - 0.5 * (left + right))
+    # A difference from one neighbour alone has twice the variance of a row, not one and a half times.
+    off[[0, -1]] *= np.sqrt(3.0 / 4.0)
+    found = np.zeros(rows.size)
+    found[place] = off
+    return found
 
 
 @dataclass(frozen=True)

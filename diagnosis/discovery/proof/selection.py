@@ -10,6 +10,7 @@ import numpy as np
 
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
+from diagnosis.discovery.fitting.projection import projected
 from diagnosis.discovery.proof.bootstrap import noise_of
 from diagnosis.discovery.proof.cross_validation import folds, held_out_residuals, rms_deg, scattered
 from diagnosis.discovery.proof.family_wise import FamilyWise, family_wise
@@ -19,7 +20,7 @@ from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.rivals import Judged, judge
 from twin.angles import Array, IntArray
 from twin.catalogue import base_name, output_grid
-from twin.effect import Effect
+from twin.effect import BoolArray, Effect
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,15 +152,24 @@ def _held_out(fit: Fit, keys: Sequence[str], fold: IntArray, *, at_once: bool) -
 
 
 def least_seen(fit: Fit, keys: Sequence[str], fold: IntArray) -> float:
-    """Least share of what any strength of the causes does, as squares, on the rows outside of one fold; 1 of none.
+    """Least share of what a strength of the causes alone does, as squares, on the rows outside of one fold; 1 of none.
 
-    A shape that the rows left do not tell, as a memory after the only reversal, leaves the strength to be proven.
+    What the other parameters of the fit can do on those rows tells nothing of it: a step near the beginning of a record
+    is a zero on all rows behind it, and goes with the few ahead of it. A shape that the rows left do not tell, as a
+    memory after the only reversal, leaves the strength to be proven.
     """
-    columns = fit.jacobian[[free.key in keys and is_strength(fit, free) for free in fit.free]]
-    squares = np.sum(np.where(fit.observations.usable, columns, 0.0) ** 2, axis=1)
-    squares = squares[np.any(squares > 0.0, axis=1)]
-    inside = np.stack([squares[:, fold == number].sum(axis=1) for number in np.unique(fold)])
-    return float(np.min(1.0 - inside / squares.sum(axis=1), initial=1.0))
+    own = np.array([free.key in keys for free in fit.free], dtype=bool)
+    strength = own & [is_strength(fit, free) for free in fit.free]
+    slopes = np.where(fit.observations.usable, fit.jacobian, 0.0)
+
+    def alone(rows: BoolArray) -> Array:
+        columns = slopes[..., rows].reshape(len(slopes), -1)
+        return np.asarray(np.sum(projected(columns[strength], columns[~own]) ** 2, axis=1))
+
+    squares = alone(np.ones(fold.size, dtype=bool))
+    shown = squares > 0.0
+    seen = [np.min(alone(fold != number)[shown] / squares[shown], initial=1.0) for number in np.unique(fold)]
+    return float(min(seen))
 
 
 def _calibrated(

@@ -10,15 +10,16 @@ from diagnosis.discovery.state import State
 def variance(state: State) -> State:
     """Weigh the rows by a stretch or a shape of louder noise that is beyond doubt.
 
-    Nothing is named yet: structure that is still unknown passes for uneven noise. Once a search has been made, the
-    spread of what it leaves is judged instead (:func:`~diagnosis.discovery.stages.spread.spread`).
+    Nothing is named yet: structure that is still unknown passes for uneven noise, the less so the smoother it is. Once
+    a search has been made, the spread of what it leaves is judged instead
+    (:func:`~diagnosis.discovery.stages.spread.spread`).
     """
     several = state.fit.observations.motion.recordings is not None
     if state.looked_at or several:
         # What common factors leave in one of several recordings is loud, and is what tells the causes from each other.
         return state
     fit = state.fit
-    shapes, burst = spread_shapes(fit, state.effects), bursts(fit)
+    shapes, burst = spread_shapes(fit, state.effects), bursts(fit, against_neighbours=True)
     # A shape by the speed is louder in one stretch too, where the shaft was fastest.
     louder = min([*shapes, *([burst] if burst is not None else [])], key=lambda one: one.log_p, default=None)
     if louder is None or louder.log_p >= state.settings.beyond_doubt_log_p:

@@ -146,7 +146,7 @@ def test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost(
     fit = handed().fit
     fold = folds(fit)
     column = np.where(fold == 1, np.sqrt((1.0 - share) / np.sum(fold == 1)), np.sqrt(share / np.sum(fold != 1)))
-    jacobian = np.array(fit.jacobian)
+    jacobian = np.zeros_like(fit.jacobian)
     jacobian[[free.key == SATURATION for free in fit.free]] = column
     fit = replace(fit, jacobian=jacobian, weighting=replace(fit.weighting, member=member))
     assert selection.least_seen(fit, [SATURATION], fold) == pytest.approx(share)

@@ -7,11 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, root_weights, value_of
-from diagnosis.discovery.fitting.noise.plausible import shares
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, root_weights, value_of
 from diagnosis.discovery.fitting.profile import Profile
 from diagnosis.discovery.fitting.projection import projected
-from twin.angles import Array
 from twin.catalogue import find
 
 Deviations = dict[tuple[str, str], float]
@@ -38,47 +36,6 @@ def quantile_95(fit: Fit) -> float:
     return float(stdtrit(freedom, _TWO_SIDED_95))
 
 
-@lru_cache(maxsize=4)
-def noise_factors(fit: Fit) -> Array:
-    """By how much each free parameter's deviation (P,) is larger as the noise's spectrum is one of several.
-
-    A spectrum that is found from the residual is not known: at the low frequencies at which a sensor's orders lie a few
-    coefficients tell it. By the law of total variance the noises' own variances are averaged by their probabilities,
-    and what the estimates differ by from noise to noise is added (J. A. Hoeting et al., Bayesian Model Averaging,
-    Statistical Science 14 (1999) 382).
-    """
-    one = np.ones(len(fit.free))
-    if not fit.free or fit.weighting.slopes:
-        return one
-    share = shares(fit)
-    if list(share) == [fit.weighting.member]:
-        return one
-    told = [_told_by(fit, member) for member in share]
-    weights = np.array(list(share.values()))
-    means = np.array([step for _, step in told])
-    variance = weights @ [own for own, _ in told] + weights @ (means - weights @ means) ** 2
-    now, _ = _told_by(fit, fit.weighting.member)
-    ratio = np.divide(variance, now, out=one.copy(), where=now > 0.0)
-    return np.asarray(np.sqrt(ratio))
-
-
-def _told_by(fit: Fit, member: int) -> tuple[Array, Array]:
-    """Variance of each free parameter (P,) with a noise of the family, and how far off its estimate is, to first order.
-
-    Zero where nothing is told of it.
-    """
-    residual, columns = fit.whitened(member)
-    size = np.linalg.norm(columns, axis=1)
-    size[size == 0.0] = 1.0
-    u, s, vt = np.linalg.svd(columns / size[:, None], full_matrices=False)
-    good = s > 1e-9 * s[0]
-    u, s, vt = u[:, good], s[good], vt[good]
-    left = projected(residual, columns)
-    freedom = max(fit.rows * fit.observations.observables - len(s), 1)
-    variance = np.sum((u / s) ** 2, axis=1) * float(left @ left) / freedom
-    return variance / size**2, (u / s) @ (vt @ residual) / size
-
-
 def interval_of_derived(fit: Fit, key: str, name: str) -> tuple[float, float]:
     """Low and high of a figure above zero that follows from an effect's parameters.
 
@@ -90,8 +47,7 @@ def interval_of_derived(fit: Fit, key: str, name: str) -> tuple[float, float]:
     value = effect.derived(values)[name][0]
     if value <= 0.0 or not places:
         return value, value
-    factors = noise_factors(fit)[places]
-    covariance = fit.covariance()[np.ix_(places, places)] * np.outer(factors, factors)
+    covariance = fit.covariance()[np.ix_(places, places)]
 
     def log_at(parameter: str, by: float) -> float:
         moved = effect.derived({**values, parameter: float(values[parameter]) + by})[name][0]
@@ -109,16 +65,12 @@ def interval_of_derived(fit: Fit, key: str, name: str) -> tuple[float, float]:
 
 
 def parabola_95(fit: Fit) -> dict[tuple[str, str], tuple[float, float]]:
-    """95 % interval of every free scalar parameter of a fit, in its own unit, by its standard deviation alone.
-
-    That includes what is not known of the noise's spectrum.
-    """
-    factors, deviations = dict(zip(fit.free, noise_factors(fit), strict=True)), standard_deviations(fit)
+    """95 % interval of every free scalar parameter of a fit, in its own unit, by its standard deviation alone."""
+    reach = quantile_95(fit)
     found = {}
-    for free, factor in factors.items():
-        if free.turn is None:
-            value, one = value_of(fit.chain, free), quantile_95(fit) * factor * deviations[free.key, free.name]
-            found[free.key, free.name] = (value - one, value + one)
+    for (key, name), one in standard_deviations(fit).items():
+        value = value_of(fit.chain, Free(key, name))
+        found[key, name] = (value - reach * one, value + reach * one)
     return found
 
 
@@ -127,8 +79,7 @@ def intervals_95(fit: Fit) -> Mapping[tuple[str, str], tuple[float, float]]:
     """95 % interval of every free scalar parameter of a fit, in its own unit; infinite where nothing is known of it.
 
     By the profile likelihood, which within an interval is mostly a parabola. Of stairs in the channels it is none at
-    all: what scatters at their edges is in the standard deviation alone. What is not known of the noise's spectrum
-    widens each side alike.
+    all: what scatters at their edges is in the standard deviation alone.
     """
     found = parabola_95(fit)
     if fit.free and not fit.weighting.slopes:
@@ -140,11 +91,7 @@ def intervals_95(fit: Fit) -> Mapping[tuple[str, str], tuple[float, float]]:
             if 0.0 < deviation.get((one.key, one.name), 0.0) < np.inf and fit.strengths[place] == 0.0
         ]
         ends = Profile(fit, fit.covariance(), quantile_95(fit)).intervals(known)
-        factors = noise_factors(fit)
-        for place, (low, high) in ends.items():
-            free, factor = fit.free[place], float(factors[place])
-            value = value_of(fit.chain, free)
-            found[free.key, free.name] = (value - factor * (value - low), value + factor * (high - value))
+        found |= {(fit.free[place].key, fit.free[place].name): both for place, both in ends.items()}
     return found
 
 

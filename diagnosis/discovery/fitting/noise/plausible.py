@@ -21,10 +21,6 @@ if TYPE_CHECKING:
     from diagnosis.discovery.fitting.observations import Observations
 
 
-_COUNTS = 1e-3
-"""Probability from which on a noise counts: with ten times the variance of the others it adds a percent to theirs."""
-
-
 def plausible_members(fit: Fit) -> tuple[int, ...]:
     """The family members that the noise may be, given the fit's residual; all where there are too few turns to tell."""
     everyone = tuple(range(len(fit.weighting.family.members)))
@@ -37,20 +33,6 @@ def plausible_members(fit: Fit) -> tuple[int, ...]:
     columns = np.concatenate([fit.cosine_jacobian[:, 0], aside])
     score, _ = _scores(fit.cosine_residual[0], columns, fit.weighting.family, fit.rows)
     return tuple(int(k) for k in np.flatnonzero(score > score.max() - fit.settings.noise_reach))
-
-
-def shares(fit: Fit) -> dict[int, float]:
-    """How probable each of the family's noises is that the fit allows for, given its residual; those that count at all.
-
-    By the restricted likelihood, in which what the free parameters take up is no noise.
-    """
-    members = np.asarray(fit.weighting.plausible)
-    score, _ = _scores(fit.cosine_residual[0], fit.cosine_jacobian[:, 0], fit.weighting.family, fit.rows)
-    share = np.exp(score[members] - score[members].max())
-    share /= share.sum()
-    counts = share > _COUNTS
-    share = share[counts] / share[counts].sum()
-    return dict(zip(members[counts].tolist(), share.tolist(), strict=True))
 
 
 @lru_cache(maxsize=2)

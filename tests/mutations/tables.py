@@ -15,6 +15,7 @@ from tests.mutations.pace import PACE
 from tests.mutations.paper import PAPER
 from tests.mutations.parts import PARTS
 from tests.mutations.periods import PERIODS
+from tests.mutations.reported import REPORTED
 from tests.mutations.scripts import SCRIPTS
 from tests.mutations.settings import settings
 from tests.mutations.setups import SETUPS
@@ -44,6 +45,7 @@ def mutations() -> tuple[Mutation, ...]:
         *STUDIES,
         *SCRIPTS,
         *THERMAL,
+        *REPORTED,
         *WORDS,
         *SETUPS,
         *PACE,

@@ -144,8 +144,8 @@ WORDS = (
     Mutation(
         "index_slip.the_search_sets_out_without_them",
         "twin/reference/index_slip.py",
-        "if len(jumps) < 2:",
-        "if True:",
+        "if len(jumps) < 2 or",
+        "if True or",
         (f"{_ANSWERS}::test_two_slips_are_told_with_their_instants",),
     ),
     Mutation(

@@ -45,15 +45,11 @@ def find(words: Words) -> WordFault | None:
     before, motion = words.expected, words.motion
     rows = np.flatnonzero(words.usable & (np.abs(before.residual) < NEAR_RAD))
     least = words.step / np.sqrt(12.0)
-    if motion is None or rows.size < _FEWEST:
-        return None
-    left_rad = before.residual[rows]
-    # Not the robust deviation: a jump in the first or last tenth of a record leaves that as it is.
-    if np.std(left_rad) <= _NOISE_RATIO * max(noise_of(left_rad), least):
+    if motion is None or rows.size < _FEWEST or before.sigma <= 2.0 * max(noise_of(before.residual[rows]), least):
         return None
     off = wrap(words.measured - before.sense * words.reference - before.zero)[rows]
-    jumps, sizes = _jumps(words.reference[rows], off, before.sense, float(least))
-    if len(jumps) < 2:
+    jumps, sizes, sigma = _jumps(words.reference[rows], off, before.sense, float(least))
+    if len(jumps) < 2 or np.min(np.abs(sizes)) < _LEAST_SIGMA * max(sigma, words.step) or sigma > 0.5 * before.sigma:
         return None
     at = rows[jumps]
     if np.min(np.diff(np.sort(at))) < _FEWEST_BETWEEN or np.any(_moves_otherwise(motion, at)):
@@ -67,31 +63,28 @@ def find(words: Words) -> WordFault | None:
     return WordFault(told[0], -np.inf, after[0], none, words.measured - sizes @ after, also=tuple(told[1:]))
 
 
-def _jumps(reference: Array, off: Array, sense: float, least: float) -> tuple[list[int], Array]:
-    """Places (from 0) and sizes [rad] of the clear jumps in angles (n,) [rad] that leave no more than noise; or none.
+def _jumps(reference: Array, off: Array, sense: float, least: float) -> tuple[list[int], Array, float]:
+    """Places (from 0) and sizes [rad] of the jumps in angles (n,) [rad], and the robust deviation of what is left.
 
     ``least`` [rad] is the least that noise can be: that of the words' rounding.
     """
     jumps: list[int] = []
-    sizes, shaft, noisy = np.zeros(0), reference, False
-    for _ in range(MOST_JUMPS + 1):
+    shaft = reference
+    for _ in range(MOST_JUMPS):
         columns = of_orders(shaft, ORDERS)
-        more = [*jumps, _best(columns, off, jumps)]
-        for place in range(len(more)) if jumps else ():
-            more[place] = _best(columns, off, more[:place] + more[place + 1 :])
+        jumps.append(_best(columns, off, jumps))
+        for place in range(len(jumps)) if len(jumps) > 1 else ():
+            jumps[place] = _best(columns, off, jumps[:place] + jumps[place + 1 :])
         for _ in range(2):
             # Behind a jump the shaft stands elsewhere than the reference says, and so does the error's curve.
-            design = _with_jumps(of_orders(shaft, ORDERS), more)
+            design = _with_jumps(of_orders(shaft, ORDERS), jumps)
             found = np.linalg.lstsq(design, off, rcond=None)[0]
-            left, steps = off - design @ found, np.asarray(found[-len(more) :])
-            shaft = reference + sense * design[:, -len(more) :] @ steps
+            left, sizes = off - design @ found, np.asarray(found[-len(jumps) :])
+            shaft = reference + sense * design[:, -len(jumps) :] @ sizes
         sigma = float(1.4826 * np.median(np.abs(left)))
-        if noisy and np.min(np.abs(steps)) < _LEAST_SIGMA * max(sigma, np.sqrt(12.0) * least):
-            # Those found before leave noise in which no further one is clear.
-            return jumps, sizes
-        jumps, sizes = more, steps
-        noisy = sigma <= _NOISE_RATIO * max(noise_of(left), least)
-    return [], np.zeros(0)
+        if sigma <= _NOISE_RATIO * max(noise_of(left), least):
+            return jumps, sizes, sigma
+    return [], np.zeros(0), 0.0
 
 
 def _with_jumps(columns: Array, jumps: Sequence[int]) -> Array:

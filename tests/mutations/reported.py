@@ -1,0 +1,74 @@
+"""Mutations of what the reported cases called for: told by them, or by the tests of the part."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation
+
+_CASES = "tests/reported_cases/test_reported_cases.py"
+_HARD = f"{_CASES}::test_a_draw_that_was_hard_is_answered_rightly"
+_WATCH = "tests/diagnosis/discovery/test_watch.py"
+
+REPORTED = (
+    Mutation(
+        "variance.far_off_together_is_loud",
+        "diagnosis/discovery/stages/variance.py",
+        "bursts(fit, against_neighbours=True)",
+        "bursts(fit)",
+        (
+            "tests/diagnosis/discovery/stages/test_variance.py::test_what_is_off_together_is_no_louder",
+            f"{_HARD}[seam-6]",
+        ),
+    ),
+    Mutation(
+        "selection.what_the_zero_does_too_is_seen",
+        "diagnosis/discovery/proof/selection.py",
+        "projected(columns[strength], columns[~own])",
+        "columns[strength]",
+        (f"{_HARD}[slips-46]",),
+    ),
+    Mutation(
+        "index_slip.its_own_jump_is_a_change_of_speed",
+        "twin/reference/index_slip.py",
+        "return float(np.median(steps)) if steps.size else 0.0",
+        "return float(np.mean(motion.speed_rad_s[rows]))",
+        (f"{_HARD}[slips-37]",),
+    ),
+    Mutation(
+        "quantisation.a_tables_index_tells_of_a_set",
+        "diagnosis/discovery/marks/quantisation.py",
+        "if np.ptp(np.diff(different, append=different[0] + cells)) <= 2:",
+        "if False:",
+        (f"{_HARD}[table_of_firmware-4]",),
+    ),
+    Mutation(
+        "details.a_radius_is_freed_in_angles",
+        "twin/magnet/magnet_harmonic.py",
+        'told_by=frozenset({"vx"}),',
+        "",
+        (
+            "tests/diagnosis/discovery/search/test_details.py"
+            "::test_a_detail_that_the_channels_tell_is_left_alone_in_angles",
+        ),
+    ),
+    Mutation(
+        "as_read.signs_of_the_computed_angle",
+        "diagnosis/report/as_read.py",
+        'if output_sense < 0 and effect.acts_on == "angle" else values',
+        "if False else values",
+        ("tests/diagnosis/report/test_as_read.py::test_a_bump_of_the_error_is_a_bump",),
+    ),
+    Mutation(
+        "watch.the_budget_is_looked_at_between_stages_alone",
+        "diagnosis/discovery/watch.py",
+        "        watch.end_if_spent()\n\n    signal.signal(signal.SIGPROF, look)",
+        "        del number\n\n    signal.signal(signal.SIGPROF, look)",
+        (f"{_WATCH}::test_a_budget_ends_a_stage_that_says_nothing",),
+    ),
+    Mutation(
+        "watch.the_budget_is_no_end",
+        "diagnosis/discovery/watch.py",
+        "            raise Stopped\n        self.end_if_spent()",
+        "            raise Stopped",
+        (f"{_WATCH}::test_a_search_that_has_spent_its_budget_is_finished_and_proven",),
+    ),
+)

@@ -127,6 +127,15 @@ def _unclear(name: str, param: Param) -> Iterator[str]:
         yield f"{name}: allowed is {param.allowed}; expected a range within [lower, upper] that holds the null"
     if not (callable(param.field_power) or np.isfinite(param.field_power)) or not 0.0 <= param.scatter < np.inf:
         yield f"{name}: field_power and scatter must be finite, and scatter not negative"
+    yield from _untold_detail(name, param)
+
+
+def _untold_detail(name: str, param: Param) -> Iterator[str]:
+    """What is wrong with what a recording must hold to show a detail, in words."""
+    told_by = param.told_by if isinstance(param.told_by, frozenset | set) else {shown(param.told_by)}
+    if not told_by <= NEEDS or (told_by and not param.detail):
+        known = ", ".join(sorted(NEEDS))
+        yield f"{name}: told_by is {shown(param.told_by)}; expected, of a detail, a frozenset of these: {known}"
 
 
 def _unsearchable(effect: Effect) -> str:

@@ -28,7 +28,7 @@ class Watch:
 
     ``stopped_in`` is the stage that was cut short or never begun, and ``ended_by`` what did it; None where the search
     came to its own end. ``budget_s`` is the computing time of this thread, from here on, at which it is ended. What is
-    computed is counted and not what the clock on the wall shows, so that a busy machine changes no answer.
+    computed is counted and not what the clock on the wall shows: waiting for a busy machine costs nothing.
     """
 
     def __init__(self, listener: Listener | None = None, *, budget_s: float = math.inf) -> None:
@@ -73,6 +73,9 @@ class Watch:
     def stop(self) -> None:
         """End the search where it stands, do not begin it; where it is over already, change nothing."""
         self._end("interrupt")
+        if self.ended_by == "budget":
+            # Whoever asks for the end is to be told that it was heard, also where the budget has made it before.
+            self.ended_by = "interrupt"
         if not self._asked_to_stop:
             self._asked_to_stop = True
             # At once: what is left to do takes seconds, in which a person asks whether the word was heard.
@@ -106,7 +109,9 @@ class Watch:
         try:
             self._searching, self._over = True, False
             found = search(state)
-            self._searching, self._over = False, True
+            # In this order: what ends a search between the two must find it over.
+            self._over = True
+            self._searching = False
         except Stopped:
             self._searching = False
             found = self._as_it_stands()
@@ -137,6 +142,8 @@ def stopped_by_interrupt(watch: Watch) -> Iterator[None]:
 
 _LOOKED_AT_S = 0.05
 """From one look at the budget to the next, at least: the process may have computed in other threads too."""
+_LOOKED_AT_LATEST_S = 1e6
+"""And at most: systems refuse a timer of centuries."""
 
 
 @contextmanager
@@ -155,13 +162,20 @@ def ended_by_budget(watch: Watch) -> Iterator[None]:
 
     def look(number: int, frame: Any) -> None:
         if watch.left_s > 0.0:
-            signal.setitimer(signal.ITIMER_PROF, max(watch.left_s, _LOOKED_AT_S))
+            signal.setitimer(signal.ITIMER_PROF, _wait_s(watch))
         watch.end_if_spent()
 
-    signal.signal(signal.SIGPROF, look)
-    signal.setitimer(signal.ITIMER_PROF, max(watch.left_s, _LOOKED_AT_S))
     try:
+        signal.signal(signal.SIGPROF, look)
+        signal.setitimer(signal.ITIMER_PROF, _wait_s(watch))
         yield
     finally:
+        # A tick that is under way as the timer goes would set it anew, and then end the program.
+        signal.signal(signal.SIGPROF, signal.SIG_IGN)
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         signal.signal(signal.SIGPROF, signal.SIG_DFL)
+
+
+def _wait_s(watch: Watch) -> float:
+    """How long to wait for the next look: what is left, within what a timer takes."""
+    return min(max(watch.left_s, _LOOKED_AT_S), _LOOKED_AT_LATEST_S)

@@ -142,7 +142,7 @@ def _cut_short(found: Discovery) -> dict[str, str] | None:
         left = "whether any cause is there: none had been found that stands on held-out readings"
     else:
         left = "whether there are further causes, or better ones in the place of those found"
-    return {"stage": found.cut_short, "left_open": left, "by": str(found.cut_by)}
+    return {"stage": found.cut_short, "left_open": left, "by": found.cut_by or "interrupt"}
 
 
 def _sweep(found: Discovery) -> dict[str, Any]:
@@ -267,6 +267,8 @@ def parameters(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
         for (instance, name), (low, high) in cause.intervals.items():
             if instance == key:
                 figures[name] |= {"low": low, "high": high}
+        chain = found.fit.chain
+        figures = as_read(find(key, chain.effects), figures, output_sense=chain.output_sense)
         answer.update({name + suffix: figure for name, figure in figures.items()})
     return answer | _counted(found, cause)
 
@@ -307,7 +309,7 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
             told, value = figures[name], float(values[name])
             told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
     figures.update({name: _derived(fit, key, name, figure) for name, figure in derived.items()})
-    return as_read(effect, figures, output_sense=fit.chain.output_sense)
+    return figures
 
 
 def _derived(fit: Fit, key: str, name: str, figure: tuple[float, float, float, str]) -> dict[str, Any]:

@@ -290,7 +290,7 @@ def cut_words(answer: Mapping[str, Any]) -> str:
     if not cut:
         return ""
     if cut["by"] == "budget":
-        spent = "The search ended as its budget of computing time was spent (--budget)"
+        spent = "The search ended as its budget of computing time was spent (--budget, budget_s)"
         return f" {spent}, which leaves open {cut['left_open']}."
     return f" The search was stopped before its end, which leaves open {cut['left_open']}."
 

@@ -17,7 +17,6 @@ from scenarios.cli.options import (
     PolePairs,
     Seed,
     fail_on_option,
-    running,
     written,
 )
 from scenarios.cli.reproduce import command_line
@@ -74,10 +73,10 @@ def explain(
     max_size: MaxSize = "2GB",
     budget: Annotated[
         float,
-        running(
-            "End the search after so much computing, in s for each recording, and answer with what it holds; inf: "
-            "search to its end.",
+        typer.Option(
             metavar="SECONDS",
+            help="End the search after so much computing, in s for each recording, and answer with what it holds; inf: "
+            "search to its end.",
         ),
     ] = 120.0,
     seed: Seed = 0,

@@ -98,6 +98,10 @@ BROKEN: Mapping[str, tuple[str, dict[str, Any]]] = {
     "no batch": ("one call each", {"forward": acting(lambda s, m, a, r: s + a if np.ndim(a) == 0 else s)}),
     "bent": ("half the strengths do 0.25 of the error", {"forward": acting(lambda s, m, a, r: s + 50.0 * a * a)}),
     "mirror that is none": ("mirror is 2", {"params": {"amplitude_deg": replace(STRENGTH, mirror=2)}}),  # type: ignore[arg-type]
+    "told by nothing known": (
+        "told_by is",
+        {"params": {"amplitude_deg": STRENGTH, "share": replace(SHAPE, detail=True, told_by=frozenset({"Vx"}))}},
+    ),
     "nobody's": ("owner is 'me'", {"params": {"amplitude_deg": replace(STRENGTH, owner="me")}}),  # type: ignore[arg-type]
     "allows what is out of range": (
         "amplitude_deg: allowed is (0.0, 99.0)",

@@ -171,14 +171,14 @@ FORMS: tuple[Mutation, ...] = tuple(
             "forms.a_detail_alone_is_nothing",
             "diagnosis/discovery/fitting/intervals.py",
             "for name in effect.acts_by if name in free",
-            "for name in effect.acts_by if name in free and name not in effect.details",
+            "for name in effect.acts_by if name in free and not effect.params[name].detail",
             f"{_LISTED}::test_a_detail_may_be_all_that_there_is_of_a_cause",
         ),
         (
             "forms.a_detail_counts_twice",
             "diagnosis/discovery/fitting/intervals.py",
             "for name in effect.acts_by if name in free",
-            "for name in (*effect.acts_by, *effect.details) if name in free",
+            "for name in (*effect.acts_by, *(n for n, p in effect.params.items() if p.detail)) if name in free",
             f"{_LISTED}::test_a_detail_that_acts_through_a_strength_does_not_count_beside_it",
         ),
         (

@@ -113,7 +113,7 @@ def _moves_otherwise(motion: Motion, at: IntArray) -> BoolArray:
 
 
 def _pace(motion: Motion, first: int, end: int) -> float:
-    """Median speed [rad/s] from one of these rows to the next: of a jump at either end it knows nothing."""
+    """Median speed [rad/s] over the rows from ``first`` up to ``end``: a jump at the latter is not among its steps."""
     rows = slice(max(first, 0), end)
     duration = np.diff(motion.time_s[rows])
     steps = wrap(np.diff(motion.shaft_rad[rows]))[duration > 0.0] / duration[duration > 0.0]

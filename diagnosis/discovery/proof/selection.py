@@ -167,7 +167,8 @@ def least_seen(fit: Fit, keys: Sequence[str], fold: IntArray) -> float:
         return np.asarray(np.sum(projected(columns[strength], columns[~own]) ** 2, axis=1))
 
     squares = alone(np.ones(fold.size, dtype=bool))
-    shown = squares > 0.0
+    # What the others do wholly leaves rounding.
+    shown = squares > 1e-12 * np.sum(slopes[strength] ** 2, axis=(1, 2))
     seen = [np.min(alone(fold != number)[shown] / squares[shown], initial=1.0) for number in np.unique(fold)]
     return float(min(seen))
 

@@ -11,7 +11,8 @@ from diagnosis.discovery.state import State
 def held_out_selection(state: State) -> State:
     """Keep the causes of the joint fit that are proven, each with its probability, rivals and held-out figures.
 
-    Of a search that was stopped no rivals: whoever has stopped it waits for the answer.
+    Of a search that was stopped no rivals: whoever has stopped it waits for the answer, and of a budget that is spent
+    nothing is left for them.
     """
     rng = deepcopy(state.rng)
     stopped = state.watch.stopped_in is not None

@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 
+import numpy as np
 import pytest
 
 from diagnosis import Explanation, Progress, explain
@@ -258,7 +259,7 @@ def test_a_search_that_has_spent_its_budget_is_finished_and_proven(monkeypatch: 
     (cause,) = found.causes
     assert cause.heldout_rms_deg_after < cause.heldout_rms_deg_before
     assert found.verdict == "partly explained"
-    assert "its budget of computing time was spent (--budget)" in " ".join(found.summary().split())
+    assert "its budget of computing time was spent (--budget, budget_s)" in " ".join(found.summary().split())
     # Nobody has asked for it, so nobody is told that the word was heard.
     assert not any(one.stopped for one in heard)
 
@@ -302,7 +303,46 @@ def test_a_budget_that_is_not_spent_changes_nothing() -> None:
     assert explain(sweep_of(TWO), budget_s=600.0).to_dict() == unwatched().to_dict()
 
 
-@pytest.mark.parametrize("budget_s", [0.0, -1.0, float("nan"), "10"])
+@pytest.mark.parametrize("budget_s", [0.0, -1.0, float("nan"), "10", True])
 def test_what_is_no_budget_is_refused(budget_s: object) -> None:
-    with pytest.raises(UserError, match="expected seconds of computing, above 0"):
+    with pytest.raises(UserError, match="expected a number of seconds of computing, above 0"):
         explain(sweep_of(TWO), budget_s=budget_s)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("budget_s", [1e12, 10**400, float("inf"), np.int64(600)])
+def test_a_budget_beyond_what_a_timer_takes_is_one(budget_s: float) -> None:
+    assert explain(sweep_of(Made(points=72)), budget_s=budget_s).verdict == "adequate"
+    assert signal.getsignal(signal.SIGPROF) is signal.SIG_DFL
+
+
+def test_a_tick_as_the_timer_goes_does_not_set_it_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that has struck is handled just behind the call that disarms the timer."""
+    disarmed = signal.setitimer
+
+    def late(which: int, seconds: float) -> object:
+        found = disarmed(which, seconds)
+        handler = signal.getsignal(signal.SIGPROF)
+        if seconds == 0.0 and callable(handler):
+            handler(int(signal.SIGPROF), None)
+        return found
+
+    monkeypatch.setattr(signal, "setitimer", late)
+    with ended_by_budget(Watch(budget_s=5.0)):
+        pass
+    assert signal.getitimer(signal.ITIMER_PROF)[0] == 0.0
+
+
+def test_a_word_to_stop_after_the_budget_is_heard(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever presses Ctrl-C while a cut search is being proven wants no further sweep."""
+    now_s = 0.0
+    monkeypatch.setattr(time, "thread_time", lambda: now_s)
+
+    def spend_then_interrupt(progress: Progress) -> None:
+        nonlocal now_s
+        if one_is_held(progress):
+            now_s = 61.0
+        if progress.stage == "held_out_selection" and not progress.stopped:
+            interrupt()
+
+    found = explain(sweep_of(TWO), progress=spend_then_interrupt, on_interrupt="answer", budget_s=60.0)
+    assert found.to_dict()["cut_short"]["by"] == "interrupt"

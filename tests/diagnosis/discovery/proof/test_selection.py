@@ -194,3 +194,30 @@ def test_a_class_is_as_unlikely_by_chance_as_its_least_likely_member() -> None:
     proof = replace(proof, effects=(find(SATURATION),))
     assert proof.by_chance(weak) == -1.0
     assert not selection._proven(proof, 0)
+
+
+@pytest.mark.parametrize(("first", "seen"), [(12, 0.0), (48, 0.75)])
+def test_a_step_is_seen_by_the_rows_on_its_shorter_side(first: int, seen: float) -> None:
+    """Beside a zero a step that sets in behind 12 of 96 rows, all of one block, is told by that block alone.
+
+    In the middle each of four blocks holds a quarter of either side, dealt out as the folds are.
+    """
+    fit = handed().fit
+    n = len(fit.observations)
+    step = (np.arange(n) >= first * n // 96).astype(float)
+    jacobian = np.zeros_like(fit.jacobian)
+    jacobian[[free.key == SATURATION for free in fit.free]] = step
+    jacobian[[free.key == "zero" for free in fit.free]] = 1.0
+    fold = np.arange(n) * 4 // n if first == 12 else np.arange(n) % 4
+    found = selection.least_seen(replace(fit, jacobian=jacobian), [SATURATION], fold)
+    assert found == pytest.approx(seen, abs=0.02)
+
+
+def test_what_the_others_do_wholly_is_no_evidence_of_either() -> None:
+    """Rounding is left of it: no share of that says how the rows are to be held out."""
+    fit = handed().fit
+    rng = np.random.default_rng(3)
+    jacobian = np.array(fit.jacobian)
+    own = np.array([free.key == SATURATION for free in fit.free])
+    jacobian[own] = np.tensordot(rng.standard_normal(np.count_nonzero(~own)), jacobian[~own], axes=1)
+    assert selection.least_seen(replace(fit, jacobian=jacobian), [SATURATION], folds(fit)) == 1.0

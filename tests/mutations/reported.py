@@ -6,6 +6,7 @@ from tests.mutations.mutation import Mutation
 
 _CASES = "tests/reported_cases/test_reported_cases.py"
 _HARD = f"{_CASES}::test_a_draw_that_was_hard_is_answered_rightly"
+_SELECTION = "tests/diagnosis/discovery/proof/test_selection.py"
 _WATCH = "tests/diagnosis/discovery/test_watch.py"
 
 REPORTED = (
@@ -24,7 +25,7 @@ REPORTED = (
         "diagnosis/discovery/proof/selection.py",
         "projected(columns[strength], columns[~own])",
         "columns[strength]",
-        (f"{_HARD}[slips-46]",),
+        (f"{_SELECTION}::test_a_step_is_seen_by_the_rows_on_its_shorter_side[12-0.0]", f"{_HARD}[slips-46]"),
     ),
     Mutation(
         "index_slip.its_own_jump_is_a_change_of_speed",
@@ -60,9 +61,23 @@ REPORTED = (
     Mutation(
         "watch.the_budget_is_looked_at_between_stages_alone",
         "diagnosis/discovery/watch.py",
-        "        watch.end_if_spent()\n\n    signal.signal(signal.SIGPROF, look)",
-        "        del number\n\n    signal.signal(signal.SIGPROF, look)",
+        "        watch.end_if_spent()\n\n    try:",
+        "        del number\n\n    try:",
         (f"{_WATCH}::test_a_budget_ends_a_stage_that_says_nothing",),
+    ),
+    Mutation(
+        "watch.a_tick_sets_the_timer_anew",
+        "diagnosis/discovery/watch.py",
+        "        signal.signal(signal.SIGPROF, signal.SIG_IGN)\n",
+        "",
+        (f"{_WATCH}::test_a_tick_as_the_timer_goes_does_not_set_it_anew",),
+    ),
+    Mutation(
+        "selection.rounding_is_a_share",
+        "diagnosis/discovery/proof/selection.py",
+        "shown = squares > 1e-12 * np.sum(slopes[strength] ** 2, axis=(1, 2))",
+        "shown = squares > 0.0",
+        (f"{_SELECTION}::test_what_the_others_do_wholly_is_no_evidence_of_either",),
     ),
     Mutation(
         "watch.the_budget_is_no_end",

@@ -13,7 +13,7 @@ REPORTED = (
     Mutation(
         "variance.far_off_together_is_loud",
         "diagnosis/discovery/stages/variance.py",
-        "bursts(fit, against_neighbours=True)",
+        "bursts(fit) if rough is not None and rough.log_p < limit else None",
         "bursts(fit)",
         (
             "tests/diagnosis/discovery/stages/test_variance.py::test_what_is_off_together_is_no_louder",

@@ -18,10 +18,13 @@ def variance(state: State) -> State:
     if state.looked_at or several:
         # What common factors leave in one of several recordings is loud, and is what tells the causes from each other.
         return state
-    fit = state.fit
-    shapes, burst = spread_shapes(fit, state.effects), bursts(fit, against_neighbours=True)
+    fit, limit = state.fit, state.settings.beyond_doubt_log_p
+    rough = bursts(fit, against_neighbours=True)
+    # Its ends are told by how far off the rows are; that they are not off together, by their neighbours.
+    burst = bursts(fit) if rough is not None and rough.log_p < limit else None
     # A shape by the speed is louder in one stretch too, where the shaft was fastest.
-    louder = min([*shapes, *([burst] if burst is not None else [])], key=lambda one: one.log_p, default=None)
-    if louder is None or louder.log_p >= state.settings.beyond_doubt_log_p:
+    found = [*spread_shapes(fit, state.effects), *([burst] if burst is not None else [])]
+    louder = min(found, key=lambda one: one.log_p, default=None)
+    if louder is None or louder.log_p >= limit:
         return state
     return state.with_(scaled(fit, louder.variance))

@@ -259,7 +259,7 @@ def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
 
 def parameters(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
     """Every parameter of a cause's instances with its interval; further instances carry their number."""
-    deviation = standard_deviations(found.fit)
+    deviation, chain = standard_deviations(found.fit), found.fit.chain
     answer: dict[str, dict[str, Any]] = {}
     for number, key in enumerate(cause.keys):
         suffix = "" if number == 0 else f"_{number + 1}"
@@ -267,7 +267,6 @@ def parameters(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:
         for (instance, name), (low, high) in cause.intervals.items():
             if instance == key:
                 figures[name] |= {"low": low, "high": high}
-        chain = found.fit.chain
         figures = as_read(find(key, chain.effects), figures, output_sense=chain.output_sense)
         answer.update({name + suffix: figure for name, figure in figures.items()})
     return answer | _counted(found, cause)

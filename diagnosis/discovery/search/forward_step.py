@@ -163,8 +163,8 @@ def _in_the_place_of_a_shape(
         return []
     least = fit.settings.rival_share * max(gains)
     provides = fit.observations.motion.provides
-    named = (one for one in ranked if one.effect.details(provides) and not unnamed(one.effect.name))
-    named = (one for one in named if one.gain > least)
+    detailed = (one for one in ranked if one.gain > least and one.effect.details(provides))
+    named = (one for one in detailed if not unnamed(one.effect.name))
     return [one for candidate in named if (one := in_detail(Trial.of(fit, candidate), threshold)) is not None]
 
 

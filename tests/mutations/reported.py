@@ -86,4 +86,18 @@ REPORTED = (
         "            raise Stopped",
         (f"{_WATCH}::test_a_search_that_has_spent_its_budget_is_finished_and_proven",),
     ),
+    Mutation(
+        "stuck_bit.edges_as_sharp_as_readings_have_them",
+        "diagnosis/discovery/marks/stairs.py",
+        "            chain = chain.with_effect(effect.name, **{BLUR: found})\n",
+        "            del found\n",
+        ("tests/hidden/physics/test_stuck_bit.py::test_the_weight_of_a_stuck_bit_is_within_its_interval",),
+    ),
+    Mutation(
+        "stuck_bit.far_ends_are_passed_over",
+        "twin/adc/adc_stuck_bit.py",
+        "NEAR = 0.25",
+        "NEAR = 1.0",
+        ("tests/twin/test_stuck_bit.py::test_the_mean_is_that_over_the_noise",),
+    ),
 )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.adc.adc_quantisation import FULL_SCALE
 from twin.angles import Array
@@ -12,7 +13,13 @@ from twin.drawing import YARDSTICK_DEG
 from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.motion import Motion
 
-HARMONICS = 6
+NEAR = 0.25
+"""Noise, in steps, up to which ends one and a half steps away, and beyond which the ninth harmonic, are below 1e-8."""
+TINY = 1e-9
+"""Noise, in steps, that stands for none."""
+_K = np.arange(1, 9)
+_MISSED = np.where(_K % 2 == 1, (-1.0) ** (_K // 2) * 2.0 / (np.pi * _K), 0.0) + 0j
+_MADE_UP = np.exp(0.25j * np.pi * _K) * (-1j / (np.pi * _K) - np.where(_K % 2 == 1, 2.0 / (np.pi * _K) ** 2, 0.0))
 BITS = 14
 """Word length that the bit's number is counted in (the paper's converter)."""
 WORDS = (12, 16)
@@ -30,48 +37,64 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     blur = 0.01 * np.asarray(values.get("blur_percent", 0.0)) / safe
     made_up = np.asarray(values.get("in_approximation", 0.0))
     value, exact = side * signal / safe, rng is not None or bool(np.all(blur == 0.0))
-    moved = np.where(made_up == 1.0, 0.0, (_missed if exact else _missed_series)(value, blur))
+    moved = np.where(made_up == 1.0, 0.0, _missed(value) if exact else _expected(_missed_ends, _MISSED, value, blur))
     if np.any(made_up == 1.0):
-        moved = np.where(made_up == 1.0, (_made_up if exact else _made_up_series)(value, blur), moved)
+        cut_off = _made_up(value) if exact else _expected(_made_up_ends, _MADE_UP, value, blur)
+        moved = np.where(made_up == 1.0, cut_off, moved)
     return signal + np.where(step > 0.0, step * side * moved, 0.0)
 
 
-def _missed(value: Array, blur: Array) -> Array:
+def _missed(value: Array) -> Array:
     """What a bit held at zero leaves of a value, both in its steps, less its mean: half a step more, or less."""
     return np.asarray(0.5 - np.floor(value + 0.5) % 2.0)
 
 
-def _missed_series(value: Array, blur: Array) -> Array:
-    """The same in expectation: noise ahead of the converter smooths the square wave, each harmonic by its Gaussian."""
-    out = np.zeros(np.broadcast_shapes(value.shape, np.shape(blur)))
-    wave = np.exp(1j * np.pi * value)
-    twice = wave * wave
-    for k in range(1, 2 * HARMONICS, 2):
-        out += (-1.0) ** (k // 2) * (2.0 / (np.pi * k)) * _damped(k, blur) * wave.real
-        # Sines and cosines cost more than the power of the one before.
-        wave = wave * twice
-    return out
-
-
-def _made_up(value: Array, blur: Array) -> Array:
+def _made_up(value: Array) -> Array:
     """The same where the lower bits fill up in its place: what is beyond them is cut off."""
     return np.asarray(0.25 - np.maximum((value + 0.25) % 2.0 - 1.0, 0.0))
 
 
-def _made_up_series(value: Array, blur: Array) -> Array:
-    """The same in expectation."""
+def _expected(ends: Callable[[Array, Array], Array], waves: NDArray[np.complex128], value: Array, blur: Array) -> Array:
+    """Either of the two in expectation, of a value in Gaussian noise whose standard deviation is `blur`, in steps.
+
+    By the ends of the next few ranges where the noise is small, else by the first harmonics of the two steps in which
+    all repeats (`waves`, amplitudes of exp(i pi k value)), each damped by the noise. Either is exact where it is taken:
+    what is left out is less than 1e-8 of a step.
+    """
+    near = blur < NEAR
+    safe = np.where(blur > 0.0, blur, TINY)
+    if np.all(near):
+        return ends(value, safe)
     out = np.zeros(np.broadcast_shapes(value.shape, np.shape(blur)))
-    first = np.exp(1j * np.pi * (value + 0.25))
+    first = np.exp(1j * np.pi * value)
     wave = first
-    for k in range(1, 2 * HARMONICS):
-        saw = wave.imag / (np.pi * k) - (2.0 * wave.real / (np.pi * k) ** 2 if k % 2 else 0.0)
-        out += _damped(k, blur) * saw
+    for k, one in enumerate(waves, start=1):
+        out += (one * wave).real * np.exp(-0.5 * (np.pi * k * blur) ** 2)
+        # Sines and cosines cost more than the power of the one before.
         wave = wave * first
+    return np.where(near, ends(value, np.minimum(safe, NEAR)), out) if np.any(near) else out
+
+
+def _missed_ends(value: Array, blur: Array) -> Array:
+    """Each range of a missed bit ends by a step down, each of the others by a step up."""
+    from scipy.special import ndtr
+
+    # It is even about the middle of a range.
+    off = np.abs((value + 1.0) % 2.0 - 1.0)
+    return np.asarray(0.5 - ndtr((off - 0.5) / blur) - ndtr((off + 0.5) / -blur) + ndtr((off - 1.5) / blur))
+
+
+def _made_up_ends(value: Array, blur: Array) -> Array:
+    """Where lower bits make up for it, each range begins with a slope that its end takes back by a step."""
+    from scipy.special import ndtr
+
+    place = (value + 0.75) % 2.0 - 0.5
+    out = np.full(np.broadcast_shapes(value.shape, np.shape(blur)), 0.25)
+    for end, slope, step in ((-1.0, -1.0, 0.0), (0.0, 1.0, 1.0), (1.0, -1.0, 0.0), (2.0, 1.0, 1.0)):
+        ahead = (place - end) / blur
+        beyond = ndtr(ahead)
+        out += (step + slope * blur * ahead) * beyond + slope * blur * np.exp(-0.5 * ahead**2) / np.sqrt(2.0 * np.pi)
     return out
-
-
-def _damped(harmonic: int, blur: Array) -> Array:
-    return np.asarray(np.exp(-0.5 * (np.pi * harmonic * blur) ** 2))
 
 
 def derived(values: Parameters) -> Mapping[str, tuple[float, float, float, str]]:
@@ -98,13 +121,12 @@ def begin(step_percent: float) -> Mapping[str, float]:
     return {"blur_percent": 0.2 * step_percent}
 
 
-_CUT_OFF = np.exp(0.25j * np.pi) * (-2.0 / np.pi**2 - 1j / np.pi)
-"""Fundamental of what is left of a value where the lower bits make up for one held at zero."""
+_CUT_OFF = _MADE_UP[0] / abs(_MADE_UP[0])
 WAVES: tuple[tuple[complex, Mapping[str, float]], ...] = (
     (1.0, {"level": 0.0, "in_approximation": 0.0}),
     (-1.0, {"level": 1.0, "in_approximation": 0.0}),
-    (complex(_CUT_OFF / abs(_CUT_OFF)), {"level": 0.0, "in_approximation": 1.0}),
-    (complex(-np.conj(_CUT_OFF) / abs(_CUT_OFF)), {"level": 1.0, "in_approximation": 1.0}),
+    (complex(_CUT_OFF), {"level": 0.0, "in_approximation": 1.0}),
+    (complex(-np.conj(_CUT_OFF)), {"level": 1.0, "in_approximation": 1.0}),
 )
 """Direction of each form's fundamental, c of Re[c exp(i pi x / step)], with its mean in the offset."""
 

@@ -10,7 +10,11 @@ from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.linearised_chain import Linear, is_staircase
 from diagnosis.discovery.fitting.noise.rounding import blur_behind, coarsest_stair
 from twin.angles import Array, wrap
-from twin.effect import Effect, Parameters
+from twin.effect import Effect
+
+BLUR = "blur_percent"
+_ROUNDS = 3
+"""Of noise and fit in turn: by the third neither moves any more."""
 
 
 def reblurred(fit: Fit) -> Fit:
@@ -31,17 +35,35 @@ def without_stairs(fit: Fit, key: str) -> Array:
     return wrap(fit.observations.measured - smooth.angle)
 
 
-def _fitted(effect: Effect, own: Parameters) -> bool:
-    """Whether all shapes of an effect that a fit may move are off their null: edges without a blur have no slope."""
-    return all(np.any(np.asarray(own[name]) != effect.params[name].null) for name in effect.fitted_shapes)
-
-
 def with_slopes(fit: Fit) -> Fit:
     """The fit at the very optimum of a blurred staircase in the channels, its slopes counted; else as it is.
 
     The bit's edges move with offset and gain: left out, the bit's weight stops short of its best by more than its
-    interval.
+    interval. How far noise blurs the edges is told by the readings between them: the few at an edge, fitted to their
+    mean, would rather have it sharp, each reading on its own side.
     """
-    if not any(is_staircase(effect) and _fitted(effect, own) for _, effect, own in fit.chain.active("channels")):
+    keys = {one.key for one in fit.free if one.name == BLUR}
+    blurred = [effect for _, effect, _ in fit.chain.active("channels") if effect.name in keys and is_staircase(effect)]
+    if not blurred:
         return fit
-    return solve(evaluate(fit.chain, fit.free, fit.observations, replace(fit.weighting, slopes=True)), iterations=30)
+    free = tuple(one for one in fit.free if one.name != BLUR)
+    fit = evaluate(fit.chain, free, fit.observations, replace(fit.weighting, slopes=True))
+    for _ in range(_ROUNDS):
+        chain = fit.chain
+        for effect in blurred:
+            found = min(100.0 * _noise_ahead(fit, effect), effect.params[BLUR].upper)
+            chain = chain.with_effect(effect.name, **{BLUR: found})
+        fit = solve(evaluate(chain, free, fit.observations, fit.weighting), iterations=30)
+    return fit
+
+
+def _noise_ahead(fit: Fit, effect: Effect) -> float:
+    """Standard deviation of the noise ahead of stairs in the channels, in amplitudes of x.
+
+    By the readings that pass on about as much of it as without stairs: neither held on a tread nor thrown by an edge.
+    """
+    passed = np.sqrt(np.sum(fit.linear.before(effect).sensitivity[0] ** 2, axis=0))
+    rows = fit.observations.usable & (passed > 0.5) & (passed < 2.0)
+    if not np.any(rows):
+        rows, passed = fit.observations.usable, np.ones_like(passed)
+    return float(1.4826 * np.median(np.abs(fit.residual[0][rows]) / passed[rows]))

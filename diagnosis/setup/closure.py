@@ -30,18 +30,22 @@ def turn_not_closed(record: Record) -> Finding | None:
         return None
     travel = relation.travel_deg
     found = steps_of(relation.error_at_one_deg, travel, turn_of=record.measured_deg, beside=_drifts(record))
-    lasting = found.lasting()
-    if lasting is None:
+    sigmas = float(norm.isf(FALSE_ALARM / (2.0 * travel.size)))
+
+    def told(place: int, size: float, error: float) -> bool:
+        return abs(size) >= max(_LEAST_DEG, sigmas * error) and found.is_sudden(place)
+
+    steps = found.lasting()
+    # Where the largest is none, the smaller ones are pieces of the same drift.
+    if not steps or not told(*steps[0]):
         return None
-    place, size, error = lasting
-    sure = float(norm.isf(FALSE_ALARM / (2.0 * travel.size))) * error
-    if abs(size) < max(_LEAST_DEG, sure) or not found.is_sudden(place):
-        return None
-    rows = record.rows(np.array([place]))
+    steps = sorted(step for step in steps if told(*step))
+    rows = record.rows(np.array([place for place, _, _ in steps]))
+    said = ", ".join(f"at row {row} by {size:+.2f} deg" for row, (_, size, _) in zip(rows, steps, strict=True))
     return Finding(
         kind="turn_not_closed",
         what="a turn does not close: the reading does not come back to where it was",
-        evidence=f"at row {rows[0]} the zero steps by {size:+.2f} deg, and stays there",
+        evidence=f"the zero steps {said}, and stays there",
         consequence="the reference has lost counts or slipped, or the magnet has turned on its shaft",
         remedy="check couplings, set screws and the reference's counter; record again, or explain the part before it",
         rows=rows,

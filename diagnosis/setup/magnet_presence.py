@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnosis.setup.finding import Finding
 from diagnosis.setup.harmonics import FALSE_ALARM, fitted, waves
-from diagnosis.setup.ratio_search import p_of_any_ratio
+from diagnosis.setup.ratio_search import Closest, closest_ratio
 from diagnosis.setup.record import FEWEST, Record
 from diagnosis.setup.relation import travel_deg
 from twin.following import swing_deg
@@ -42,20 +42,34 @@ def missing_magnet(record: Record) -> Finding | None:
     travel = travel_deg(record.reference_deg)
     if np.ptp(travel) < _WHOLE_DEG or np.ptp(record.measured_deg) == 0.0:
         return None
-    if _p_of_orders(np.radians(travel), np.radians(record.measured_deg)) < FALSE_ALARM:
+    closest = closest_ratio(travel, record.measured_deg)
+    by_chance = closest.chance >= FALSE_ALARM
+    # A magnet on the shaft makes the reading go round, or come again with each turn.
+    if not by_chance and closest.goes_round:
         return None
-    chance, highest = p_of_any_ratio(travel, record.measured_deg)
-    if chance < FALSE_ALARM:
+    of_the_turn = _p_of_orders(np.radians(travel), np.radians(record.measured_deg)) < FALSE_ALARM
+    if of_the_turn and (by_chance or closest.whole):
         return None
+    turns = np.ptp(travel) / 360.0
     return Finding(
         kind="no_magnet",
         what="the reading has nothing to do with the shaft: no magnet over the sensor, or another shaft's sensor",
-        evidence=f"no ratio of speeds up to {highest:.0f} and no order up to {_ORDERS[-1]} of the turn makes it follow "
-        f"the reference over {np.ptp(travel) / 360.0:.1f} turns",
+        evidence=f"no ratio of speeds up to {closest.highest:.0f} and no order up to {_ORDERS[-1]} of the turn makes "
+        f"it follow the reference over {turns:.1f} turns" + ("" if by_chance else _swings(record, travel, closest)),
         consequence="there is no error to explain: the reading is noise, or another quantity",
         remedy="check that the magnet is there and within the sensor's air gap, and that both columns belong to one "
         "shaft and one recording",
     )
+
+
+def _swings(record: Record, travel: np.ndarray, closest: Closest) -> str:
+    """That a reading swings to and fro instead of going round, how often a turn and a second, and what does so."""
+    time = record.column("time_s")
+    rate = ""
+    if time is not None and np.isfinite(time).all() and time[-1] > time[0]:
+        rate = f", {closest.ratio * abs(travel[-1] - travel[0]) / 360.0 / (time[-1] - time[0]):.3g} Hz"
+    ring = ", or as a ring of poles does beside the sensor" if closest.whole else ""
+    return f"; it swings to and fro {closest.ratio:.4g} times a turn{rate}, as what wires pick up does{ring}"
 
 
 def _p_of_orders(shaft_rad: np.ndarray, reading_rad: np.ndarray) -> float:

@@ -1,4 +1,4 @@
-"""Every ratio of speeds that the points of a turn can tell: which one a reading goes with, and whether by chance."""
+"""Every ratio of speeds that the points of a turn can tell: which a reading goes with, and whether it goes round."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnosis.setup.harmonics import FALSE_ALARM
 from twin.angles import Array, IntArray
 
 _MOST_RATIO = 4096.0
@@ -73,17 +74,72 @@ def closeness(at_deg: Array, wave: Array, ratios: Array) -> Array:
     return np.asarray(np.concatenate(parts, axis=1) / at.size)
 
 
-def p_of_any_ratio(travel_deg: Array, reading_deg: Array) -> tuple[float, float]:
-    """Probability that chance makes a reading (n,) go with some ratio as closely as it does, and the highest ratio.
+def goes_round(same: float, other: float, rows: int) -> bool:
+    """Whether a reading that goes with a ratio turns round, and does not swing to and fro along one line.
+
+    ``same`` and ``other`` say how closely it goes with the ratio in its own sense and in the other. What swings is as
+    close to both; a field that turns, however flat its ellipse, is closer to one.
+    """
+    from scipy.stats import norm
+
+    left = max(1.0 - same**2 - other**2, 0.0)
+    return same - other > float(norm.isf(FALSE_ALARM)) * float(np.sqrt(left / rows))
+
+
+@dataclass(frozen=True)
+class Closest:
+    """The ratio that a reading goes with most closely.
+
+    Attributes
+    ----------
+    chance : float
+        Probability that readings which know nothing of each other go with any ratio as closely.
+    highest : float
+        The highest ratio that was looked at.
+    ratio : float
+        The ratio, positive in either sense.
+    goes_round : bool
+        Whether the reading turns in one sense; else it swings to and fro.
+    whole : bool
+        Whether the ratio may be a whole number: what is on the shaft comes again with each turn.
+    """
+
+    chance: float
+    highest: float
+    ratio: float = 0.0
+    goes_round: bool = False
+    whole: bool = True
+
+
+def closest_ratio(travel_deg: Array, reading_deg: Array) -> Closest:
+    """The ratio that a reading (n,) goes with most closely, and whether that is chance.
 
     Of readings that know nothing of each other the power at any ratio is exponential.
     """
+    from scipy.stats import chi2
+
     part = part_to_search(travel_deg)
-    turning = np.exp(1j * np.radians(reading_deg[part.rows]))
+    at, turning = travel_deg[part.rows], np.exp(1j * np.radians(reading_deg[part.rows]))
     wave = turning - np.mean(turning)
     power = float(np.mean(np.abs(wave) ** 2))
     if not part.ratios.size or power <= 0.0:
-        return 1.0, 0.0
-    close = closeness(travel_deg[part.rows], wave, part.ratios)
-    strongest = float(np.max(close)) ** 2 * wave.size / power
-    return min(2.0 * part.ratios.size * float(np.exp(-strongest)), 1.0), float(part.ratios[-1])
+        return Closest(1.0, 0.0)
+    close = closeness(at, wave, part.ratios)
+    rows = wave.size
+    strongest = float(np.max(close)) ** 2 * rows / power
+    chance = min(2.0 * part.ratios.size * float(np.exp(-strongest)), 1.0)
+    place = int(np.argmax(np.sum(close**2, axis=0)))
+    finer = part.ratios[place] + np.linspace(-1.0, 1.0, 41) * part.finest
+    both = np.array([closeness(at, wave, np.array([ratio]))[:, 0] for ratio in (*finer, np.round(part.ratios[place]))])
+    best = int(np.argmax(np.sum(both**2, axis=1)))
+    same, other = np.sort(both[best])[::-1] / np.sqrt(power)
+    # Twice the gain in log likelihood of the ratio over the whole one next to it.
+    left = max(power - float(np.sum(both[best] ** 2)), 1e-300)
+    gain = 2.0 * rows * float(np.sum(both[best] ** 2) - np.sum(both[-1] ** 2)) / left
+    return Closest(
+        chance,
+        float(part.ratios[-1]),
+        float(finer[best]) if best < finer.size else float(np.round(part.ratios[place])),
+        goes_round(float(same), float(other), rows),
+        gain <= float(chi2.isf(FALSE_ALARM, 1)),
+    )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.setup.harmonics import Fitted, fitted, waves
-from diagnosis.setup.ratio_search import closeness, part_to_search
+from diagnosis.setup.ratio_search import closeness, goes_round, part_to_search
 from twin.angles import Array, wrap_deg
 from twin.following import follows, is_near, spread_deg
 
@@ -97,6 +97,8 @@ def _searched(travel: Array, measured: Array) -> float | None:
     close = closeness(at, np.exp(1j * np.radians(reading)), part.ratios)
     # Of ratios that go as closely, as those that even points show alike, the smallest.
     place = int(np.argmax(np.max(close, axis=0) >= _AS_CLOSE * np.max(close)))
+    if not goes_round(float(np.max(close[:, place])), float(np.min(close[:, place])), at.size):
+        return None
     best = float(part.ratios[place]) * (1.0 if close[0, place] >= close[1, place] else -1.0)
     finer = best + np.linspace(-1.0, 1.0, 41) * part.finest
     best = float(min(finer, key=lambda ratio: spread_deg(reading - ratio * at)))

@@ -85,8 +85,8 @@ class Steps:
         freedom = max(int(np.count_nonzero(kept)) - len(plain) - 3, 1)
         return stepped > slid * (1.0 + _clearly() / freedom)
 
-    def lasting(self) -> tuple[int, float, float] | None:
-        """Place, size and standard error of the largest step that no other takes back; None where each one is."""
+    def lasting(self) -> list[tuple[int, float, float]]:
+        """Place, size and standard error of each step that no other takes back, the largest first."""
         count = len(self.places)
         sizes, errors = self.with_slope.values[-count:], self.with_slope.errors[-count:]
         soon = max(_SOON_ROWS, int(_SOON * self.with_slope.left.size))
@@ -100,10 +100,8 @@ class Steps:
                 for j in range(count)
             )
         ]
-        if not kept:
-            return None
-        worst = max(kept, key=lambda k: abs(float(sizes[k])))
-        return self.places[worst], float(sizes[worst]), float(errors[worst])
+        kept.sort(key=lambda k: -abs(float(sizes[k])))
+        return [(self.places[k], float(sizes[k]), float(errors[k])) for k in kept]
 
 
 def steps_of(error: Array, travel_deg: Array, *, turn_of: Array, beside: Sequence[Array] = ()) -> Steps:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.setup.finding import Finding, rows_shown
+from diagnosis.setup.frozen import frozen
 from diagnosis.setup.harmonics import FALSE_ALARM
 from diagnosis.setup.record import FEWEST, Record
 from twin.angles import radians
@@ -64,6 +65,7 @@ def without_faults_of_word(record: Record) -> tuple[tuple[Finding, ...], Record]
         return (), record
     words = Words(radians(record.reference_deg), radians(record.measured_deg), np.ones(both.size, dtype=bool))
     faults = faults_of(words, finders, float(np.log(FALSE_ALARM)))
+    faults = tuple(one for one in faults if not _stood_still_once(record, *one))
     if not faults:
         return (), record
     found = _findings(record, faults, finders)
@@ -74,6 +76,18 @@ def without_faults_of_word(record: Record) -> tuple[tuple[Finding, ...], Record]
     for _, fault in faults:
         measured[both[fault.lost]] = np.nan
     return found, replace(record, columns={**record.columns, "measured_deg": measured})
+
+
+def _stood_still_once(record: Record, name: str, fault: WordFault) -> bool:
+    """Whether a range is missing because the reading stood still once, over more than a word's dead zone has.
+
+    Within a single turn a column that is frozen leaves the same gap; a dead zone holds in every turn.
+    """
+    stretch = frozen(record) if name == "dead_zone" else None
+    if stretch is None:
+        return False
+    touched = np.flatnonzero(fault.touched)
+    return bool(np.all(np.diff(touched) == 1)) and set(record.rows(touched)) <= set(stretch.rows)
 
 
 def _findings(

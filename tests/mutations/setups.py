@@ -6,10 +6,31 @@ from tests.mutations.mutation import Mutation, of_one_file
 
 _CHECKS = "tests/diagnosis/setup/test_checks.py"
 _DRIFTS = "tests/diagnosis/setup/test_drift_and_word.py"
+_RIVALS = "tests/diagnosis/setup/test_rival_readings.py"
 _SEVERAL = "tests/diagnosis/setup/test_several_readings.py"
 _FAULTS = "tests/setup_faults/test_setup_faults.py"
 
 SETUPS: tuple[Mutation, ...] = (
+    *of_one_file(
+        "diagnosis/setup/ratio_search.py",
+        _RIVALS,
+        (
+            "setup.what_swings_goes_round",
+            "    return same - other > float(norm.isf(FALSE_ALARM)) * float(np.sqrt(left / rows))",
+            "    return True",
+            "::test_what_swings_at_no_order_of_the_turn_is_no_magnet_on_the_shaft",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/setup/closure.py",
+        _CHECKS,
+        (
+            "setup.one_slip_is_told",
+            "    steps = sorted(step for step in steps if told(*step))",
+            "    steps = steps[:1]",
+            "::test_every_slip_is_told_with_its_row_and_the_rows_of_no_other",
+        ),
+    ),
     *of_one_file(
         "twin/following.py",
         _CHECKS,
@@ -195,8 +216,8 @@ SETUPS: tuple[Mutation, ...] = (
         ),
         (
             "setup.a_fast_drift_is_a_step",
-            " or not found.is_sudden(place):",
-            ":",
+            " and found.is_sudden(place)",
+            "",
             "::test_a_zero_that_drifts_is_no_open_turn[within a hundred rows]",
         ),
     ),

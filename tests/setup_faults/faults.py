@@ -50,6 +50,24 @@ def no_magnet(rng: np.random.Generator) -> Bench:
     return _at(bench, rng.uniform(0.0, 360.0) + rng.uniform(2.0, 30.0) * rng.standard_normal(bench.n), rng)
 
 
+def no_magnet_beside_the_mains(rng: np.random.Generator) -> Bench:
+    """No field but the mains': the reading swings along one line, about a mean or from side to side, and scatters."""
+    bench = draw(rng, moving=True, turns=int(rng.integers(2, 6)))
+    mains = float(rng.choice([50.0, 60.0]))
+    time = np.arange(bench.n) / (mains * rng.uniform(2.3, 20.0))
+    line = np.sin(2.0 * np.pi * mains * time + rng.uniform(0.0, 6.0))
+    bench.columns.pop("speed_rpm", None)
+    bench.columns["time_s"] = time
+    if rng.random() < 0.5:
+        scatter_deg = rng.uniform(2.0, 30.0)
+        swing = scatter_deg * (rng.uniform(0.5, 3.0) * line + rng.standard_normal(bench.n))
+        return _at(bench, rng.uniform(0.0, 360.0) + swing, rng)
+    x, y = rng.standard_normal((2, bench.n))
+    towards, size = rng.uniform(0.0, 6.0), rng.uniform(0.5, 4.0)
+    x, y = x + size * np.cos(towards) * line, y + size * np.sin(towards) * line
+    return _at(bench, np.degrees(np.arctan2(y, x)), rng)
+
+
 def weak(rng: np.random.Generator) -> Bench:
     bench = draw(rng)
     if rng.random() < 0.4:
@@ -334,6 +352,7 @@ FAULTS: dict[str, Fault] = {
     "lost frames": Fault(lost_frames, ("lost_frames",)),
     "bad status": Fault(bad_status, ("other_status",)),
     "no reference": Fault(no_reference, ("no_reference",)),
+    "no magnet, mains": Fault(no_magnet_beside_the_mains, ("no_magnet",)),
 }
 """Every fault by name."""
 CLEAN = Fault(draw, ())

@@ -11,6 +11,7 @@ import pytest
 from scipy.stats import chi2, norm, t
 
 from diagnosis.discovery.settings import FOOTPRINTS, DiscoverySettings
+from twin.catalogue import CATALOGUE
 
 PLAIN = DiscoverySettings()
 WHOLE = [one.name for one in fields(PLAIN) if isinstance(one.default, int)]
@@ -104,6 +105,12 @@ def test_two_causes_are_the_same_within_the_squares_of_the_sigma() -> None:
     assert DiscoverySettings(sigma_apart=4.0).same_fit(coarse=False) == pytest.approx(16.0)
 
 
+def just_found_sigma(settings: DiscoverySettings) -> float:
+    """Of a strength that is found among all effects of the catalogue in the mean, with ten shapes of each."""
+    effects = sum(effect.footprint == "mean" and not effect.baseline for effect in CATALOGUE)
+    return float(norm.isf(0.5 * np.exp(settings.effect_log_p(effects) - np.log(10.0))))
+
+
 DERIVED: dict[str, tuple[Callable[[DiscoverySettings], float], float, float]] = {
     # Two-sided, in a million rows; and in a thousand rows of Student's t of four degrees, whose robust sigma is larger.
     "spike_sigma": (lambda s: 2e6 * norm.sf(s.spike_sigma), 0.5e-6, 5e-6),
@@ -128,6 +135,8 @@ DERIVED: dict[str, tuple[Callable[[DiscoverySettings], float], float, float]] = 
     "folds": (lambda s: s.folds / (s.folds - 1.0), 1.33, 1.34),
     # Each turn's zero is fitted from the rest of the turn, and every part of the turn is held out in some turn.
     "blocks_a_turn": (lambda s: np.gcd(s.blocks_a_turn, s.folds) * (s.blocks_a_turn > 1), 1, 1),
+    # How far a cause that is only just found stands out of none on the rows that a held-out fit has seen.
+    "heldout_seen": (lambda s: np.sqrt(s.heldout_seen) * just_found_sigma(s), 1.96, 2.1),
     "predictive_sweeps": (lambda s: 1.0 / (s.predictive_sweeps + 1), 0.005, 0.005),
     "unnamed_log_odds": (lambda s: np.exp(s.unnamed_log_odds), 390.0, 410.0),
     "colour_log_odds": (lambda s: np.exp(s.colour_log_odds), 19.0, 21.0),

@@ -61,6 +61,14 @@ def test_a_slip_is_no_wrong_number_of_counts() -> None:
     assert kinds(reference_deg=slipped, measured_deg=reading()) == ["turn_not_closed"]
 
 
+def test_every_slip_is_told_with_its_row_and_the_rows_of_no_other() -> None:
+    row = np.arange(TURN_DEG.size)
+    slipped = TURN_DEG - 3.0 * (row >= 70) + 2.0 * (row >= 200)
+    (found,) = checked(Record("r", {"reference_deg": slipped, "measured_deg": reading()}, row + 1)).findings
+    assert found.rows == (71, 201)
+    assert found.evidence.startswith("the zero steps at row 71 by +3.0")
+
+
 def test_a_wrong_number_of_counts_is_no_slip() -> None:
     assert kinds(reference_deg=TURN_DEG * 4096.0 / 4000.0, measured_deg=reading()) == ["wrong_counts"]
 

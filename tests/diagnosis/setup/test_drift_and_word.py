@@ -87,6 +87,14 @@ def test_a_range_that_is_never_read_is_told() -> None:
     assert found.kind == "dead_zone"
 
 
+def test_a_reading_that_stands_still_once_over_a_quarter_of_a_turn_is_frozen() -> None:
+    """Words of one turn: no other reading lies within the stretch, as in a dead zone, which holds in every turn."""
+    shaft = np.arange(0.0, 360.0, 2.0)
+    word = word_of(reading(shaft))
+    word[40:85] = word[40]
+    assert [finding.kind for finding in findings(shaft, degrees_of(word))] == ["frozen"]
+
+
 def test_explain_names_faults_of_the_word_as_causes_alone() -> None:
     word = word_of(reading()) | (1 << 5)
     assert checked_sweep(Sweep(TURN_DEG, degrees_of(word))) == ()

@@ -9,7 +9,7 @@ from diagnosis.setup.checks import checked
 from diagnosis.setup.field import too_strong
 from diagnosis.setup.finding import Finding
 from diagnosis.setup.link import lost_frames
-from diagnosis.setup.ratio_search import p_of_any_ratio
+from diagnosis.setup.ratio_search import closest_ratio
 from diagnosis.setup.record import Record
 from twin.angles import Array, IntArray
 
@@ -92,11 +92,25 @@ def test_a_reading_that_scatters_about_a_ratio_is_not_called_noise() -> None:
     assert "no ratio of speeds up to 1000" in finding.evidence
 
 
+@pytest.mark.parametrize(
+    ("times", "said"),
+    [(26.37, "26.37 times a turn, 65.9 Hz, as what wires pick up does"), (27.0, "or as a ring of poles")],
+)
+def test_what_swings_at_no_order_of_the_turn_is_no_magnet_on_the_shaft(times: float, said: str) -> None:
+    """A line of the mains goes with some ratio, but in both senses alike; at a whole one it may be a ring's."""
+    turn = np.linspace(0.0, 4.0, 800, endpoint=False)
+    rng = np.random.default_rng(9)
+    swing = 30.0 * np.sin(2.0 * np.pi * times * turn) + 10.0 * rng.standard_normal(turn.size)
+    (finding,) = found(reference_deg=360.0 * turn, measured_deg=(90.0 + swing) % 360.0, time_s=0.4 * turn)
+    assert finding.kind == "no_magnet"
+    assert said in finding.evidence
+
+
 def test_chance_alone_makes_no_ratio() -> None:
     """Of 200 records of noise at most 2 have p < 0.01 where 2 are expected and the bound is a sum of five times as
     many ratios as there are independent ones; more than 6 have a chance of 1 in 200."""
     rng = np.random.default_rng(7)
-    p = [p_of_any_ratio(TURN_DEG, rng.uniform(0.0, 360.0, 400))[0] for _ in range(200)]
+    p = [closest_ratio(TURN_DEG, rng.uniform(0.0, 360.0, 400)).chance for _ in range(200)]
     assert sum(one < 0.01 for one in p) <= 6
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import evaluate, solve
 from diagnosis.discovery.fitting.observations import Observations
-from diagnosis.discovery.marks.outliers import rms_of_second_differences
+from diagnosis.discovery.marks.outliers import bounded_rms
 from diagnosis.discovery.state import State
 from twin.angles import Array
 
@@ -34,12 +34,14 @@ def recording_levels(state: State) -> State:
 def _levels(observations: Observations, residual: Array) -> Array:
     """Noise of each row's recording (n,) against the usual one, from the residual (n,) [rad].
 
-    Rows that stand alone count too: among those of a quieter recording a louder one's would all seem to.
+    By second differences, which structure that is smooth from reading to reading leaves alone (J. von Neumann, Ann.
+    Math. Statist. 12 (1941) 367). Rows that stand alone count too: among those of a quieter recording a louder one's
+    would all seem to.
     """
     recordings = observations.motion.recordings
     assert recordings is not None
     sure = (residual[rows][observations.sure[rows]] for rows in recordings.slices)
-    own = np.array([rms_of_second_differences(one) for one in sure])
+    own = np.array([bounded_rms(np.diff(one, 2)) for one in sure])
     usual = float(np.median(own[recordings.number]))
     if usual == 0.0:
         return np.ones(len(observations))

@@ -47,10 +47,10 @@ def _beside(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     """Such stages, each with what would tell it apart; none where rivals were not looked for.
 
     And causes of which a fault of the words says that they do the same on this record; and the same cause with other
-    numbers; and without a reference a torque locked to the angle.
+    numbers; and without a reference a torque locked to the angle, which no search has to find.
     """
     if found.cut_short is not None:
-        return []
+        return may_be_torque(found, cause)
     effect, observations = find(cause.keys[0], found.fit.chain.effects), found.fit.observations
     beside = []
     values = found.fit.chain.values

@@ -21,6 +21,7 @@ TORQUE = "torque_ripple"
 """What a torque locked to the angle is called where a cause may as well be one."""
 SECOND_SPEED = "a log at a second speed, or coasting down: what a torque does falls as 1/speed^2"
 IN_TIME = "a log at another speed: a wave that the motor's supply or its drive makes in the torque keeps its frequency"
+WITHOUT_CURRENT = "a log in which the shaft coasts, the motor's current off: the current makes a torque as well"
 _BEYOND_CHANCE = 4.0
 """Standard deviations from which on a torque is listed: one of sixteen orders, of two components each, passes it by
 chance in one log of 200 (16 exp(-8))."""
@@ -80,13 +81,22 @@ def _torque(torque: Torque) -> dict[str, Any]:
 
 
 def may_be_torque(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
-    """The torque that does what a cause does, where the log's speeds do not tell them apart; else nothing."""
+    """The torque that does what a cause does, where the log's speeds do not tell them apart; else nothing.
+
+    What grows with the motor's current may be the torque that the current makes, at any speed.
+    """
     fit, estimated = found.fit, found.sweep.estimated
-    if estimated is not None and _in_time(fit, cause):
-        return [(TORQUE, IN_TIME)]
-    open_orders = [] if estimated is None else not_separable(estimated)
+    if estimated is None:
+        return []
     keys = [key for key in cause.keys if key in fit.chain.values]
-    if not open_orders or not keys:
+    effects = {key: find(key, fit.chain.effects) for key in keys}
+    if any("two currents" in effect.needs for effect in effects.values()):
+        return [(TORQUE, WITHOUT_CURRENT)]
+    if _in_time(fit, cause):
+        return [(TORQUE, IN_TIME)]
+    open_orders = not_separable(estimated)
+    # What touches single readings, or makes them louder, is no movement of the shaft.
+    if not open_orders or not any(effect.footprint in ("mean", "values") for effect in effects.values()):
         return []
     beyond = _beyond(fit, keys, open_orders)
     rows = fit.rows

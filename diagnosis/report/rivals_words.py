@@ -12,11 +12,10 @@ def rivals_words(cause: Mapping[str, Any]) -> str:
     """What a cause cannot be told from, and what would part them; empty for structure without a name."""
     if cause["name"] == "unnamed":
         return ""
-    rivals = cause["indistinguishable_from"]
-    if not cause.get("rivals_sought", True):
-        return "what else it may be was not looked for, as the search was stopped"
-    same = same_words(cause)
-    if not rivals and not same:
-        return "cannot be told from: nothing else that was searched"
+    rivals, same = cause["indistinguishable_from"], same_words(cause)
     part = f". To tell them apart: {cause['to_tell_apart']}" if cause["to_tell_apart"] else ""
-    return f"cannot be told from: {'; '.join([*([', '.join(rivals)] if rivals else []), *same])}{part}"
+    told = f"cannot be told from: {'; '.join([*([', '.join(rivals)] if rivals else []), *same])}{part}"
+    if not cause.get("rivals_sought", True):
+        unsought = "what else it may be was not looked for, as the search was stopped"
+        return f"{told}; {unsought}" if rivals else unsought
+    return told if rivals or same else "cannot be told from: nothing else that was searched"

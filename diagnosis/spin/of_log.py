@@ -14,7 +14,6 @@ from diagnosis.spin.stretches import Turning, turning
 from twin.angles import TAU, Array, IntArray
 from twin.errors import SweepError
 from twin.estimated_motion import EstimatedMotion, Torque
-from twin.pace import LEAST_SPEEDS
 from twin.runs import runs
 from twin.spin import FEWEST_ROWS, Spin
 from twin.sweep import Sweep
@@ -106,9 +105,7 @@ def _fitted(logs: Sequence[_Log]) -> MotionFit:
         begins, number = float(times[-1][-1]) + 1.0, int(stretches[-1][-1]) + 1
     time, stretch = np.concatenate(times), np.concatenate(stretches)
     readings = np.concatenate([log.found.readings_rad for log in logs])
-    speed = np.abs(np.diff(readings) / np.diff(time))[np.diff(stretch) == 0]
-    slow, fast = np.quantile(speed, [0.1, 0.9])
-    return fitted_motion(readings, time, runs(stretch), torque=bool(fast - slow > LEAST_SPEEDS * fast))
+    return fitted_motion(readings, time, runs(stretch))
 
 
 def _sweep(log: _Log, fit: MotionFit, own: slice, torques: tuple[Torque, ...]) -> Sweep:

@@ -21,6 +21,7 @@ from diagnosis.spin.variance_components import Drawn, drawn, solved
 from twin.angles import Array
 from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import response
+from twin.pace import LEAST_SPEEDS
 
 HIGHEST_ORDER = 32
 """Of the sensor's error and of the torques: the second harmonic of a cogging by sixteen teeth."""
@@ -133,8 +134,11 @@ class _Estimate:
         return replace(self, damping_per_s=damping, problem=replace(self.problem, columns=columns))
 
 
-def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice], *, torque: bool) -> MotionFit:
+def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]) -> MotionFit:
     """Estimate the motion behind unwrapped readings.
+
+    Torques locked to the angle are told from the error of the sensor by the speeds of the motion alone: one speed does
+    not tell them, however far they speed the shaft up and slow it down within a turn.
 
     Parameters
     ----------
@@ -142,8 +146,6 @@ def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]
         Readings (n,) [rad], continuous within each stretch, and their times [s], rising.
     stretches : sequence of slice
         The rows of each stretch, one behind the other.
-    torque : bool
-        Whether torques locked to the angle are to be told from the error of the sensor: one speed does not.
     """
     spline = Spline.over(time_s, stretches)
     problem = Problem(
@@ -160,7 +162,7 @@ def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]
     found = _Estimate(replace(problem, start=start), stretches, shaft, free)
     # The first round finds the motion and its speed, which what torques do follows.
     found = found.next()
-    if torque:
+    if _several_speeds(found.rates[0]):
         found = replace(found, sd=np.concatenate([found.sd, np.ones(_OF_FRICTION + 2 - _OF_ERROR)]))
         found = replace(found, log_penalty=None)
     for _ in range(_ROUNDS - 1):
@@ -177,6 +179,12 @@ def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]
         damping_per_s=found.damping_per_s,
         separable=found.separable,
     )
+
+
+def _several_speeds(speed_rad_s: Array) -> bool:
+    """Whether a motion (n,) has speeds so far apart that what follows them may show."""
+    slow, fast = np.quantile(np.abs(speed_rad_s), [0.1, 0.9])
+    return bool(fast - slow > LEAST_SPEEDS * fast)
 
 
 def _seen(reduced: Reduced, variance: float) -> Array:

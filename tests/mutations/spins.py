@@ -8,6 +8,9 @@ _SMOOTHER = "tests/diagnosis/spin/test_smoother.py"
 _SEARCH = "tests/diagnosis/spin/test_search.py"
 _STRETCHES = "tests/diagnosis/spin/test_stretches.py"
 _MOTION = "tests/twin/test_estimated_motion.py"
+_EXPLAIN = "tests/diagnosis/spin/test_explain.py"
+_LEVELS = "tests/diagnosis/discovery/stages/test_recording_levels.py"
+_FRAMES = "tests/diagnosis/discovery/stages/test_repeated_frames.py"
 
 SPINS: tuple[Mutation, ...] = tuple(
     Mutation(name, file, old, new, (test,))
@@ -15,7 +18,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.torques_are_the_sensors",
             "diagnosis/spin/smoother.py",
-            "    if torque:\n",
+            "    if _several_speeds(found.rates[0]):\n",
             "    if False:\n",
             f"{_SMOOTHER}::test_a_coast_tells_the_sensor_from_a_torque_of_the_same_order",
         ),
@@ -84,10 +87,52 @@ SPINS: tuple[Mutation, ...] = tuple(
         ),
         (
             "spins.each_log_alone",
-            "diagnosis/spin/of_log.py",
-            "torque=bool(fast - slow > LEAST_SPEEDS * fast)",
-            "torque=False",
+            "diagnosis/spin/smoother.py",
+            "return bool(fast - slow > LEAST_SPEEDS * fast)",
+            "return False",
             f"{_SMOOTHER}::test_two_logs_of_one_speed_each_tell_together_what_neither_tells",
+        ),
+        (
+            "spins.a_swing_within_a_turn_is_a_second_speed",
+            "diagnosis/spin/smoother.py",
+            "    if _several_speeds(found.rates[0]):\n",
+            "    if _several_speeds(np.diff(readings_rad) / np.diff(time_s)):\n",
+            f"{_SMOOTHER}::test_a_torque_that_speeds_the_shaft_up_and_slows_it_down_makes_no_second_speed",
+        ),
+        (
+            "spins.a_shaft_that_stands_repeats_a_frame",
+            "twin/link/stale_frames.py",
+            "move = np.minimum(move, _moved_about(measured, repeat))",
+            "pass",
+            f"{_FRAMES}::test_without_a_reference_a_shaft_that_a_torque_holds_sends_no_frame_again",
+        ),
+        (
+            "spins.a_current_makes_no_torque",
+            "diagnosis/report/motion.py",
+            'if any("two currents" in effect.needs for effect in effects.values()):',
+            "if False:",
+            f"{_EXPLAIN}::test_what_grows_with_the_current_may_be_the_torque_that_the_current_makes",
+        ),
+        (
+            "spins.a_repeated_frame_may_be_a_torque",
+            "diagnosis/report/motion.py",
+            'if not open_orders or not any(effect.footprint in ("mean", "values") for effect in effects.values()):',
+            "if not open_orders or not keys:",
+            f"{_EXPLAIN}::test_a_frame_that_is_sent_again_is_no_torque",
+        ),
+        (
+            "spins.a_search_cut_short_is_silent_on_torques",
+            "diagnosis/report/as_well.py",
+            "return may_be_torque(found, cause)",
+            "return []",
+            f"{_EXPLAIN}::test_a_search_that_was_cut_short_says_too_what_may_be_a_torque",
+        ),
+        (
+            "spins.levels_by_a_median_of_steps",
+            "diagnosis/discovery/stages/recording_levels.py",
+            "bounded_rms(np.diff(one, 2))",
+            "np.median(np.abs(np.diff(one, 2)))",
+            f"{_LEVELS}::test_noise_near_a_step_of_the_word_makes_no_recording_louder",
         ),
         (
             "spins.rows_out_of_use_keep_their_torque",

@@ -30,10 +30,13 @@ def marks(
     noises of ``sqrt(2) noise`` its probability a row is the density there times the grid's step. Where the direction
     or the turn changes, slack or a new zero may undo the movement: no repeat is told there. Nor where what repeats is
     nearer to the reading that was expected than to the one before: a cause, such as a stuck bit, may undo the movement.
+    Without a reference the shaft moved on by no more than the readings before and after say: a torque may have held it.
     """
     repeat = np.concatenate([[False], np.abs(wrap(np.diff(measured))) < 1e-9])
     on = (np.diff(motion.direction) == 0) & (np.diff(motion.turn) == 0)
     move = np.concatenate([[0.0], np.where(on, np.abs(np.diff(motion.shaft_rad)), 0.0)])
+    if motion.estimated is not None:
+        move = np.minimum(move, _moved_about(measured, repeat))
     grid = max(step, 1e-6)
     sigma = np.sqrt(2.0) * np.maximum(noise, 0.3 * grid)
     mask = repeat & (move > 1.5 * grid) & (move > 4.0 * sigma) & (np.abs(residual) > 0.5 * move)
@@ -44,6 +47,17 @@ def marks(
         return mask, 0.0
     # Chernoff's bound on a Poisson count.
     return mask, min(0.0, count - expected + count * float(np.log(max(expected, 1e-300) / count)))
+
+
+def _moved_about(measured: Array, repeat: BoolArray) -> Array:
+    """How far each reading (n,) [rad] lies from the one before, by the last one ahead of it and the first one behind it
+    that are no repeats of each other. The frame after one that was sent again is two steps further on."""
+    fresh = np.flatnonzero(~repeat)
+    run = np.cumsum(~repeat) - 1
+    # Of a run of equal readings the first one; of a reading that nothing repeats the one before it.
+    before = np.where(repeat, fresh[run], np.maximum(np.arange(measured.size) - 1, 0))
+    behind = np.append(fresh, measured.size - 1)[run + 1]
+    return np.asarray(np.abs(wrap(measured[behind] - measured[before])) / np.maximum(behind - before, 1))
 
 
 def told(touched: int, readings: int) -> Mapping[str, tuple[float, float]]:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from diagnosis import Explanation, explain
+from diagnosis.progress import Progress
 from diagnosis.report.console import text
 from diagnosis.report.explain_plot import residual_figure
 from tests.command_line import halltwin
@@ -27,6 +28,12 @@ def even(turns_per_s: float, *, order: int = 1, error_deg: float = 0.5, seed: in
     noise = 0.03 * np.random.default_rng(seed).standard_normal(TIME.size)
     read = angle + error_deg * np.cos(order * np.radians(angle)) + noise
     return {"time_s": TIME, "measured_deg": np.mod(read, 360.0)}
+
+
+def stop_with_one(progress: Progress) -> None:
+    """End the search as soon as it holds a cause."""
+    if progress.causes:
+        raise StopIteration
 
 
 @cache
@@ -58,6 +65,39 @@ def test_behind_a_rounding_too_a_cause_may_be_a_torque() -> None:
     answer = explain({**rows, "measured_deg": step * np.round(rows["measured_deg"] / step)}).to_dict()
     told = {cause["name"]: cause["indistinguishable_from"] for cause in answer["causes"]}
     assert "torque_ripple" in told["magnet_harmonic"]
+
+
+def test_a_frame_that_is_sent_again_is_no_torque() -> None:
+    rows = even(9.0, order=5)
+    again = np.arange(50, TIME.size, 40)
+    rows["measured_deg"][again] = rows["measured_deg"][again - 1]
+    told = {cause["name"]: cause["indistinguishable_from"] for cause in explain(rows).to_dict()["causes"]}
+    assert "torque_ripple" not in told["stale_frames"]
+    assert "torque_ripple" in told["magnet_harmonic"]
+
+
+def test_what_grows_with_the_current_may_be_the_torque_that_the_current_makes() -> None:
+    """At two speeds too: that torque is not locked to the angle."""
+    logs, some = [], slice(1000)
+    for turns_per_s in (9.0, 25.0):
+        rows, current = even(turns_per_s, error_deg=0.0), 1.0 + np.cos(2.0 * np.pi * 3.3 * TIME)
+        turned = 0.2 * current * np.cos(2.0 * np.pi * turns_per_s * TIME)
+        told = {**rows, "measured_deg": np.mod(rows["measured_deg"] + turned, 360.0), "current_a": current}
+        logs.append({name: values[some] for name, values in told.items()})
+    (cause,) = explain(logs, progress=stop_with_one).to_dict()["causes"]
+    assert cause["name"] == "motor_field"
+    assert cause["indistinguishable_from"] == ["torque_ripple"]
+    assert "coasts" in cause["to_tell_apart"]
+
+
+def test_a_search_that_was_cut_short_says_too_what_may_be_a_torque() -> None:
+    found = explain(even(9.0, order=5), progress=stop_with_one)
+    (cause,) = found.to_dict()["causes"]
+    assert not cause["rivals_sought"]
+    assert cause["indistinguishable_from"] == ["torque_ripple"]
+    words = " ".join(found.summary().split())
+    assert "cannot be told from: torque_ripple" in words
+    assert "what else it may be was not looked for" in words
 
 
 def test_at_two_speeds_it_may_not() -> None:

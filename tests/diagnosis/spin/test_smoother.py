@@ -37,8 +37,8 @@ def read(angle: np.ndarray, *, seed: int = 1) -> np.ndarray:
     return np.asarray(angle + OFFSET * np.sin(angle) + 0.004 * np.cos(3.0 * angle) + noise)
 
 
-def fitted(angle: np.ndarray, *, torque: bool = True) -> MotionFit:
-    return fitted_motion(read(angle), TIME, [slice(0, TIME.size)], torque=torque)
+def fitted(angle: np.ndarray) -> MotionFit:
+    return fitted_motion(read(angle), TIME, [slice(0, TIME.size)])
 
 
 def error_of(fit: MotionFit, order: int) -> np.ndarray:
@@ -58,10 +58,18 @@ def test_a_coast_tells_the_sensor_from_a_torque_of_the_same_order() -> None:
     assert fit.noise_rad == pytest.approx(NOISE, rel=0.1)
 
 
-def test_without_the_torque_in_the_model_it_is_taken_for_the_sensors() -> None:
-    fit = fitted(coasting(), torque=False)
+def test_at_one_speed_a_torque_is_taken_for_the_sensors() -> None:
+    fit = fitted(coasting(last=105.0))
     assert not fit.separable.any()
     assert np.hypot(*(error_of(fit, 3) - [0.004, 0.0])) > 5e-4
+
+
+def test_a_torque_that_speeds_the_shaft_up_and_slows_it_down_makes_no_second_speed() -> None:
+    """Order 3: the shaft goes at 14 to 26 rad/s in each third of a turn, and at 19 to 21 on the whole."""
+    turned = 20.0 * TIME + 0.8 * np.sin(1.5 * TIME)
+    angle = turned + 0.1 * np.sin(3.0 * turned)
+    assert np.ptp(np.quantile(np.diff(read(angle)) / 0.001, [0.1, 0.9])) > 8.0
+    assert not fitted(angle).separable.any()
 
 
 def test_no_torque_is_seen_where_none_is() -> None:
@@ -80,7 +88,7 @@ def test_a_wave_in_time_is_no_motion() -> None:
     """The mains in a channel, ten times the noise: a motion that held it would hold all that is slower too."""
     angle = coasting()
     hum = 10.0 * NOISE * np.cos(2.0 * np.pi * 50.0 * TIME) * np.cos(angle)
-    fit = fitted_motion(read(angle) + hum, TIME, [slice(0, TIME.size)], torque=True)
+    fit = fitted_motion(read(angle) + hum, TIME, [slice(0, TIME.size)])
     assert np.median(fit.knee_rad_s) < 60.0
     assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=3e-4)
 
@@ -89,7 +97,7 @@ def test_an_error_that_grows_with_the_speed_is_no_torque() -> None:
     """Of order 2, as of a channel that is read late: 5 us here."""
     angle = coasting()
     late = 5e-6 * np.gradient(angle, TIME) * np.cos(2.0 * angle)
-    fit = fitted_motion(read(angle) + late, TIME, [slice(0, TIME.size)], torque=True)
+    fit = fitted_motion(read(angle) + late, TIME, [slice(0, TIME.size)])
     assert fit.terms.values[-2:] == pytest.approx([5e-6, 0.0], abs=5e-7)
     assert error_of(fit, 2) == pytest.approx([0.0, 0.0], abs=5e-5)
 
@@ -103,7 +111,7 @@ def test_dry_friction_reverses_with_the_direction() -> None:
     time = np.concatenate([TIME, TIME[-1] + 1.0 + TIME])
     readings = np.concatenate([read(both[: TIME.size]), read(both[TIME.size :], seed=2)])
     slices = [slice(0, TIME.size), slice(TIME.size, 2 * TIME.size)]
-    fit = fitted_motion(readings, time, slices, torque=True)
+    fit = fitted_motion(readings, time, slices)
     assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=6e-5)
 
 
@@ -111,7 +119,7 @@ def test_readings_far_off_are_left_out() -> None:
     angle = coasting()
     readings = read(angle)
     readings[::100] += 0.5
-    fit = fitted_motion(readings, TIME, [slice(0, TIME.size)], torque=True)
+    fit = fitted_motion(readings, TIME, [slice(0, TIME.size)])
     assert not fit.usable[::100].any()
     assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=2e-4)
 

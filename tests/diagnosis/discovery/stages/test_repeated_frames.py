@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -15,7 +15,9 @@ from diagnosis.discovery.stages.repeated_frames import repeated_frames
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.claims import claiming, with_effects
 from tests.diagnosis.discovery.sweeps import Made, before, noise, planted_of, with_residual
-from twin.link.stale_frames import STALE_FRAMES
+from twin.angles import TAU
+from twin.estimated_motion import EstimatedMotion
+from twin.link.stale_frames import STALE_FRAMES, marks
 from twin.motion import Motion
 
 LIMIT = DiscoverySettings().footprint_log_p
@@ -179,3 +181,40 @@ def test_on_a_clean_sweep_there_is_nothing_to_say(made: Made) -> None:
     """Also where the shaft moves by less than a step of the grid, or stands still."""
     state = before(repeated_frames, made)
     assert repeated_frames(state) is state
+
+
+def standing(rows: int = 400) -> tuple[np.ndarray, Motion]:
+    """A spin of 20 steps of the word a reading whose shaft a torque holds for some readings, ten times a record.
+
+    The readings [rad] and the motion as it is estimated, the even one, a little behind them.
+    """
+    even = 20.0 * np.arange(rows)
+    held = even + 20.0 * 40.0 / TAU * np.sin(TAU * np.arange(rows) / 40.0) + 30.0
+    step = TAU / 2.0**14
+    estimated = EstimatedMotion(
+        stretch=np.zeros(rows, dtype=np.int64), knee_rad=np.full(rows, 1e-3), noise_rad=step, torques=()
+    )
+    motion = Motion.from_angle(step * even)
+    return step * np.round(held), replace(motion, estimated=estimated)
+
+
+def test_without_a_reference_a_shaft_that_a_torque_holds_sends_no_frame_again() -> None:
+    measured, motion = standing()
+    step = TAU / 2.0**14
+    away = measured - motion.shaft_rad
+    mask, log_p = marks(measured, away, step, step, motion)
+    assert not mask.any()
+    assert log_p == 0.0
+    # Against a reference that turns on meanwhile they would be.
+    assert marks(measured, away, step, step, replace(motion, estimated=None))[0].any()
+
+
+def test_without_a_reference_a_frame_that_is_sent_again_is_told_by_the_one_after_it() -> None:
+    _, motion = standing()
+    step, again = TAU / 2.0**14, np.arange(20, 400, 40)
+    measured = motion.shaft_rad.copy()
+    measured[again] = measured[again - 1]
+    measured[again[::2] + 1] = measured[again[::2] - 1]
+    mask, log_p = marks(measured, measured - motion.shaft_rad, step, step, motion)
+    assert np.array_equal(np.flatnonzero(mask), np.sort(np.concatenate([again, again[::2] + 1])))
+    assert log_p < LIMIT

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from tests.command_line import halltwin
+from tests.hidden.fleets.generator import Plan, write
 from tests.pages import GUIDE, ROOT
 from twin.adc.converter import Converter
 from twin.baseline import FACTORS
@@ -134,6 +135,17 @@ def test_keys_of_monitor_are_listed(tmp_path: Path) -> None:
     answer = json.loads(written.read_text(encoding="utf-8"))
     assert answer["factors"]["zero_deg"]["forward"]["change"]["number"] == 9
     assert answer["factors"]["lag_deg"]["change"]["size"] == pytest.approx(0.3, abs=0.02)
+    assert undescribed(answer) == set()
+
+
+def test_keys_of_fleet_are_listed(tmp_path: Path) -> None:
+    """Of a batch with a cause that all share, a device that stands apart, and a change: every key is there."""
+    plan = Plan(count=40, cause="hysteresis", strength_deg=0.02, points=90, odd={4: ("offset", 30.0)}, moved=(25, 0.5))
+    write(plan, tmp_path / "batch", seed=1)
+    written = tmp_path / "found.json"
+    halltwin("fleet", tmp_path / "batch", "-o", tmp_path / "study", "--json", written)
+    answer = json.loads(written.read_text(encoding="utf-8"))
+    assert all(answer[key] for key in ("causes", "apart", "changes", "corrections"))
     assert undescribed(answer) == set()
 
 

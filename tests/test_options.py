@@ -40,6 +40,7 @@ BASE: dict[str, tuple[str, ...]] = {
     "generate": ("-o", "out/study"),
     "design": ("-o", "out/study", "--no-plot"),
     "recover": ("-o", "out/study", "--no-plot"),
+    "fleet": (*(f"s{k}.csv" for k in range(8)), "-o", "out/study"),
 }
 """Arguments with which a command does little; a study ends where its work would begin."""
 WORDS = frozenset(
@@ -47,6 +48,7 @@ WORDS = frozenset(
         *("--check", "--prefix", "--twin", "--hide", "--interface", "--channel", "--bus-option", "--fault", "--cause"),
         *("--shape", "--grade", "--sampling", "--scheduler", "--fail-on"),
         *("--for", "--name", "--least"),
+        *("--order", "--explain"),
         "--columns",
     }
 )
@@ -124,7 +126,7 @@ NUMBERS = [one for one in options() if one.kind in ("number", "text") and one.na
 
 @pytest.mark.parametrize("option", NUMBERS, ids=lambda one: f"{one.command} {one.name}")
 def test_what_no_number_can_mean_is_refused(option: Option, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in ("design", "recovery", "training"):
+    for module in ("design", "recovery", "training", "fleet"):
         monkeypatch.setattr(f"scenarios.studies.{module}.run.run_study", begun)
     full = f"{option.command} {option.name}"
     right = RIGHT.get(full, RIGHT.get(option.name, "")).split()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,12 +20,15 @@ def distinct_names(paths: Sequence[str | Path]) -> list[str]:
     Of paths that are the very same, all.
     """
     parts = [Path(path).parts for path in paths]
-    found = []
-    for place, own in enumerate(parts):
-        others = [other for k, other in enumerate(parts) if k != place and other != own]
-        few = next((n for n in range(1, len(own)) if all(other[-n:] != own[-n:] for other in others)), len(own))
-        found.append(shown_path(Path(*own[-few:])) if own else "")
-    return found
+    few = dict.fromkeys(parts, 0)
+    length, alike = 1, set(few)
+    while alike:
+        # Counted, as a folder may hold a hundred thousand files.
+        counts = Counter(own[-length:] for own in few)
+        told = {own for own in alike if length >= len(own) or counts[own[-length:]] == 1}
+        few.update(dict.fromkeys(told, length))
+        alike, length = alike - told, length + 1
+    return [shown_path(Path(*own[-few[own] :])) if own else "" for own in parts]
 
 
 def shown_name(path: str | Path) -> str:

@@ -11,7 +11,7 @@ from scenarios.cli.bench import bench
 from scenarios.cli.effects import causes, check_effect, new_effect
 from scenarios.cli.logs import doctor, import_log
 from scenarios.cli.simulation import hardware, paper, simulate, spinning
-from scenarios.cli.studies import design, generate, recover
+from scenarios.cli.studies import design, fleet, generate, recover
 from scenarios.cli.sweeps import compensate, diagnose, explain, export, monitor
 from scenarios.cli.verbosity import with_verbosity
 
@@ -75,6 +75,7 @@ for command in (
     compensate,
     export,
     monitor,
+    fleet,
     hardware,
     bench,
     new_effect,

@@ -1,4 +1,4 @@
-"""Commands that run studies at scale: training sweeps, the choice of a magnet, what comes back of known causes."""
+"""Commands at scale: training sweeps, the choice of a magnet, what comes back of known causes, whole batches."""
 
 from __future__ import annotations
 
@@ -9,8 +9,12 @@ import typer
 
 from scenarios.cli.options import (
     BothDirections,
+    Columns,
     Force,
+    Json,
+    MaxSize,
     Points,
+    PolePairs,
     Scheduler,
     Seed,
     SpeedRpm,
@@ -18,6 +22,7 @@ from scenarios.cli.options import (
     Temperatures,
     Turns,
     Workers,
+    fail_on_option,
     written,
 )
 from scenarios.cli.reproduce import command_line
@@ -218,5 +223,60 @@ def recover(
         plot=plot,
         force=force,
         machines=Machines(workers=workers, scheduler=scheduler),
+        command=command_line(context),
+    )
+
+
+def fleet(
+    context: typer.Context,
+    devices: Annotated[
+        list[str],
+        typer.Argument(metavar="DEVICES...", help="Sweeps, one file a device: files, globs or folders."),
+    ],
+    output: StudyFolder = Path("fleet"),
+    json: Json = None,
+    report: Annotated[Path | None, written("Write one HTML page of all devices.")] = None,
+    table: Annotated[
+        Path | None, written("Write the figures of every device as Parquet: .parquet; needs the extra formats.")
+    ] = None,
+    explained: Annotated[
+        str,
+        typer.Option(
+            "--explain", metavar="apart|all|none", help="Devices that are explained in full: those that stand apart."
+        ),
+    ] = "apart",
+    order: Annotated[
+        str,
+        typer.Option(
+            metavar="name|given|COLUMN",
+            help="Order of production: numbers in the names, as given, or the first value of a column.",
+        ),
+    ] = "name",
+    output_sense: Annotated[
+        int | None,
+        typer.Option(metavar="1|-1", help="Which way the outputs count: 1 where they are atan2(y, x). Without: told."),
+    ] = None,
+    force: Force = False,
+    columns: Columns = None,
+    pole_pairs: PolePairs = None,
+    max_size: MaxSize = "2GB",
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    seed: Seed = 0,
+    fail_on: Annotated[list[str] | None, fail_on_option("apart, change, cause, or the NAME of a cause")] = None,
+) -> None:
+    """Ask many devices at once: what they share and how they scatter, which stand apart, and since when."""
+    from scenarios.commands.inputs import SweepFiles
+    from scenarios.studies.fleet.run import Asked, Outputs, run
+    from scenarios.studies.machines import Machines
+    from twin.bounded_input import bytes_of
+
+    run(
+        SweepFiles(devices, bytes_of(max_size), columns, pole_pairs),
+        output,
+        what=Asked(order=order, explained=explained, output_sense=output_sense, seed=seed),
+        outputs=Outputs(json=json, report=report, table=table, force=force),
+        machines=Machines(workers=workers, scheduler=scheduler),
+        fail_on=fail_on or (),
         command=command_line(context),
     )

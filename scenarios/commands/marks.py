@@ -1,9 +1,9 @@
 """The mark by which the program knows a file that it wrote and that nobody has changed since.
 
 A mark is one sentence with the SHA-256 of all that the file holds besides: a comment in TOML, CFG, C, HTML, SVG and
-PDF, the entry ``written_by`` in JSON, a text chunk in PNG. CSV stays plain, because many programs read it that know no
-comments: its mark is an extended attribute of the file, where the system has those. A file that was edited, or that
-someone else wrote in the same format, bears no mark that fits: it is the user's.
+PDF, the entry ``written_by`` in JSON, a text chunk in PNG. CSV and Parquet stay plain, because many programs read them
+that know no comments: their mark is an extended attribute of the file, where the system has those. A file that was
+edited, or that someone else wrote in the same format, bears no mark that fits: it is the user's.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _DIGEST = re.compile(re.escape(_SAID) + b"([0-9a-f]{64})")
 _REACH = 512
 """Bytes at the beginning or the end of a file in which its mark lies."""
 _BLOCK = 1 << 20
-_PLAIN = (".csv", ".csv.gz")
+_PLAIN = (".csv", ".csv.gz", ".parquet")
 _ATTRIBUTE = "user.halltwin.sha256"
 
 

@@ -45,10 +45,13 @@ HTML = Format("reports", (".html", ".htm"))
 HEADER = Format("C headers", (".h", ".hh", ".hpp"))
 PICTURE = Format("pictures", (".png", ".svg", ".pdf"))
 CONFIGURATION = Format("such tables", (".cfg",))
+PARQUET = Format("such tables", (".parquet",))
 PYTHON = Format("effects", (".py",), marked=False)
 """A file to write one's own physics into."""
 
-_FILES = {end for form in (TABLE, JSON, TOML, HTML, HEADER, PICTURE, CONFIGURATION, PYTHON) for end in form.endings}
+_FILES = {
+    end for form in (TABLE, JSON, TOML, HTML, HEADER, PICTURE, CONFIGURATION, PARQUET, PYTHON) for end in form.endings
+}
 
 Given = tuple[Path | None, Format]
 

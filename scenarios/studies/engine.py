@@ -19,25 +19,29 @@ from twin.errors import UserError
 from twin.whole_file import FULL
 
 
-def run_study(job: Job, folder: StudyFolder, *, chunks: int, items: int, unit: str, machines: Machines) -> int:
+def run_study(
+    job: Job, folder: StudyFolder, *, chunks: int | Sequence[int], items: int, unit: str, machines: Machines
+) -> int:
     """Do every chunk that is not done yet; returns how many that were.
 
-    ``items`` is the number of things (designs, sweeps) in all chunks, ``unit`` their name, for the progress line.
+    ``chunks`` is their number, or their numbers where a study has several stages; ``items`` is the number of things
+    (designs, sweeps) in all chunks, ``unit`` their name, for the progress line.
     Raises UserError where the disk is full or workers keep dying; what is done stays done.
     """
-    waiting = [chunk for chunk in range(chunks) if not folder.is_done(chunk)]
+    numbers = range(chunks) if isinstance(chunks, int) else chunks
+    waiting = [chunk for chunk in numbers if not folder.is_done(chunk)]
     if not waiting:
         return 0
-    done = chunks - len(waiting)
+    done = len(numbers) - len(waiting)
     try:
-        with progress(chunks, done, items, unit) as step, _finishing(job, folder, waiting, machines) as finished:
+        with progress(len(numbers), done, items, unit) as step, _finishing(job, folder, waiting, machines) as finished:
             for _ in finished:
                 done += 1
                 step()
     except OSError as error:
         why = "the disk is full" if error.errno in FULL else f"it cannot be written ({error.strerror or error})"
         raise UserError(
-            f"{folder.path}: {why}; {done} of {chunks} chunks are complete and kept: make room and run the same "
+            f"{folder.path}: {why}; {done} of {len(numbers)} chunks are complete and kept: make room and run the same "
             "command again"
         ) from None
     return len(waiting)

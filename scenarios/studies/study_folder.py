@@ -231,12 +231,13 @@ class StudyFolder:
             write_whole(beside / _CHUNKS / f"{part_of(chunk)}.npz", out.getvalue())
             return self.place(part_of(chunk), beside)
 
-    def load(self, chunks: int, required: Collection[str] = ()) -> dict[str, np.ndarray[Any, Any]]:
-        """The arrays of all chunks, one after the other along their first axis; these names must be among them.
+    def load(self, chunks: int | Iterable[int], required: Collection[str] = ()) -> dict[str, np.ndarray[Any, Any]]:
+        """The arrays of these chunks, or of so many, one after the other along their first axis, with these names.
 
         Raises UserError.
         """
-        files = [self.path / _CHUNKS / f"{part_of(chunk)}.npz" for chunk in range(chunks)]
+        numbers = range(chunks) if isinstance(chunks, int) else chunks
+        files = [self.path / _CHUNKS / f"{part_of(chunk)}.npz" for chunk in numbers]
         return joined(files, required)
 
 

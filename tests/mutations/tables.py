@@ -6,6 +6,7 @@ from tests.mutations.by_hand import BY_HAND
 from tests.mutations.discovery import DISCOVERY
 from tests.mutations.export import EXPORT
 from tests.mutations.files import FILES
+from tests.mutations.fleet import FLEET
 from tests.mutations.forms import FORMS
 from tests.mutations.gaps import GAPS
 from tests.mutations.logs import LOGS
@@ -43,6 +44,7 @@ def mutations() -> tuple[Mutation, ...]:
         *EXPORT,
         *LOGS,
         *STUDIES,
+        *FLEET,
         *SCRIPTS,
         *THERMAL,
         *REPORTED,

@@ -1,0 +1,144 @@
+"""Which devices stand apart from their batch, and in what; false alarms are held down over devices and figures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.discovery.fitting.f_test import log_probability
+from diagnosis.population.batch import ZERO, Batch
+from diagnosis.population.false_discovery import threshold
+from diagnosis.population.pooled import FALSE_SHARE, SENSOR, Figures
+from diagnosis.population.robust_distance import rest_of
+from twin.angles import Array
+from twin.baseline import FACTORS
+from twin.effect import BoolArray
+
+RESIDUAL = "residual RMS"
+FACTORS_AND_RESIDUAL = (*(factor.label for factor in FACTORS[:ZERO]), RESIDUAL)
+"""What the distance of a device is taken over."""
+FEWEST_DEVICES = 5 * len(FACTORS_AND_RESIDUAL)
+"""Fewer do not show how they scatter in so many figures."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Apart:
+    """A device that stands apart: its place, how improbable that is by chance, and in what, most improbable first.
+
+    ``log_p`` is that of the device in any figure; ``distance`` in standard deviations of the rest.
+    """
+
+    device: int
+    log_p: float
+    distance: float
+    figures: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Distances:
+    """Squared distances (N, 1 + C) of devices by their factors and by each candidate, log p of each; NaN: not known.
+
+    ``scores`` (N, F): each of the factors and the residual's RMS by itself, in standard deviations of the rest.
+    """
+
+    squares: Array
+    log_p: Array
+    scores: Array
+
+
+def distances(batch: Batch) -> Distances:
+    """How far each device of a batch stands from the rest, in every figure."""
+    count = len(batch.question.candidates)
+    squares, log_p = (np.full((len(batch), 1 + count), np.nan) for _ in range(2))
+    scores = np.zeros((len(batch), len(FACTORS_AND_RESIDUAL)))
+    if len(batch) < FEWEST_DEVICES:
+        return Distances(squares, log_p, scores)
+    values = np.column_stack([batch.arrays["fitted"][:, :ZERO], np.log(batch.arrays["sigma_deg"])])
+    rest = rest_of(values)
+    squares[:, 0], scores = rest.squares(values), rest.scores(values)
+    log_p[:, 0] = _log_p(squares[:, 0], values.shape[1], len(batch) - values.shape[1])
+    freedom = batch.arrays["freedom"]
+    for place in range(count):
+        present = place in batch.question.present
+        figures = batch.figures_of_present(batch.question.present.index(place)) if present else batch.figures(place)
+        squares[:, 1 + place] = _of_figures(figures, about_mean=present)
+        log_p[:, 1 + place] = _log_p(squares[:, 1 + place], figures.values.shape[1], freedom)
+    return Distances(squares, log_p, scores)
+
+
+def standing_apart(batch: Batch, found: Distances, share: float = FALSE_SHARE) -> list[Apart]:
+    """The devices that stand apart, farthest first.
+
+    Of each the most improbable figure counts, as many times as there are figures (Bonferroni); devices are independent
+    of one another, as their readings are.
+    """
+    tried = np.count_nonzero(np.isfinite(found.log_p), axis=1)
+    together = np.full(tried.size, np.nan)
+    together[tried > 0] = np.nanmin(found.log_p[tried > 0], axis=1) + np.log(tried[tried > 0])
+    limit = threshold(together, share, independent=True)
+    apart = []
+    with np.errstate(invalid="ignore", divide="ignore"):
+        outside = found.log_p + np.log(tried)[:, None] <= limit
+    for device in np.flatnonzero(outside.any(axis=1)):
+        places = np.flatnonzero(outside[device])
+        ranked = places[np.argsort(found.log_p[device, places])]
+        names = dict.fromkeys(name for place in ranked for name in _names(batch, found, int(device), int(place)))
+        best = ranked[0]
+        apart.append(
+            Apart(
+                device=int(device),
+                log_p=float(together[device]),
+                distance=float(np.sqrt(found.squares[device, best])),
+                figures=tuple(names),
+            )
+        )
+    return sorted(apart, key=lambda one: (one.log_p, one.device))
+
+
+def _names(batch: Batch, found: Distances, device: int, place: int) -> tuple[str, ...]:
+    """What a device stands apart in: causes by name, factors by that which is farthest off."""
+    if place > 0:
+        return (batch.question.candidates[place - 1].effect,)
+    return (FACTORS_AND_RESIDUAL[int(np.argmax(np.abs(found.scores[device])))],)
+
+
+def _of_figures(figures: Figures, *, about_mean: bool) -> Array:
+    """Squared distances (N,) of a candidate's coefficients from what is usual, in units of their usual scatter."""
+    from scipy.special import chdtri
+
+    seen = figures.seen
+    found = np.full(seen.size, np.nan)
+    if np.count_nonzero(seen) < FEWEST_DEVICES:
+        return found
+    values = _about_what_is_usual(figures)[seen] if about_mean else figures.values[seen]
+    terms = values.shape[1]
+    squares = np.einsum("nt,nt->n", values, values) / figures.errors[seen] ** 2
+    # Of a cause that is in none of them, only noise scatters: errors that are too small by the model count as found.
+    usual = max(float(np.median(squares)) / float(chdtri(terms, 0.5)), 1.0)
+    found[seen] = squares / usual
+    return found
+
+
+def _about_what_is_usual(figures: Figures) -> Array:
+    """Coefficients (N, T) less their medians, with phases counted from where they agree best."""
+    ways = [figures.values] if figures.turned is None else [figures.values, figures.counted_from(SENSOR)]
+    about = [values - np.median(values[figures.seen], axis=0) for values in ways]
+    sizes = [float(np.median(np.linalg.norm(values[figures.seen], axis=1))) for values in about]
+    return about[int(np.argmin(sizes))]
+
+
+def _log_p(squares: Array, terms: int, freedom: Array | int) -> Array:
+    """Log of the probability of squared distances (N,) as large, their unit known with so many degrees of freedom."""
+    known = np.isfinite(squares)
+    found = np.full(squares.shape, np.nan)
+    free = np.broadcast_to(freedom, squares.shape)[known]
+    found[known] = log_probability((free + terms) * np.log1p(squares[known] / free), terms, free + terms)
+    return found
+
+
+def usual_devices(batch: Batch, apart: list[Apart]) -> BoolArray:
+    """Which devices (N,) do not stand apart."""
+    usual = np.full(len(batch), True)
+    usual[[one.device for one in apart]] = False
+    return usual

@@ -1,0 +1,1 @@
+"""Many devices, one file each: ``halltwin fleet``."""

@@ -1,0 +1,66 @@
+"""The figures of one device: held against what was put in, over the devices of a batch."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diagnosis.population.device import Question, estimates
+from tests.diagnosis.population.batches import clean, looked
+from tests.hidden.fleets.generator import Plan
+from tests.hidden.fleets.study import sweeps_of
+from tests.hidden.noise import Noise
+from twin.sweep import Sweep
+
+
+def test_errors_are_what_estimates_scatter_by() -> None:
+    """A hundred candidates on sixty devices without a cause: their mean square in errors is 1 to 5 sigma of 11,000."""
+    _, found, _ = clean()
+    arrays = found.batch.arrays
+    scores = arrays["candidate"] / arrays["candidate_error"][..., None]
+    known = scores[np.isfinite(scores)]
+    assert known.size > 10_000
+    assert np.mean(known**2) == pytest.approx(1.0, abs=5.0 * np.sqrt(2.0 / known.size))
+
+
+def test_halves_agree_by_chance_alone() -> None:
+    """The mean product of two halves has no bias by the noise; that of the whole with itself has."""
+    _, found, _ = clean()
+    arrays = found.batch.arrays
+    product = np.prod(arrays["candidate_halves"], axis=1) / arrays["candidate_error"][..., None] ** 2
+    known = product[np.isfinite(product)]
+    assert abs(np.mean(known)) < 5.0 * np.std(known) / np.sqrt(known.size)
+    assert np.mean(known) < 0.2
+
+
+def test_halves_agree_by_chance_in_coloured_noise_too() -> None:
+    _, found = looked(Plan(count=40, noise=Noise("ar1", 0.02, 0.8)), seed=12)
+    assert found.batch.question.noise
+    arrays = found.batch.arrays
+    scores = arrays["candidate"] / arrays["candidate_error"][..., None]
+    known = scores[np.isfinite(scores)]
+    assert np.mean(known**2) == pytest.approx(1.0, abs=0.06)
+    product = np.prod(arrays["candidate_halves"], axis=1) / arrays["candidate_error"][..., None] ** 2
+    assert abs(np.nanmean(product)) < 5.0 * np.nanstd(product) / np.sqrt(np.count_nonzero(np.isfinite(product)))
+
+
+def test_what_is_fitted_along_is_beside_all_else() -> None:
+    """Two causes of one order's neighbourhood: the size put in comes back where both are fitted."""
+    template, _, _ = clean()
+    sweeps = sweeps_of(Plan(count=12, cause="hysteresis", strength_deg=0.05, spread=0.0), seed=13)
+    places = [k for k, one in enumerate(template.question.candidates) if one.effect == "hysteresis"]
+    question = Question(candidates=template.question.candidates, present=(places[0],))
+    found = estimates(sweeps, question, rng=np.random.default_rng(0))
+    assert found["fitted"].shape == (12, 7)
+    assert np.all(found["fitted"][:, 6] > 0.03)
+    # What is fitted is not asked for again.
+    assert np.isnan(found["candidate_error"][:, places[0]]).all()
+    assert np.isfinite(found["candidate_error"][:, places[1]]).all()
+
+
+def test_a_device_of_few_readings_is_no_estimate() -> None:
+    template, _, _ = clean()
+    sweep = Sweep.from_columns({"reference_deg": np.arange(24.0) * 15.0, "measured_deg": np.arange(24.0) * 15.0})
+    found = estimates([sweep], template.question, rng=np.random.default_rng(0))
+    assert found["rows"][0] == 24.0
+    assert np.isnan(found["fitted"]).all()

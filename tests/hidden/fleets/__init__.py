@@ -1,0 +1,1 @@
+"""Batches of devices with known truth: what they share, which are odd, since when. Independent of the twin."""

@@ -250,7 +250,7 @@ STAGES: tuple[Mutation, ...] = (
         ),
         (
             "spread.no_doubt_beside_a_shape_without_a_name",
-            " - doubt_beside(fit, state.keys)",
+            " - (odds if any(map(unnamed, state.keys)) else 0.0)",
             "",
             "stages/test_spread.py::test_what_is_named",
         ),

@@ -9,7 +9,6 @@ from diagnosis.discovery.fitting.joint_fit import evaluate
 from diagnosis.discovery.marks.row_masks import scaled
 from diagnosis.discovery.marks.row_numbers import place_in_recording
 from diagnosis.discovery.marks.spread import SpreadFinding, bursts, spread_shapes
-from diagnosis.discovery.search.likelihood_ratio import doubt_beside
 from diagnosis.discovery.stages.recording_levels import recording_levels
 from diagnosis.discovery.state import State
 from twin.catalogue import find, unnamed
@@ -31,8 +30,9 @@ def spread(state: State) -> State:
     if burst is not None:
         shapes.append(burst)
     family = state.family("spread")
-    limit = state.settings.effect_log_p(family) - doubt_beside(fit, state.keys)
     odds = state.settings.unnamed_log_odds
+    # What a shape without a name leaves lies in some places of the turn: uneven, whatever the colour of the noise.
+    limit = state.settings.effect_log_p(family) - (odds if any(map(unnamed, state.keys)) else 0.0)
     judged = [(shape.log_p + (odds if unnamed(shape.name) else 0.0), shape) for shape in shapes]
     score, best = min(judged, key=lambda item: item[0], default=(0.0, None))
     if best is None or score > limit:

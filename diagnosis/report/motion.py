@@ -145,8 +145,8 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
         said.append(f"Torques locked to the angle, told from the sensor by the speeds: {listed}")
     if motion["not_separable"]:
         said.append(
-            f"Not told from a torque locked to the angle: orders {_ranges(motion['not_separable'])}. Here all of these "
-            f"orders counts as the sensor's; to part them: {SECOND_SPEED}"
+            f"Not told from a torque locked to the angle: orders {_ranges(motion['not_separable'])}. Here all of that "
+            f"counts as the sensor's; to part them: {SECOND_SPEED}"
         )
     said.append("Not seen without a reference: the zero, what drifts slower than a turn, and what a reversal leaves")
     return said

@@ -17,6 +17,9 @@ def test_a_mirrored_description_is_said_to_fit_as_well() -> None:
     said += "with offset y 0.712 %, phase -0.1691 deg and zero -33.1201 deg"
     assert senses_words(answer) == said
     assert said in " ".join(shown(answer, 160).split())
+    assert senses_words({**answer, "motion": {}}) == said.replace(
+        ", phase -0.1691 deg and zero -33.1201", " and phase -0.1691"
+    )
     # Of a sensor that was turned between recordings the mirrored twin is another one.
     mirrored["Vx_over_Ax"] = parameters["Vx_over_Ax"]["high"] + 0.002
     assert "fits as well, with offset x " in senses_words(answer)

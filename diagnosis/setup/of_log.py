@@ -169,7 +169,7 @@ def _of_several(table: Table, two: OpenGuess, *, name: str) -> LogRecord:
 
 def _by_names(table: Table, *, name: str, refused: str) -> LogRecord | None:
     """What the names say, whatever the values; None where they name no angle."""
-    said = tuple(meaning_of(one) for one in table.names)
+    said = tuple(meaning_of(one) for one in table.described)
     usable = [k for k, column in enumerate(table.values) if k not in table.faults and np.isfinite(column).sum() >= 4]
     angles = [k for k in usable if said[k].role == "angle"]
     if not angles:
@@ -205,7 +205,7 @@ def _angle(target: str, source: str, values: Array, said: Meaning) -> Column:
         return Column(target, Term(source), None if said.unit.name == "deg" else said.unit.name)
     known = values[np.isfinite(values)]
     span = float(np.ptp(known))
-    if said.counts or (span > 370.0 and bool(np.all(known % 1.0 == 0.0))):
+    if (said.counts and bool(np.all(known % 1.0 == 0.0))) or (span > 370.0 and bool(np.all(known % 1.0 == 0.0))):
         wraps = bool(np.any(np.abs(np.diff(known)) > 0.5 * span))
         full = [many for many in COUNTS_PER_TURN if wraps and 0.98 * many <= span <= many]
         counts = float(full[0]) if full else 2.0 ** max(int(np.ceil(np.log2(span + 1.0))), _FEWEST_BITS)

@@ -42,6 +42,8 @@ _SMALL_STEP_DEG = 90.0
 """Rows that are typically closer than this follow one another round the turn."""
 _FULL_SHARE = 0.9
 """Share of a turn that wrapped counts fill at least."""
+_PRINTED = 1e-5
+"""Share of a turn to which an angle is printed at least."""
 _EVEN = 0.8
 """By how much an angle moves at least with the other, on a span that tells little of units."""
 _LEAST_DEG, _SHORT_DEG = 6.4, 100.0
@@ -146,6 +148,14 @@ def same_angle(measured_deg: Array, reference_deg: Array) -> bool:
     return follows(measured_deg, reference_deg) and distance_deg(measured_deg, reference_deg) <= _MOST_GUESSED_DEG
 
 
+def is_copy(reference: Array, measured: Array, units: Pair) -> bool:
+    """Whether two angles (n,) are one, in other units or over other turns: they differ by the rounding of both."""
+    both = np.isfinite(reference) & np.isfinite(measured)
+    a, b = units[0].degrees(reference[both]), units[1].degrees(measured[both])
+    rounding = sum(0.5 * 360.0 / one.counts if one.counts else 360.0 * _PRINTED for one in units)
+    return bool(np.max(np.abs(wrap_deg(b - a)), initial=0.0) <= rounding)
+
+
 def drifts(reference: Array, measured: Array) -> bool:
     """Whether one angle (n,) [deg] runs away from the other, as with a wrong number of counts a turn."""
     reference = _unwrapped(reference)
@@ -176,8 +186,10 @@ def options_of(values: Array, said: Meaning) -> list[AngleUnit]:
         return [AngleUnit(said.unit.name)]
     if said.turns:
         return [AngleUnit(counts=n) for n in said.turns]
-    counts = _counts(values, stated=said.counts)
-    if said.counts:
+    # "raw" says counts, and stands over parts of a turn too.
+    called_counts = said.counts and not bool(np.any(values % 1.0 != 0.0))
+    counts = _counts(values, stated=called_counts)
+    if called_counts:
         return counts
     span = float(np.ptp(values))
     if bool(np.any(restarts(values))):

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.errors import SweepError
+from twin.logs.remarks import units_remarked
 from twin.logs.table import Table
 from twin.logs.units import COUNTS, unit_of
 from twin.shown import shown
@@ -19,6 +20,7 @@ from twin.text_input import MISSING
 _MISSING = MISSING | {"#n/a", "--"}
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
 _HEX = re.compile(r"0[xX][0-9a-fA-F]{1,13}")
+_HEADER_ROWS = 2
 _WORDS_SHARE = 0.5
 """Share of cells that are no numbers from which a column holds words, and no number is mistyped."""
 
@@ -59,6 +61,12 @@ def table_of(
         raise SweepError(f"{file}: no row holds two numbers; expected a header line and one row per reading")
     width = widths.most_common(1)[0][0]
     first = next(k for k, row in enumerate(rows) if numbers[k] >= 2 and len(row.cells) == width)
+    behind = [k for k in range(first + 1, min(first + 1 + _HEADER_ROWS, len(rows))) if len(rows[k].cells) == width]
+    # Names may be numbers, as those of a scope's channels, where the row of their units stands below them.
+    if words := [k for k in behind if all(map(_is_unit, rows[k].cells)) and any(rows[k].cells)]:
+        first = words[-1] + 1
+    if first >= len(rows):
+        raise SweepError(f"{file}: no numbers stand below the header of line {rows[-1].number}; expected readings")
     data = rows[first:]
     for row in data:
         if len(row.cells) != width:
@@ -70,7 +78,10 @@ def table_of(
     columns = [_column([(row.number, row.cells[k]) for row in data], comma_parts=comma_parts) for k in range(width)]
     called = [name or f"#{k + 1}" for k, name in enumerate(names)]
     faults = {k: fault.replace("\0", called[k]) for k, (_, fault) in enumerate(columns) if fault}
-    return Table(file, names, tuple(values for values, _ in columns), faults, (*notes, *said))
+    remarked = units_remarked(names, [" ".join(row.cells) for row in remarks if row.number < data[0].number])
+    units = ", ".join(f"{called[k]} in {unit}" for k, unit in remarked.items())
+    said = (*said, f"by a comment {units}") if units else said
+    return Table(file, names, tuple(values for values, _ in columns), faults, (*notes, *said), remarked=remarked)
 
 
 def _names(
@@ -114,7 +125,7 @@ def _names(
 
 def _is_unit(cell: str) -> bool:
     word = cell.strip("[]() ").lower()
-    return word in ("", "-", "v", "mv", "a", "mt") or unit_of(word) is not None or word in COUNTS
+    return word in ("", "-", "v", "mv", "volt", "volts", "a", "mt") or unit_of(word) is not None or word in COUNTS
 
 
 def _column(cells: Sequence[tuple[int, str]], *, comma_parts: bool) -> tuple[np.ndarray, str]:

@@ -12,7 +12,7 @@ import numpy as np
 from twin.angles import Array
 from twin.errors import SweepError
 from twin.logs.alone import alone, in_order
-from twin.logs.angles import AngleUnit, Pair, units_of_pair
+from twin.logs.angles import AngleUnit, Pair, is_copy, units_of_pair
 from twin.logs.asked_back import raise_open, raise_several
 from twin.logs.channels import angle_of, channels
 from twin.logs.devices import meanings_of
@@ -28,6 +28,7 @@ from twin.logs.table import LARGEST, Table
 _SIDES = 2
 _ERROR_IS = "an error is the reading less the true angle, a correction the reverse"
 _WHICH_IS_TRUE = "reference_deg is the angle that is taken as true, and neither names nor values say which is"
+_DIRECTIONS = 3
 _FEWEST = 4
 """Numbers that a column must hold to be judged."""
 _MOST_ANGLES = 12
@@ -69,7 +70,7 @@ def guessed(table: Table) -> Guess:
     """The one statement that fits a table. Raises SweepError where none does, and where two do."""
     if table.entries:
         return _guessed_of_entries(table)
-    said = meanings_of(table.names)
+    said = tuple(map(_borne_out, meanings_of(table.described), table.values))
     usable = [k for k, values in enumerate(table.values) if k not in table.faults and not _untold(values)]
     angles = [k for k in usable if said[k].role in ("angle", "")]
     if len(angles) > _MOST_ANGLES:
@@ -100,6 +101,13 @@ def guessed(table: Table) -> Guess:
         f"{one.target} turns {one.per:g} times in a turn of the shaft: pole pairs, or a gear" for one in pair if one.per
     )
     return Guess(columns, (*several, *found.notes, *rest.notes), unused)
+
+
+def _borne_out(said: Meaning, values: Array) -> Meaning:
+    """What a name says, where the values (n,) can be that: a direction is one of two, or of three with a stop."""
+    if said.role == "direction" and np.unique(values[np.isfinite(values)]).size > _DIRECTIONS:
+        return Meaning("")
+    return said
 
 
 def _guessed_of_entries(table: Table) -> Guess:
@@ -181,19 +189,46 @@ def _turned(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple
 
 
 def _candidates(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> Iterator[_Candidate]:
-    """Ordered pairs of columns that follow each other in some units: those for which the most speaks in the names."""
+    """Ordered pairs of columns that follow each other in some units: those for which the most speaks in the names.
+
+    A column that holds the other's angle once more, in another unit or over its turns, is no second angle, unless there
+    is no other.
+    """
     weighed = [(_weight(said[a], said[b]), a, b) for a, b in itertools.permutations(angles, 2)]
+    copies: list[_Candidate] = []
     for weight in sorted({weight for weight, _, _ in weighed if weight >= 0}, reverse=True):
-        found = False
+        found: list[_Candidate] = []
         for _, reference, measured in (one for one in weighed if one[0] == weight):
             a, b = table.values[reference], table.values[measured]
             if np.array_equal(a, b, equal_nan=True):
                 continue
-            for units in units_of_pair(a, b, said=(said[reference], said[measured])):
-                found = True
-                yield _Candidate(reference, measured, units, weight)
+            fitting = [
+                _Candidate(reference, measured, units, weight)
+                for units in units_of_pair(a, b, said=(said[reference], said[measured]))
+            ]
+            copied = any(is_copy(a, b, one.units) for one in fitting)
+            (copies if copied else found).extend(fitting)
         if found:
+            yield from _each_once(found, table)
             return
+    yield from (one for one in copies if one.weight == copies[0].weight)
+
+
+def _each_once(found: Sequence[_Candidate], table: Table) -> Iterator[_Candidate]:
+    """Pairs without those that differ from an earlier one only by columns which hold the same angles."""
+
+    def alike(one: _Candidate, other: _Candidate) -> bool:
+        sides = ((one.reference, other.reference), (one.measured, other.measured))
+        return any(a != b for a, b in sides) and all(
+            a == b or is_copy(table.values[a], table.values[b], (one.units[side], other.units[side]))
+            for side, (a, b) in enumerate(sides)
+        )
+
+    kept: list[_Candidate] = []
+    for one in found:
+        if not any(alike(one, other) for other in kept):
+            kept.append(one)
+            yield one
 
 
 def _weight(reference: Meaning, measured: Meaning) -> int:

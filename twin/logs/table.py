@@ -21,7 +21,7 @@ class Table:
     ``names`` are those of the file, empty where it gives none. ``faults`` says for a column's place which cell is no
     number, ``notes`` how the file was read, ``left`` what it holds beside columns of numbers. ``entries``: the rows are
     the entries of a firmware's table, and the first column, ``index``, counts them from 0; ``constants`` are the single
-    numbers beside it, by their names.
+    numbers beside it, by their names. ``remarked`` holds by a column's place the unit that stands in a comment alone.
     """
 
     file: str
@@ -32,6 +32,14 @@ class Table:
     left: tuple[str, ...] = ()
     entries: bool = False
     constants: Mapping[str, float] = field(default_factory=dict)
+    remarked: Mapping[int, str] = field(default_factory=dict)
+
+    @property
+    def described(self) -> tuple[str, ...]:
+        """The names, each with the unit that a comment gives it."""
+        return tuple(
+            f"{name} [{self.remarked[k]}]" if k in self.remarked else name for k, name in enumerate(self.names)
+        )
 
     @property
     def sources(self) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from twin.errors import SweepError
 from twin.logs.cells import Row, is_number, number_of, table_of
+from twin.logs.labelled import without_labels
 from twin.logs.table import Table
 from twin.shown import shown
 from twin.text_input import cells_of, no_text, utf8_or_latin1
@@ -35,6 +36,8 @@ def read_rows(text: str, encoding: str, *, file: str) -> Table:
     plain = [(k, line) for k, line in told if not line.lstrip().startswith(_COMMENTS)]
     if not plain:
         raise SweepError(f"{file}: the file is empty; expected a header line and one row per reading")
+    labelled = without_labels(plain)
+    plain = labelled or plain
     separator = _separator([line for _, line in plain[-_JUDGED_LINES:]])
     if separator is None:
         single = _one_a_line(plain, file=file, notes=(encoding, "one number in each line"))
@@ -51,7 +54,7 @@ def read_rows(text: str, encoding: str, *, file: str) -> Table:
         if line.lstrip().startswith(_COMMENTS)
     ]
     rows = _without_empty_ends(rows)
-    notes = (encoding, f"cells parted by {_SEPARATORS[separator]}")
+    notes = (encoding, "each number behind its name" if labelled else f"cells parted by {_SEPARATORS[separator]}")
     if len(rows) <= _FEW_ROWS and len(rows[-1].cells) >= _WIDE_ROW:
         listed = _entries([cell for row in rows for cell in row.cells], "entry", file=file, notes=notes)
         if listed is not None:

@@ -24,9 +24,10 @@ FEWEST_DEVICES = 5 * len(FACTORS_AND_RESIDUAL)
 
 @dataclass(frozen=True, kw_only=True)
 class Apart:
-    """A device that stands apart: its place, how improbable that is by chance, and in what, most improbable first.
+    """A device that stands apart: its place, how improbable that is by chance, and in what.
 
-    ``log_p`` is that of the device in any figure; ``distance`` in standard deviations of the rest.
+    Causes and factors come ahead of the residual, the most improbable first. ``log_p`` is that of the device in any
+    figure; ``distance`` in standard deviations of the rest.
     """
 
     device: int
@@ -56,7 +57,7 @@ def distances(batch: Batch) -> Distances:
         return Distances(squares, log_p, scores)
     values = np.column_stack([batch.arrays["fitted"][:, :ZERO], np.log(batch.arrays["sigma_deg"])])
     rest = rest_of(values)
-    squares[:, 0], scores = rest.squares(values), rest.scores(values)
+    squares[:, 0], scores = rest.squares(values, _errors_beyond_usual(batch)), rest.scores(values)
     log_p[:, 0] = _log_p(squares[:, 0], values.shape[1], len(batch) - values.shape[1])
     freedom = batch.arrays["freedom"]
     for place in range(count):
@@ -65,6 +66,17 @@ def distances(batch: Batch) -> Distances:
         squares[:, 1 + place] = _of_figures(figures, about_mean=present)
         log_p[:, 1 + place] = _log_p(squares[:, 1 + place], figures.values.shape[1], freedom)
     return Distances(squares, log_p, scores)
+
+
+def _errors_beyond_usual(batch: Batch) -> Array:
+    """Variances (N, F) by which a device's figures are less well known than a usual one's.
+
+    The errors of usual ones are part of the scatter of the rest.
+    """
+    errors = batch.arrays["fitted_error"][:, :ZERO]
+    log_rms = 1.0 / np.sqrt(2.0 * batch.arrays["freedom"])
+    variance = np.column_stack([errors, log_rms]) ** 2
+    return np.asarray(np.maximum(variance - np.median(variance, axis=0), 0.0))
 
 
 def standing_apart(batch: Batch, found: Distances, share: float = FALSE_SHARE) -> list[Apart]:
@@ -83,24 +95,26 @@ def standing_apart(batch: Batch, found: Distances, share: float = FALSE_SHARE) -
     for device in np.flatnonzero(outside.any(axis=1)):
         places = np.flatnonzero(outside[device])
         ranked = places[np.argsort(found.log_p[device, places])]
-        names = dict.fromkeys(name for place in ranked for name in _names(batch, found, int(device), int(place)))
+        names = [_name(batch, found, int(device), int(place)) for place in ranked]
+        # A residual that is larger says nothing beside what makes it so.
+        names.sort(key=lambda name: name == RESIDUAL)
         best = ranked[0]
         apart.append(
             Apart(
                 device=int(device),
                 log_p=float(together[device]),
                 distance=float(np.sqrt(found.squares[device, best])),
-                figures=tuple(names),
+                figures=tuple(dict.fromkeys(names)),
             )
         )
     return sorted(apart, key=lambda one: (one.log_p, one.device))
 
 
-def _names(batch: Batch, found: Distances, device: int, place: int) -> tuple[str, ...]:
-    """What a device stands apart in: causes by name, factors by that which is farthest off."""
+def _name(batch: Batch, found: Distances, device: int, place: int) -> str:
+    """What a device stands apart in: a cause by its name, the factors by that which is farthest off."""
     if place > 0:
-        return (batch.question.candidates[place - 1].effect,)
-    return (FACTORS_AND_RESIDUAL[int(np.argmax(np.abs(found.scores[device])))],)
+        return batch.question.candidates[place - 1].effect
+    return FACTORS_AND_RESIDUAL[int(np.argmax(np.abs(found.scores[device])))]
 
 
 def _of_figures(figures: Figures, *, about_mean: bool) -> Array:

@@ -179,8 +179,12 @@ def _lines(linear: Linear, effect: Effect, shapes: Sequence[Mapping[str, float]]
     assert effect.line is not None
     orders = np.array([shape[effect.line.param] for shape in shapes])
     cosine, quadrature = linear.columns(effect, shapes[:1])[0, :, 0]
-    first = cosine - 1j * quadrature
-    turned = first * np.exp(1j * (orders[:, None] - orders[0]) * linear.motion.shaft_rad)
+    turned = np.empty((orders.size, cosine.size), dtype=complex)
+    turned[0] = cosine - 1j * quadrature
+    once = np.exp(1j * linear.motion.shaft_rad)
+    for place, step in enumerate(np.diff(orders), 1):
+        # Orders follow one another: a product takes a tenth of the time of an exponential.
+        turned[place] = turned[place - 1] * (once if step == 1.0 else once**step)
     return np.stack([turned.real, -turned.imag], axis=1)
 
 

@@ -25,6 +25,8 @@ BLOCKS = 48
 """Blocks that the rows are divided into, every other one at random to each half: a line's periods fall into both."""
 FEWEST_ROWS = 40
 """Rows of a device below which its two halves cannot hold the factors and a candidate each."""
+WIDEST_GAP_DEG = 60.0
+"""Gap in the turn beyond which factors of order 3 are no longer told from one another."""
 _SEEN = 1e-4
 """Share of a candidate's sum of squares beyond what is fitted along, below which a device does not show it."""
 
@@ -105,6 +107,12 @@ def _fits(sweeps: Sequence[Sweep], output_sense: int, rng: np.random.Generator) 
     return [found[k] for k in range(len(sweeps))]
 
 
+def _widest_gap_deg(reference_deg: Array) -> float:
+    """The widest part of the turn without a reading."""
+    angles = np.sort(np.mod(reference_deg, 360.0))
+    return float(np.max(np.diff(angles, append=angles[0] + 360.0)))
+
+
 def slope_of(reference_rad: Array, measured_rad: Array) -> int:
     """Whether the readings (n,) count with the reference (1) or against it (-1)."""
     same, other = (abs(np.mean(np.exp(1j * (measured_rad - sign * reference_rad)))) for sign in (1.0, -1.0))
@@ -123,14 +131,16 @@ def _of_device(sweep: Sweep, fit: BaselineFit, question: Question) -> Arrays:
     used = ~fit.outliers
     found["rows"], found["left_out"] = np.array(float(len(sweep))), np.array(float(np.count_nonzero(fit.outliers)))
     found["sense"] = np.array(float(fit.senses.sensor * fit.senses.output))
-    if np.count_nonzero(used) < FEWEST_ROWS + 2 * question.fitted:
+    too_few = np.count_nonzero(used) < FEWEST_ROWS + 2 * question.fitted
+    if too_few or _widest_gap_deg(sweep.reference_deg[used]) > WIDEST_GAP_DEG:
         return found
     linear = Linear(fit.chain(), sweep.motion(), blur=0.0, observables=1)
     provides = linear.motion.provides
     shown = [place for place, one in enumerate(question.candidates) if one.declared.visible_in(provides)]
     if not set(question.present) <= set(shown):
         return found
-    columns = np.concatenate(columns_of(linear, [question.candidates[place] for place in shown]) or [np.zeros((0, 0))])
+    of_shown = columns_of(linear, [question.candidates[place] for place in shown])
+    columns = np.concatenate([np.zeros((0, len(sweep))), *of_shown])
     ends = np.cumsum([0, *(question.candidates[place].terms for place in shown)])
     places = {place: np.arange(ends[k], ends[k + 1]) for k, place in enumerate(shown)}
     present = np.concatenate([[], *(places[place] for place in question.present)]).astype(int)
@@ -195,7 +205,8 @@ class _Sums:
             for terms in range(1, MOST_TERMS + 1):
                 chosen = [place for place, rows in places.items() if rows.size == terms]
                 rows = np.array([places[place] for place in chosen], dtype=int).reshape(len(chosen), terms)
-                gram = np.einsum("ktr,kur->ktu", columns[rows], columns[rows])
+                own = columns[rows]
+                gram = own @ own.transpose(0, 2, 1)
                 seen = np.all(np.einsum("ktt->kt", gram) > _SEEN * whole[rows], axis=1)
                 inverse = np.linalg.inv(np.where(seen[:, None, None], gram, np.eye(terms)))
                 value = np.where(seen[:, None], (inverse @ pulled[rows][..., None])[..., 0], np.nan)

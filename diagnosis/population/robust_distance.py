@@ -26,9 +26,12 @@ class Rest:
     centre: Array
     covariance: Array
 
-    def squares(self, values: Array) -> Array:
-        """Squared distances (N,) of devices (N, F)."""
+    def squares(self, values: Array, more: Array | None = None) -> Array:
+        """Squared distances (N,) of devices (N, F); some scatter by ``more`` variances (N, F) than the rest."""
         off = values - self.centre
+        if more is not None:
+            wider = self.covariance + more[:, :, None] * np.eye(more.shape[1])
+            return np.asarray(np.einsum("nf,nfg,ng->n", off, np.linalg.pinv(wider, hermitian=True), off))
         return np.asarray(np.einsum("nf,nf->n", off @ np.linalg.pinv(self.covariance, hermitian=True), off))
 
     def scores(self, values: Array) -> Array:

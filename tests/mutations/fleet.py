@@ -12,8 +12,8 @@ _OF_POPULATIONS: tuple[Mutation, ...] = tuple(
         (
             "lines_of_one",
             "candidates",
-            "first = cosine - 1j * quadrature",
-            "first = cosine + 1j * quadrature",
+            "turned[0] = cosine - 1j * quadrature",
+            "turned[0] = cosine + 1j * quadrature",
             "candidates.py",
             "test_columns_are_those_of_the_linearised_chain",
         ),

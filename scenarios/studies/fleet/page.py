@@ -109,7 +109,7 @@ def _factors(answer: Mapping[str, Any]) -> str:
 
 def _apart(answer: Mapping[str, Any]) -> str:
     if not answer["apart"]:
-        return "<h2>Standing apart</h2><p>No device stands apart.</p>"
+        return _lines("Standing apart", table.apart(answer))
     head = ("device", "number", "in", "standard deviations", "chance", "what explain says")
     rows = [
         (

@@ -189,7 +189,8 @@ def batch_of(job: Fleet, rows: Found) -> tuple[Batch, np.ndarray[Any, Any]]:
         elif content:
             first[content] = job.names[device]
             if not np.isfinite(rows["fitted"][device]).all():
-                reasons[device] = f"{rows['rows'][device]:.0f} readings do not tell all of its parameters; take more"
+                count = f"{rows['rows'][device]:.0f} readings"
+                reasons[device] = f"{count} do not tell all of its parameters; take more, all round the turn"
     figures: dict[str, Any] = {n: v for n, v in rows.items() if n not in ("reason", "digest", "ordered_by")}
     figures["device"] = np.arange(len(job.names))
     figures["fitted"] = np.where((reasons == "")[:, None], rows["fitted"], np.nan)

@@ -9,6 +9,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from diagnosis.population.apart import FEWEST_DEVICES as APART_FROM
+from diagnosis.population.changes import FEWEST_DEVICES as CHANGE_FROM
 from diagnosis.report.wording import chance, figure, label, listed, plain, unit_shown, with_unit
 from twin.catalogue import find
 
@@ -125,7 +127,8 @@ def apart(answer: Mapping[str, Any]) -> Iterator[str]:
     """The devices that stand apart."""
     found = answer["apart"]
     if not found:
-        yield "No device stands apart."
+        few = answer["devices"]["used"] < APART_FROM
+        yield f"Which devices stand apart shows from {APART_FROM} devices on." if few else "No device stands apart."
         return
     count = len(found)
     yield f"{count} device{'s stand' if count > 1 else ' stands'} apart:"
@@ -151,7 +154,12 @@ def explained_words(told: Mapping[str, Any] | None) -> str:
 def changes(answer: Mapping[str, Any]) -> Iterator[str]:
     """What changes in the order of production."""
     if not answer["changes"]:
-        yield "Nothing changes over the order of the devices."
+        few = answer["devices"]["used"] < CHANGE_FROM
+        yield (
+            f"Whether anything changes over their order shows from {CHANGE_FROM} devices on."
+            if few
+            else "Nothing changes over the order of the devices."
+        )
         return
     yield "Changes over the order of the devices:"
     for one in answer["changes"]:

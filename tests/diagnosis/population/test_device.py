@@ -64,3 +64,14 @@ def test_a_device_of_few_readings_is_no_estimate() -> None:
     found = estimates([sweep], template.question, rng=np.random.default_rng(0))
     assert found["rows"][0] == 24.0
     assert np.isnan(found["fitted"]).all()
+
+
+def test_a_device_seen_over_a_part_of_the_turn_is_no_estimate() -> None:
+    """Readings over 280 of 360 deg leave factors of order 3 untold; over 320 deg they are told, if less well."""
+    template, found, _ = clean()
+    sweep = sweeps_of(Plan(count=1), seed=11)[0]
+    for most, told in ((280.0, False), (320.0, True)):
+        part = sweep.part(np.flatnonzero(np.mod(sweep.reference_deg, 360.0) < most))
+        arrays = estimates([part], template.question, rng=np.random.default_rng(0))
+        assert np.isfinite(arrays["fitted"]).all() == told
+    assert np.all(arrays["fitted_error"][0] > found.batch.arrays["fitted_error"][0])

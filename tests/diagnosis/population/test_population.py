@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnosis.population.apart import FACTORS_AND_RESIDUAL
+from diagnosis.population.apart import FACTORS_AND_RESIDUAL, distances, standing_apart
+from diagnosis.population.batch import Batch
 from diagnosis.population.changes import log_p_of_change
 from diagnosis.population.population import population_of
 from tests.diagnosis.population.batches import clean, looked
@@ -97,3 +98,15 @@ def test_too_few_devices_are_refused() -> None:
     _, found, _ = clean()
     with pytest.raises(UserError, match="1 of 1 devices can be used; expected at least 2"):
         population_of(found.batch.part(np.arange(60) == 3), {})
+
+
+def test_a_device_that_is_known_badly_does_not_stand_apart() -> None:
+    """Ten times the errors of the others, and as far off as these let it be: three of its own."""
+    _, found, _ = clean()
+    batch = found.batch
+    arrays = {name: values.copy() for name, values in batch.arrays.items()}
+    off = 15.0 * SPREAD_PERCENT
+    arrays["fitted"][5, 0] += off
+    assert 5 in {one.device for one in standing_apart(batch, distances(Batch(batch.names, batch.question, arrays)))}
+    arrays["fitted_error"][5, 0] = off / 3.0
+    assert 5 not in {one.device for one in standing_apart(batch, distances(Batch(batch.names, batch.question, arrays)))}

@@ -23,10 +23,7 @@ _BEYOND_CHANCE = 5.0
 """Standard deviations from which on what neighbours do not differ by is no chance."""
 _LEFT_OVER = 1.1
 """A held-out error that is larger by so much than what is listed has a reason of its own, which is listed."""
-_WHY_HELD_OUT = {
-    "direction": "it leans to the other direction",
-    ELSE: "it leans to what the others were taken at (current, time, turn or other)",
-}
+_WHY_HELD_OUT = {ELSE: "it leans to what the others were taken at (current, time, turn or other)"}
 
 
 def of_words(given: AsRead) -> list[NotRemoved]:

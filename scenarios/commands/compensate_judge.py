@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.correction.as_read import AsRead, as_read
+from diagnosis.correction.both_ways import between_ways
 from diagnosis.correction.cross_validation import BeforeAfter, Shaft, between, on, on_held_out, shafts_without
 from diagnosis.report.wording import plain
 from diagnosis.thermal.levels import levels_of
@@ -94,7 +95,7 @@ def held_out(readings: Readings, build: Callable[[Recording], Shaft] | None = No
     numbers = level.of_reading if readings.over_temperature else np.zeros_like(recording.unit)
 
     def without(rows: BoolArray) -> Shaft:
-        return make(given.kept_of(rows))
+        return make(between_ways(given.kept_of(rows)))
 
     shafts = shafts_without(numbers, without)
     whole = Judged("on held-out blocks", readings.title, on_held_out(recording, shafts), recording, readings.own_zeros)

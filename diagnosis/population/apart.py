@@ -60,11 +60,13 @@ def distances(batch: Batch) -> Distances:
     squares[:, 0], scores = rest.squares(values, _errors_beyond_usual(batch)), rest.scores(values)
     log_p[:, 0] = _log_p(squares[:, 0], values.shape[1], len(batch) - values.shape[1])
     freedom = batch.arrays["freedom"]
-    for place in range(count):
-        present = place in batch.question.present
-        figures = batch.figures_of_present(batch.question.present.index(place)) if present else batch.figures(place)
-        squares[:, 1 + place] = _of_figures(figures, about_mean=present)
-        log_p[:, 1 + place] = _log_p(squares[:, 1 + place], figures.values.shape[1], freedom)
+    for place, one in enumerate(batch.question.candidates):
+        if place in batch.question.present:
+            figures = batch.figures_of_present(batch.question.present.index(place))
+            squares[:, 1 + place] = _of_shared(figures)
+        else:
+            squares[:, 1 + place] = _of_absent(batch.arrays["candidate_square"][:, place], one.terms)
+        log_p[:, 1 + place] = _log_p(squares[:, 1 + place], one.terms, freedom)
     return Distances(squares, log_p, scores)
 
 
@@ -117,20 +119,23 @@ def _name(batch: Batch, found: Distances, device: int, place: int) -> str:
     return FACTORS_AND_RESIDUAL[int(np.argmax(np.abs(found.scores[device])))]
 
 
-def _of_figures(figures: Figures, *, about_mean: bool) -> Array:
-    """Squared distances (N,) of a candidate's coefficients from what is usual, in units of their usual scatter."""
+def _of_absent(squares: Array, terms: int) -> Array:
+    """Squared distances (N,) by a cause that the batch does not share, from its sizes in errors, squared."""
     from scipy.special import chdtri
 
-    seen = figures.seen
-    found = np.full(seen.size, np.nan)
+    seen = np.isfinite(squares)
     if np.count_nonzero(seen) < FEWEST_DEVICES:
-        return found
-    values = _about_what_is_usual(figures)[seen] if about_mean else figures.values[seen]
-    terms = values.shape[1]
-    squares = np.einsum("nt,nt->n", values, values) / figures.errors[seen] ** 2
-    # Of a cause that is in none of them, only noise scatters: errors that are too small by the model count as found.
-    usual = max(float(np.median(squares)) / float(chdtri(terms, 0.5)), 1.0)
-    found[seen] = squares / usual
+        return np.full(squares.size, np.nan)
+    # Only noise scatters here: where it does so by more than the errors say, the errors are too small.
+    return squares / max(float(np.median(squares[seen])) / float(chdtri(terms, 0.5)), 1.0)
+
+
+def _of_shared(figures: Figures) -> Array:
+    """Squared distances (N,) by a cause that the batch shares, in the scatter of its own sizes."""
+    found = np.full(figures.seen.size, np.nan)
+    if np.count_nonzero(figures.seen) >= FEWEST_DEVICES:
+        values = _about_what_is_usual(figures)[figures.seen]
+        found[figures.seen] = rest_of(values).squares(values)
     return found
 
 

@@ -79,6 +79,7 @@ def blank(question: Question) -> Arrays:
         "candidate": np.full((count, MOST_TERMS), np.nan),
         "candidate_halves": np.full((2, count, MOST_TERMS), np.nan),
         "candidate_error": np.full(count, np.nan),
+        "candidate_square": np.full(count, np.nan),
     }
 
 
@@ -125,7 +126,8 @@ def _of_device(sweep: Sweep, fit: BaselineFit, question: Question) -> Arrays:
     ``fitted`` (m,), ``fitted_error`` (m,): factors in the twin's units, then coefficients of what is present, and their
     standard errors; ``fitted_halves`` and ``halves_error`` (2, m) the same from each half. ``curvature`` (m, m)
     [deg^2]: mean square of the readings' change with them. ``candidate`` (C, 2), ``candidate_halves`` (2, C, 2):
-    coefficients of each candidate beside what is fitted; ``candidate_error`` (C,) their standard error.
+    coefficients of each candidate beside what is fitted; ``candidate_error`` (C,) their standard error in the mean of
+    their directions, ``candidate_square`` (C,) the square of their size in errors, each direction by its own.
     """
     found = blank(question)
     used = ~fit.outliers
@@ -216,6 +218,8 @@ class _Sums:
                 found["candidate"][chosen, :terms] = value
                 error = float(found["sigma_deg"]) * np.sqrt(np.einsum("ktt->k", inverse) / terms)
                 found["candidate_error"][chosen] = np.where(seen, error, np.nan)
+                square = np.einsum("kt,ktu,ku->k", value, gram, value)
+                found["candidate_square"][chosen] = square / float(found["sigma_deg"]) ** 2
 
 
 def _first_half(rows: int, seed: int) -> BoolArray:

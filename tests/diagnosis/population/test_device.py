@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from diagnosis.population.device import Question, estimates
 from tests.diagnosis.population.batches import clean, looked
@@ -75,3 +76,23 @@ def test_a_device_seen_over_a_part_of_the_turn_is_no_estimate() -> None:
         arrays = estimates([part], template.question, rng=np.random.default_rng(0))
         assert np.isfinite(arrays["fitted"]).all() == told
     assert np.all(arrays["fitted_error"][0] > found.batch.arrays["fitted_error"][0])
+
+
+def test_squares_are_those_of_chi_squared_in_every_direction() -> None:
+    """Of order 3 the quadratic term leaves one direction badly known: errors taken together would not tell how far off.
+
+    The share of a hundred devices' squares, of all lines, beyond the point that one in a hundred reaches, and those of
+    order 3 alone: within four standard deviations of the binomial.
+    """
+    _, found, _ = clean()
+    squares = found.batch.arrays["candidate_square"]
+    lines = [k for k, one in enumerate(found.batch.question.candidates) if one.order is not None]
+    third = [k for k in lines if found.batch.question.candidates[k].order == 3.0]
+    for places, level in ((lines, 0.01), (third, 0.05)):
+        values = squares[:, places].ravel()
+        beyond = np.count_nonzero(values > chi2.isf(level, 2))
+        assert abs(beyond - level * values.size) < 4.0 * np.sqrt(level * values.size)
+    share = found.batch.arrays["candidate"][:, third[0]] / found.batch.arrays["candidate_error"][:, third]
+    plain = np.sum(share**2, axis=1)
+    # Both directions by one error: the tail is that of one direction, with twice the square.
+    assert np.mean(plain > chi2.isf(0.01, 2)) > 0.03

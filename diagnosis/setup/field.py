@@ -9,6 +9,7 @@ from diagnosis.setup.harmonics import FALSE_ALARM, amplitudes, fitted, noise_flo
 from diagnosis.setup.magnet_presence import axial_magnet
 from diagnosis.setup.record import FEWEST, Record
 from twin.angles import Array
+from twin.sweep_columns import SMALLEST_AMPLITUDE
 
 _NOISIEST_DEG = 1.0
 """Noise of a reading: ten times what data sheets state of sensors in the field they are made for (0.1 deg RMS)."""
@@ -28,6 +29,8 @@ _END_ON_3V3 = 128.0
 
 def too_weak(record: Record) -> Finding | None:
     """A field that is too weak: the gain at its end, a reading that scatters, the sensor's own word."""
+    if (empty := _without_signal(record)) is not None:
+        return empty
     said = _gain_at_end(record) or _status_says(record, _WEAK_BITS) or _scatters(record)
     if said is None:
         return _may_be_at_end(record)
@@ -38,6 +41,23 @@ def too_weak(record: Record) -> Finding | None:
         consequence="the reading scatters, and offsets and stray fields weigh more than they need to",
         remedy="bring the magnet nearer, or take a stronger one",
     )
+
+
+def _without_signal(record: Record) -> Finding | None:
+    """A channel whose largest reading is none."""
+    for name in ("vx", "vy"):
+        values = record.column(name)
+        largest = 0.0 if values is None else float(np.max(np.abs(values), initial=0.0))
+        if 0.0 < largest < SMALLEST_AMPLITUDE:
+            return Finding(
+                kind="weak_field",
+                what="a channel holds no signal: no field is there, or its scale is wrong",
+                evidence=f"{name} is never larger than {largest:.3g}; a signal has at least {SMALLEST_AMPLITUDE:g} in "
+                "its unit",
+                consequence="no angle can be computed from it, and explain and diagnose refuse the log",
+                remedy="scale both channels, or leave them out",
+            )
+    return None
 
 
 def _may_be_at_end(record: Record) -> Finding | None:

@@ -98,6 +98,14 @@ def test_a_sensor_that_counts_against_its_channels_has_not_swapped_them() -> Non
     assert kinds(**columns, vx=1000.0 * np.sin(at), vy=1000.0 * np.cos(at)) == ["swapped_channels"]
 
 
+def test_channels_without_a_signal_are_told() -> None:
+    """explain refuses them: the set-up is not well."""
+    at = np.radians(reading())
+    columns = {"reference_deg": TURN_DEG, "measured_deg": reading()}
+    assert kinds(**columns, vx=1e-300 * np.cos(at), vy=1e-300 * np.sin(at)) == ["weak_field"]
+    assert kinds(**columns, vx=1e-9 * np.cos(at), vy=1e-9 * np.sin(at)) == []
+
+
 def test_stamps_of_stops_may_be_coarse() -> None:
     """Of a shaft that stands still at each reading nothing goes with the time; of one that turns it does."""
     whole_s = np.floor(0.4 * np.arange(TURN_DEG.size))

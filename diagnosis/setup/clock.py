@@ -64,7 +64,7 @@ def unit_of_time(record: Record) -> Finding | None:
     time, travel = found
     found_units, evidence = _by_speed(record, time, travel) or _by_length(time) or ((), "")
     if not found_units:
-        return None
+        return None if not evidence else _contradiction(evidence)
     lines = {unit: record.stated(time_s=1.0 / _UNITS[unit]) for unit in found_units}
     alone = len(lines) == 1
     return Finding(
@@ -94,13 +94,25 @@ def _by_speed(record: Record, time: Array, travel: Array) -> tuple[tuple[str, ..
         ratio = float(np.sum(np.abs(rpm[1:])[moving] * step[moving])) / way
     if not 0.0 < ratio < np.inf:
         return None
+    evidence = (
+        f"by the stamps the shaft turns at {np.median(by_stamps):.4g} rpm, by speed_rpm at "
+        f"{np.median(np.abs(rpm[1:])[moving]):.4g} rpm, {ratio:.4g} times as fast"
+    )
     for unit, many in _UNITS.items():
         if abs(np.log(ratio / many)) < np.log(1.5):
-            return (unit,), (
-                f"by the stamps the shaft turns at {np.median(by_stamps):.4g} rpm, by speed_rpm at "
-                f"{np.median(np.abs(rpm[1:])[moving]):.4g} rpm, {ratio:.4g} times as fast"
-            )
-    return None
+            return (unit,), evidence
+    # A shaft that stops at each reading turns slower by the stamps; faster than its speed none does.
+    return ((), evidence) if ratio < 1.0 / 1.5 else None
+
+
+def _contradiction(evidence: str) -> Finding:
+    return Finding(
+        kind="time_unit",
+        what="the shaft gets on farther than its speed allows: time_s or speed_rpm is in another unit, or wrong",
+        evidence=evidence,
+        consequence="what goes with speed or frequency is missed or misjudged",
+        remedy="say the units of both, or leave the one that is wrong out",
+    )
 
 
 def _by_length(time: Array) -> tuple[tuple[str, ...], str] | None:

@@ -72,6 +72,15 @@ def test_a_time_that_one_unit_alone_can_mean_has_its_statement() -> None:
     assert "time_s=time_s*1e-09" in finding.columns
 
 
+@pytest.mark.parametrize(("times", "kinds"), [(1.0, []), (5.0, []), (0.15, ["time_unit"])])
+def test_a_speed_that_the_shaft_outruns_is_wrong(times: float, kinds: list[str]) -> None:
+    """A recorded speed of so many times that by the stamps; a higher one is that between stops."""
+    turning = 6.0 * 50.0
+    columns = {"reference_deg": TURN_DEG, "measured_deg": READING_DEG, "time_s": TURN_DEG / turning}
+    rpm = np.full(TURN_DEG.size, 50.0 * times)
+    assert [one.kind for one in found(**columns, speed_rpm=rpm)] == kinds
+
+
 @pytest.mark.parametrize("pairs", [72, 700])
 def test_a_fine_ring_is_no_missing_magnet(pairs: int) -> None:
     """2,000 points a turn show 1,000 pole pairs; the search thins the rows, which must not make others of them."""

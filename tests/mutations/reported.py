@@ -100,4 +100,21 @@ REPORTED = (
         "NEAR = 1.0",
         ("tests/twin/test_stuck_bit.py::test_the_mean_is_that_over_the_noise",),
     ),
+    Mutation(
+        "selection.what_needs_more_to_be_assumed_is_named",
+        "diagnosis/discovery/proof/selection.py",
+        "return other.handicap < own.handicap and likelihood(rival)",
+        "return False and likelihood(rival)",
+        ("tests/hidden/physics/test_placed.py::test_a_magnet_out_of_place_is_named_before_what_needs_more",),
+    ),
+    Mutation(
+        "selection.a_further_part_is_another_cause",
+        "diagnosis/discovery/proof/selection.py",
+        "if name in {base_name(key) for key in proof.ordered if key != cause.key}:",
+        "if False:",
+        (
+            "tests/hidden/physics/test_placed.py"
+            "::test_a_magnet_out_of_place_is_named_before_what_needs_more[block_raw-1929401729]",
+        ),
+    ),
 )

@@ -117,4 +117,11 @@ REPORTED = (
             "::test_a_magnet_out_of_place_is_named_before_what_needs_more[block_raw-1929401729]",
         ),
     ),
+    Mutation(
+        "mains_pickup.hum_is_a_pure_tone",
+        "twin/hall/mains_pickup.py",
+        "        multiples=HARMONICS,\n",
+        "",
+        ("tests/hidden/physics/test_hum.py::test_hum_and_its_harmonics_are_one_cause",),
+    ),
 )

@@ -124,4 +124,11 @@ REPORTED = (
         "",
         ("tests/hidden/physics/test_hum.py::test_hum_and_its_harmonics_are_one_cause",),
     ),
+    Mutation(
+        "adc_inl.lower_bits_make_up_for_all",
+        "twin/adc/adc_inl.py",
+        "np.clip(left, 0.0, 2.0 ** (1 - last))",
+        "left",
+        ("tests/twin/test_adc_inl.py::test_weights_that_are_off_do_what_a_successive_approximation_does[2-12.0]",),
+    ),
 )

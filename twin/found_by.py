@@ -24,7 +24,9 @@ class Line:
     highest order, frequency or weight worth looking at; ``within`` maps an array of these to a mask of those that
     belong to the effect; ``multiples`` are multiples of it at which the same source shows again. ``begin`` maps such a
     value to further shape parameters that a search sets out from. ``waves``: forms that a value's wave may have, each
-    as the phase of its fundamental, of modulus 1, and the shape parameters that stand for it.
+    as the phase of its fundamental, of modulus 1, and the shape parameters that stand for it. ``sidebands``: the order
+    of the angle by which a wave in time is multiplied, so that it shows as two lines of one size, so many orders below
+    and above its frequency; 0: it shows at its own.
     """
 
     param: str
@@ -34,6 +36,7 @@ class Line:
     multiples: tuple[int, ...] = ()
     begin: Callable[[float], Mapping[str, float]] | None = None
     waves: tuple[tuple[complex, Mapping[str, float]], ...] = ()
+    sidebands: int = 0
 
     def begun(self, value: float) -> Mapping[str, float]:
         """The shape that a search sets out from at this order, frequency or weight."""

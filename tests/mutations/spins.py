@@ -10,6 +10,7 @@ _STRETCHES = "tests/diagnosis/spin/test_stretches.py"
 _MOTION = "tests/twin/test_estimated_motion.py"
 _EXPLAIN = "tests/diagnosis/spin/test_explain.py"
 _LEVELS = "tests/diagnosis/discovery/stages/test_recording_levels.py"
+_SIDES = "tests/diagnosis/discovery/search/test_one_sided.py"
 _FRAMES = "tests/diagnosis/discovery/stages/test_repeated_frames.py"
 
 SPINS: tuple[Mutation, ...] = tuple(
@@ -133,6 +134,20 @@ SPINS: tuple[Mutation, ...] = tuple(
             "bounded_rms(np.diff(one, 2))",
             "np.median(np.abs(np.diff(one, 2)))",
             f"{_LEVELS}::test_noise_near_a_step_of_the_word_makes_no_recording_louder",
+        ),
+        (
+            "spins.one_side_is_a_ripple",
+            "diagnosis/discovery/search/screening.py",
+            "gains = np.where(one_sided(base, effect.line, shapes), 0.0, gains)",
+            "pass",
+            f"{_SIDES}::test_a_wave_on_one_side_is_no_ripple",
+        ),
+        (
+            "spins.both_sides_weigh_alike",
+            "diagnosis/discovery/search/screening.py",
+            "weight = gain / size**2",
+            "weight, size = np.full(gain.shape, 0.5), np.sqrt(2.0 * gain)",
+            f"{_SIDES}::test_a_side_that_the_shafts_own_motion_hides_is_not_missing",
         ),
         (
             "spins.rows_out_of_use_keep_their_torque",

@@ -92,7 +92,7 @@ REFERENCE_RIPPLE = Effect(
     begin=begin,
     angle_only=angle_only,
     needs=frozenset({"time_s", "moving shaft"}),
-    line=Line(param="frequency_Hz", clock="time", limits=limits, within=within, multiples=(2, 3, 4, 5)),
+    line=Line(param="frequency_Hz", clock="time", limits=limits, within=within, multiples=(2, 3, 4, 5), sidebands=2),
     repeatable=True,
     record_wide=True,
     drawing=drawing,

@@ -19,8 +19,8 @@ from diagnosis.discovery.fitting.joint_fit import Fit, root_weights
 from diagnosis.discovery.fitting.linearised_chain import Term
 from diagnosis.discovery.fitting.nuisance import without_nuisance
 from diagnosis.discovery.search.periodogram import line_shapes
-from twin.angles import Array, IntArray
-from twin.effect import BoolArray, Effect
+from twin.angles import TAU, Array, IntArray
+from twin.effect import BoolArray, Effect, Line
 
 _CHUNK = 4_000_000
 _ZOOMS = 3
@@ -142,6 +142,10 @@ def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, floa
         return None
     looks = max(looks, float(len(shapes)))
     gains, coefficients = gains_of(base, effect, shapes)
+    # Where the speed changes the sides are told by how they follow it; at one speed each is a line like any other.
+    lines_alone = fit.observations.observables == 1 and "two speeds" not in fit.observations.motion.provides
+    if effect.line is not None and effect.line.sidebands and lines_alone:
+        gains = np.where(one_sided(base, effect.line, shapes), 0.0, gains)
     if effect.comb is not None and effect.comb.parts:
         gains = np.where(borne_out(base, effect, shapes, gains, looks=looks), gains, 0.0)
     if not np.any(gains > 0.0):
@@ -161,6 +165,26 @@ def borne_out(
         rest, _ = gains_of(base, effect.without_strengths(part), shapes)
         found &= by_chance(base, effect, gains - rest, len(part), 1.0) < level
     return found
+
+
+def one_sided(base: Base, line: Line, shapes: Sequence[Mapping[str, float]]) -> BoolArray:
+    """At which shapes (batch, G) of a line with two sidebands one of them alone explains the readings better.
+
+    That wave has no name, and what has one is taken before it by as much as anywhere. The sidebands' phases are free.
+    """
+    fit, motion = base.fit, base.fit.linear.motion
+    frequency = np.array([shape[line.param] for shape in shapes])[:, None]
+    gains, sizes = [], []
+    for order in (line.sidebands, -line.sidebands):
+        phase = TAU * frequency * motion.time_s + order * motion.shaft_rad
+        gain, coefficient = _gains_of_columns(base, None, np.stack([np.cos(phase), np.sin(phase)], axis=1)[:, :, None])
+        gains.append(np.maximum(gain, 0.0))
+        sizes.append(np.maximum(np.linalg.norm(coefficient, axis=-1), 1e-300))
+    gain, size = np.stack(gains), np.stack(sizes)
+    # A wave gains its squared size times what the readings weigh there: one size for both is the mean by these.
+    weight = gain / size**2
+    together = np.sum(weight * size, axis=0) ** 2 / np.maximum(np.sum(weight, axis=0), 1e-300)
+    return np.asarray(0.5 * (np.max(gain, axis=0) - together) > fit.settings.unnamed_log_odds)
 
 
 def candidate_at(
@@ -224,7 +248,8 @@ def gains_of(base: Base, effect: Effect, shapes: Sequence[Mapping[str, float]]) 
     return np.concatenate(gains, axis=1), np.concatenate(coefficients, axis=1)
 
 
-def _gains_of_columns(base: Base, effect: Effect, columns: Array) -> tuple[Array, Array]:
+def _gains_of_columns(base: Base, effect: Effect | None, columns: Array) -> tuple[Array, Array]:
+    """Gains (batch, G) of columns (G, T, O, n), and their coefficients: those that the effect allows, None: any."""
     fit = base.fit
     count, terms = columns.shape[:2]
     batch = len(base.likelihood)
@@ -257,7 +282,8 @@ def _gains_of_columns(base: Base, effect: Effect, columns: Array) -> tuple[Array
             solved = np.linalg.solve(unit, (dot / scale).transpose(1, 2, 0))
             coefficient = solved.transpose(2, 0, 1) / scale
         explained = np.einsum("sgt,sgt->sg", dot, coefficient)
-        explained = np.where(_allowed(effect, fit.linear.terms(effect), coefficient), explained, 0.0)
+        if effect is not None:
+            explained = np.where(_allowed(effect, fit.linear.terms(effect), coefficient), explained, 0.0)
         rss = np.maximum(np.einsum("sn,sn->s", r, r), 1e-300)[:, None]
         remaining = np.maximum(rss - explained, 1e-12 * rss)
         gain = 2.0 * (base.likelihood[:, member] - top)[:, None] - base.dof * np.log(remaining / rss)

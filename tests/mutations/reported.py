@@ -100,4 +100,35 @@ REPORTED = (
         "NEAR = 1.0",
         ("tests/twin/test_stuck_bit.py::test_the_mean_is_that_over_the_noise",),
     ),
+    Mutation(
+        "selection.what_needs_more_to_be_assumed_is_named",
+        "diagnosis/discovery/proof/selection.py",
+        "return other.handicap < own.handicap and likelihood(rival)",
+        "return False and likelihood(rival)",
+        ("tests/hidden/physics/test_placed.py::test_a_magnet_out_of_place_is_named_before_what_needs_more",),
+    ),
+    Mutation(
+        "selection.a_further_part_is_another_cause",
+        "diagnosis/discovery/proof/selection.py",
+        "if name in {base_name(key) for key in proof.ordered if key != cause.key}:",
+        "if False:",
+        (
+            "tests/hidden/physics/test_placed.py"
+            "::test_a_magnet_out_of_place_is_named_before_what_needs_more[block_raw-1929401729]",
+        ),
+    ),
+    Mutation(
+        "mains_pickup.hum_is_a_pure_tone",
+        "twin/hall/mains_pickup.py",
+        "        multiples=HARMONICS,\n",
+        "",
+        ("tests/hidden/physics/test_hum.py::test_hum_and_its_harmonics_are_one_cause",),
+    ),
+    Mutation(
+        "adc_inl.lower_bits_make_up_for_all",
+        "twin/adc/adc_inl.py",
+        "np.clip(left, 0.0, 2.0 ** (1 - last))",
+        "left",
+        ("tests/twin/test_adc_inl.py::test_weights_that_are_off_do_what_a_successive_approximation_does[2-12.0]",),
+    ),
 )

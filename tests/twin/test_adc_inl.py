@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
+from tests.hidden.physics.converters import approximate
 from twin.adc.adc_inl import ADC_INL
 from twin.adc.adc_quantisation import FULL_SCALE
 from twin.chain import Chain
@@ -42,3 +44,20 @@ def test_an_s_that_a_saturation_may_be_is_not_sought() -> None:
     signal = np.array([[0.2, 0.6, 1.0]])
     sharper = added(signal, **{**ADC_INL.null(), "s_lsb": 0.1 * low})
     assert np.all(np.diff(sharper / signal) > 0.0)
+
+
+@pytest.mark.parametrize(("bit", "codes"), [(1, 12.0), (2, 12.0), (3, -9.0), (4, 7.0)])
+def test_weights_that_are_off_do_what_a_successive_approximation_does(bit: int, codes: float) -> None:
+    """But for a straight line and the rounding of its own code, half a step at most, also where it stands still."""
+    bits = 16
+    weights = 2.0 ** np.arange(bits - 1, -1, -1)
+    weights[bit - 1] += codes * 2.0 ** (bits - 12)
+    step = 2.0 * FULL_SCALE / 2**bits
+    signal = FULL_SCALE * np.linspace(-0.99, 0.99, 4001)
+    read = (approximate((signal + FULL_SCALE) / step, weights) + 0.5) * step - FULL_SCALE
+    # Of 14 bit, in the code: a weight that is too heavy is counted for less than it is.
+    own = {**ADC_INL.null(), f"bit{bit}_lsb": -4.0 * codes}
+    rest = Motion.from_angle(np.zeros(signal.size))
+    twin = ADC_INL.forward(signal[None], rest, own, np.random.default_rng(1))[0]
+    line = np.polynomial.Polynomial.fit(signal, read - twin, 1)
+    assert np.max(np.abs(read - twin - line(signal))) < 0.52 * step

@@ -22,6 +22,8 @@ HEAD_ROOM_PERCENT = 30.0
 """Standard deviation of the range before anything is known of it: from hardly more than an amplitude to twice one."""
 LARGEST_S_LSB = 1500.0
 """An S of a range of 1.25 amplitudes that bends a channel as the strongest saturation does, by 30 %."""
+_STEP = 0.01 * STEP_PERCENT
+"""The same over full scale, of which the range is two."""
 BLUR = 3e-4
 """Width over which noise rounds an edge off in expectation, in full scales: 0.02 deg of noise."""
 
@@ -45,21 +47,34 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
         values["bit5_lsb"],
         values["bit6_lsb"],
     )
-    for bit, error in enumerate(errors, start=1):
-        if np.any(error):
-            curve = curve + 0.5 * np.asarray(error) * (_level(u, bit, blurred=rng is None) - u)
+    if any(np.any(error) for error in errors):
+        curve = curve + _of_weights(u, errors, blurred=rng is None)
     first_stage = values.get("first_stage_lsb", 0.0)
     if np.any(first_stage):
         curve = curve + first_stage * (_first_digit(u, blurred=rng is None) - u)
     return np.asarray(signal + 0.01 * STEP_PERCENT * full_scale * curve)
 
 
-def _level(u: Array, bit: int, *, blurred: bool) -> Array:
-    """A bit of the offset binary code of u in [-1, 1), the first the most significant, as -1 and 1."""
-    half_period = np.pi * 2.0 ** (bit - 1)
-    # Beyond its range a converter stays at its last code.
-    wave = -np.sin(half_period * (np.clip(u, BLUR - 1.0, 1.0 - BLUR) + 1.0))
-    return np.asarray(np.tanh(wave / (half_period * BLUR)) if blurred else np.sign(wave))
+def _of_weights(u: Array, errors: Sequence[Any], *, blurred: bool) -> Array:
+    """What a successive approximation of u in [-1, 1) reads too much, in steps, where heavy bits' weights are off.
+
+    Each bit stays on where what is left reaches its true weight, and counts its nominal one: too much by ``errors``
+    (steps). What the lower bits cannot make up for is cut off: ahead of a bit that is too heavy the code stands still,
+    behind one that is too light it leaps. Straight through both ends.
+    """
+    last = max(bit for bit, error in enumerate(errors, start=1) if np.any(error))
+    # Beyond its range, which true weights make up, a converter stays at its last code.
+    range_of = 2.0 - _STEP * sum(np.asarray(error) for error in errors)
+    left = np.clip(u + 1.0, BLUR, np.minimum(range_of, 2.0) - BLUR)
+    line = 0.5 * (u + 1.0)
+    made = -left
+    for bit, error in enumerate(errors[:last], start=1):
+        nominal, off = 2.0 ** (1 - bit), _STEP * np.asarray(error)
+        reached = (left - (nominal - off)) / BLUR
+        on = 0.5 * (1.0 + np.tanh(reached)) if blurred else np.where(reached >= 0.0, 1.0, 0.0)
+        left = left - (nominal - off) * on
+        made = made + nominal * on - off * line
+    return np.asarray((made + np.clip(left, 0.0, 2.0 ** (1 - last))) / _STEP)
 
 
 def _first_digit(u: Array, *, blurred: bool) -> Array:

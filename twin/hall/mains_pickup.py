@@ -1,4 +1,4 @@
-"""mains_pickup: the supply's 50 or 60 Hz couples into the channels."""
+"""mains_pickup: the supply's 50 or 60 Hz and its harmonics couple into the channels."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ from twin.effect import BoolArray, Effect, Line, Param, Parameters
 from twin.hall.offset import add
 from twin.motion import Motion
 
+HARMONICS = (2, 3, 4, 5, 6, 7)
+"""Of the supply's frequency: odd ones of transformers and converters, even ones of rectifiers."""
+
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     # Counted from the middle of the record, so that a small change of frequency hardly moves the fitted phase.
@@ -22,8 +25,10 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 
 def within(frequency_hz: Array) -> BoolArray:
-    """Which frequencies (any shape) are a supply's: 50 or 60 Hz within 1 %."""
-    return np.asarray((np.abs(frequency_hz / 50.0 - 1.0) <= 0.01) | (np.abs(frequency_hz / 60.0 - 1.0) <= 0.01))
+    """Which frequencies (any shape) are a supply's: 50 or 60 Hz within 1 %, or one of the harmonics of these."""
+    times = np.array([1, *HARMONICS])
+    supply = np.concatenate([50.0 * times, 60.0 * times])
+    return np.asarray(np.any(np.abs(np.asarray(frequency_hz)[..., None] / supply - 1.0) <= 0.01, axis=-1))
 
 
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
@@ -55,8 +60,8 @@ MAINS_PICKUP = Effect(
             unit="Hz",
             null=50.0,
             lower=49.5,
-            upper=60.6,
-            doc="50 or 60 Hz within 1 %",
+            upper=60.6 * HARMONICS[-1],
+            doc="50 or 60 Hz within 1 %, or a harmonic",
             role="shape",
             typical=0.1,
             owner="recording",
@@ -69,9 +74,16 @@ MAINS_PICKUP = Effect(
     },
     forward=forward,
     needs=frozenset({"time_s", "moving shaft"}),
-    line=Line(param="frequency_Hz", clock="time", limits=lambda motion: (49.5, 60.6), within=within),
+    line=Line(
+        param="frequency_Hz",
+        clock="time",
+        limits=lambda motion: (49.5, 60.6),
+        within=within,
+        multiples=HARMONICS,
+    ),
+    repeatable=True,
     record_wide=True,
     drawing=drawing,
     source="magnetic or capacitive coupling of the supply into the signal leads",
-    signature="order 1 times cos(2 pi f t + psi)",
+    signature="order 1 times cos(2 pi f t + psi), and times harmonics of it",
 )

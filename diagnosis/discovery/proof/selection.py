@@ -15,11 +15,11 @@ from diagnosis.discovery.proof.bootstrap import noise_of
 from diagnosis.discovery.proof.cross_validation import folds, held_out_residuals, rms_deg, scattered
 from diagnosis.discovery.proof.family_wise import FamilyWise, family_wise
 from diagnosis.discovery.proof.order import by_turn, is_strength
-from diagnosis.discovery.search.likelihood_ratio import drop, settle, take_out
+from diagnosis.discovery.search.likelihood_ratio import drop, likelihood, settle, take_out
 from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.rivals import Judged, judge
 from twin.angles import Array, IntArray
-from twin.catalogue import base_name, output_grid
+from twin.catalogue import base_name, find, output_grid
 from twin.effect import BoolArray, Effect
 
 
@@ -60,8 +60,7 @@ class Proof:
 
     def _rivals_log_p(self, name: str, fit: Fit) -> float:
         """That of a rival, in the fit with it in the place of a cause."""
-        key = next(key for key in fit.chain.values if base_name(key) == name and key not in self.fit.chain.values)
-        return self._family_log_p(name, Removal.of(fit, key).log_p)
+        return self._family_log_p(name, Removal.of(fit, _its_key(self.fit, name, fit)).log_p)
 
     def _family_log_p(self, name: str, log_p: float) -> float:
         """Log probability that any of the effects reaches what has the log probability ``log_p`` by itself."""
@@ -90,7 +89,7 @@ class Proof:
 def select(
     fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, rng: np.random.Generator, at_once: bool = False
 ) -> Proof:
-    """Drop causes one after the other until every one that is left is proven.
+    """Drop causes one after the other until every one that is left is proven, and is the likeliest of its class.
 
     ``rng`` draws the sweeps on which the family-wise probabilities are calibrated. ``at_once``: somebody waits; then no
     rivals are looked for, held-out fits go by a single step, and probabilities are those of the F test.
@@ -98,11 +97,49 @@ def select(
     kept = list(keys)
     while True:
         proof = prove(fit, effects, kept, rng=rng, at_once=at_once)
-        idle = next((cause.key for place, cause in enumerate(proof.causes) if not _proven(proof, place)), None)
+        idle = _idle(proof)
         if idle is None:
-            return proof
+            return _likeliest(proof, effects, rng=rng)
         fit, _ = settle(drop(fit, idle))
         kept.remove(idle)
+
+
+def _idle(proof: Proof) -> str | None:
+    """The first of the causes that is not proven."""
+    return next((cause.key for place, cause in enumerate(proof.causes) if not _proven(proof, place)), None)
+
+
+def _likeliest(proof: Proof, effects: Sequence[Effect], *, rng: np.random.Generator) -> Proof:
+    """The proof with those causes that need less to be assumed, where the readings leave them the likelier."""
+    for cause in proof.causes:
+        for name, rival in cause.rivals.items():
+            if not _assumes_less(proof, cause, name, rival):
+                continue
+            kept = [key for key in rival.chain.values if key in proof.ordered or key not in proof.fit.chain.values]
+            trial = prove(settle(rival)[0], effects, kept, rng=rng)
+            if _idle(trial) is None:
+                return _likeliest(trial, effects, rng=rng)
+    return proof
+
+
+def _assumes_less(proof: Proof, cause: Judged, name: str, rival: Fit) -> bool:
+    """Whether a rival needs less to be assumed than a cause that it cannot be told from, and is the likelier for it.
+
+    A magnet is always misplaced a little: a reference that errs as well has to gain more than its misplacement does.
+    And what a cause that is there already does with a further part of its own, as improbable by chance, needs no other.
+    """
+    declared = proof.fit.chain.effects
+    own, other = find(cause.key, declared), find(name, declared)
+    if other not in proof.effects:
+        return False
+    if name in {base_name(key) for key in proof.ordered if key != cause.key}:
+        return Removal.of(rival, _its_key(proof.fit, name, rival)).log_p <= cause.log_p
+    return other.handicap < own.handicap and likelihood(rival) - other.handicap > likelihood(proof.fit) - own.handicap
+
+
+def _its_key(fit: Fit, name: str, rival: Fit) -> str:
+    """The key that a cause of this name has in a rival of a fit, where it is not in the fit itself."""
+    return next(key for key in rival.chain.values if base_name(key) == name and key not in fit.chain.values)
 
 
 def prove(

@@ -15,7 +15,7 @@ from twin.effect import BoolArray
 
 
 def threshold(log_p: Array, share: float, *, independent: bool = False) -> float:
-    """The log of the largest p value (of any shape; NaN: not tested) that may be believed; -inf where none.
+    """The log of what p values (of any shape; NaN: not tested) may be at most to be believed; -inf: none is.
 
     ``independent`` tests need not pay for how they may depend on one another.
     """
@@ -25,7 +25,7 @@ def threshold(log_p: Array, share: float, *, independent: bool = False) -> float
     ranks = np.arange(1, ranked.size + 1)
     limits = np.log(share * ranks / (ranked.size * (1.0 if independent else np.sum(1.0 / ranks))))
     below = np.flatnonzero(ranked <= limits)
-    return float(ranked[below[-1]]) if below.size else -np.inf
+    return float(limits[below[-1]]) if below.size else -np.inf
 
 
 def believed(log_p: Array, share: float) -> BoolArray:

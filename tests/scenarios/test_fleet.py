@@ -54,7 +54,9 @@ def test_the_answer_says_what_the_batch_holds(asked: Path) -> None:
     assert answer["causes"][0]["size"] == pytest.approx(0.006, rel=0.3)
     (apart,) = answer["apart"]
     assert (apart["file"], apart["place"]) == ("device_5.csv", 5)
-    assert "drive_ripple" in apart["figures"]
+    assert apart["figures"][0] == "drive_ripple"
+    # The larger residual is told too, behind what makes it.
+    assert apart["figures"][-1] == "residual RMS"
     assert "drive_ripple" in [cause["name"] for cause in apart["explained"]["causes"]]
     whole = json.loads((asked / "study" / apart["explained"]["answer"]).read_text(encoding="utf-8"))
     assert whole["verdict"] == apart["explained"]["verdict"]

@@ -12,6 +12,7 @@ from diagnosis.discovery.fitting.joint_fit import Free, free_of
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from tests.contract.examples import EXAMPLES
 from tests.twin.test_mirror import MISPLACED
+from twin.adc.adc_inl import BLUR, STEP_PERCENT
 from twin.angles import Array, wrap
 from twin.catalogue import CATALOGUE, find
 from twin.chain import Chain
@@ -127,6 +128,8 @@ def test_derivative(case: Case) -> None:
     assert np.all(np.abs(derivative - central) <= allowed)
 
 
+EDGES = {"adc_inl": 0.01 * STEP_PERCENT / BLUR}
+"""Widths of an edge in one unit of a strength."""
 SEARCHED = [effect for effect in CATALOGUE if effect.footprint == "mean" and not effect.baseline]
 
 
@@ -160,6 +163,8 @@ def test_columns_of_a_candidate_at_null(chain: str, effect: Effect) -> None:
         # The next order: the square of the angle that it turns by, which within one of several periods is so many times
         # as large.
         second = 2.0 * values.get("periods", 1.0) * float(np.max(np.abs(change)) / size) ** 2 * size
+        # And the edge of a bit, which an error of its weight moves by so much of the edge's own width.
+        second += EDGES.get(effect.name, 0.0) / size * float(np.max(np.abs(change)))
         rounding = 4.0 * EPS * float(np.max(np.abs(observed(base)))) * size
         assert np.max(np.abs(column)) > 10.0 * rounding
         behind = 2.0 * INNER_STEP * float(np.max(np.abs(change)))

@@ -188,6 +188,14 @@ def test_a_log_that_fits_one_statement_alone_is_read_by_it(command: str, tmp_pat
     assert said.err in guessed.err
 
 
+def test_names_in_capitals_are_those_names(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(table({"Reference_Deg": REFERENCE_DEG, "MEASURED_DEG": MEASURED_DEG}))
+    ended = halltwin("diagnose", path)
+    assert ended.code == 0
+    assert OPTION.findall(ended.err) == ["reference_deg=Reference_Deg, measured_deg=MEASURED_DEG"]
+
+
 def test_what_goes_against_a_sweeps_own_names_is_refused_and_told(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text(table({"reference_deg": REFERENCE_DEG, "measured_counts": np.round(MEASURED_DEG / 360.0 * 4096)}))

@@ -6,15 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.answerer import explain_file
-
+from ..study import DEFAULT_ANSWERER, load
 from .generator import draw
 
 
 def test_hum_and_its_harmonics_are_one_cause(tmp_path: Path) -> None:
     path = tmp_path / "sweep.csv"
     draw("hum", seed=1492033996).write_csv(path)
-    (cause,) = explain_file(str(path))["causes"]
+    (cause,) = load(DEFAULT_ANSWERER)(str(path))["causes"]
     assert cause["name"] == "mains_pickup"
     told = [cause["parameters"][f"frequency_Hz{number}"] for number in ("", "_2", "_3")]
     supply = told[0]["value"]

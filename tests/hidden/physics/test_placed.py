@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.answerer import explain_file
-
+from ..study import DEFAULT_ANSWERER, load
 from .generator import draw
 
 
@@ -22,7 +21,7 @@ from .generator import draw
 def test_a_magnet_out_of_place_is_named_before_what_needs_more(label: str, seed: int, tmp_path: Path) -> None:
     path = tmp_path / "sweep.csv"
     draw(label, seed=seed).write_csv(path)
-    causes = explain_file(str(path))["causes"]
+    causes = load(DEFAULT_ANSWERER)(str(path))["causes"]
     assert {cause["name"] for cause in causes} == {"magnet_misalignment"}
     told = {name for cause in causes for name in cause["indistinguishable_from"]}
     assert told & {"reference_eccentricity", "cardan_coupling"}

@@ -4,33 +4,20 @@ from __future__ import annotations
 
 import glob
 import hashlib
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NotRequired, TypedDict, TypeVar
 
 from scenarios.commands.fail_on import FoundError
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.ending import ending_of
 from twin.errors import SweepError, UserError
-from twin.logs.asked_back import in_words
-from twin.logs.read import sure_statement
 from twin.recording_file import read_recording
-from twin.shown_name import distinct_names, shown_name
+from twin.shown_name import distinct_names
 from twin.spin import Spin
 from twin.sweep import Sweep
 
 ENDINGS = (".csv", ".csv.gz", ".parquet")
-_Read = TypeVar("_Read", bound=Sweep | Spin)
-
-
-class _About(TypedDict):
-    """How a file is read, beside its columns."""
-
-    max_bytes: int
-    name: str | None
-    pole_pairs: NotRequired[int | None]
 
 
 def sweep_paths(names: Sequence[str]) -> list[Path]:
@@ -147,32 +134,13 @@ class SweepFiles:
 
     def read_one(self, path: Path, *, name: str | None = None) -> Sweep:
         """One of the files, under the name that messages call it by. Raises SweepError."""
-        about: _About = {"max_bytes": self.max_bytes, "name": name, "pole_pairs": self.pole_pairs}
-        return _read(Sweep.read, path, columns=self.columns, about=about)
+        return Sweep.read(path, max_bytes=self.max_bytes, name=name, columns=self.columns, pole_pairs=self.pole_pairs)
 
     def recording(self, path: Path, *, name: str | None = None) -> Sweep | Spin:
         """The same; one without a reference as the spin that it is."""
-        about: _About = {"max_bytes": self.max_bytes, "name": name, "pole_pairs": self.pole_pairs}
-        return _read(read_recording, path, columns=self.columns, about=about)
-
-
-def _read(read: Callable[..., _Read], path: Path, *, columns: str | None, about: _About) -> _Read:
-    """What ``read`` makes of a file; of a log that has no sweep's columns, by the statement that alone fits it, if any.
-
-    The statement is printed on stderr as the option that says it. Raises SweepError.
-    """
-    try:
-        return read(path, columns=columns, **about)
-    except SweepError as error:
-        statement = None if columns is not None else sure_statement(path, spin=read is read_recording)
-        if statement is None:
-            raise
-        try:
-            found = read(path, columns=statement, **about)
-        except SweepError:
-            raise error from None
-        print(f"{about['name'] or shown_name(path)}: read as {in_words([statement])}", file=sys.stderr)
-        return found
+        return read_recording(
+            path, max_bytes=self.max_bytes, name=name, columns=self.columns, pole_pairs=self.pole_pairs
+        )
 
 
 def read_sweeps(
@@ -194,7 +162,7 @@ def read_sweeps(
     first: SweepError | None = None
     for path, name in zip(paths, distinct_names(paths), strict=True):
         try:
-            sweeps.append(_read(read, path, columns=columns, about={"max_bytes": max_bytes, "name": name}))
+            sweeps.append(read(path, max_bytes=max_bytes, name=name, columns=columns))
         except SweepError as error:
             first = first or error
             unusable.append(Unusable(name, str(error).removeprefix(f"{path}: ").removeprefix(f"{name}: ")))

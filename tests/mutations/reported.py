@@ -131,11 +131,4 @@ REPORTED = (
         "left",
         ("tests/twin/test_adc_inl.py::test_weights_that_are_off_do_what_a_successive_approximation_does[2-12.0]",),
     ),
-    Mutation(
-        "logs.a_sweeps_own_names_are_guessed_at",
-        "twin/logs/read.py",
-        "    if _of_a_sweep(table):\n        return None\n",
-        "",
-        ("tests/untidy/test_untidy.py::test_what_goes_against_a_sweeps_own_names_is_refused_and_told",),
-    ),
 )

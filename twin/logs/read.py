@@ -80,7 +80,8 @@ def refused(path: Path, said: str, *, spin: bool = False) -> str:
             return said
         table = read_table(path, max_bytes=LARGEST_ADVISED_BYTES)
         advised = f"{said}; or say what is meant"
-        if table.entries and not _of_a_sweep(table):
+        # Columns that bear a sweep's names are those of a sweep, whatever they lack.
+        if table.entries and not any(column in name for name in table.names for column in REQUIRED):
             said = f"{table.file}: holds a table of {len(table.values[0])} entries, and no columns of a sweep"
             advised = f"{said}; say what is meant"
         guess = guessed(table)
@@ -93,28 +94,3 @@ def refused(path: Path, said: str, *, spin: bool = False) -> str:
     if not spin and is_spin([column.target for column in guess.columns]):
         return said if as_it_is else f"{said}; {_NEEDS_REFERENCE}: {said_so}"
     return said if as_it_is else f"{advised}: {said_so}"
-
-
-def _of_a_sweep(table: Table) -> bool:
-    """Whether columns bear a sweep's names: then they are those of a sweep, whatever they lack."""
-    return any(column in name for name in table.names for column in REQUIRED)
-
-
-def sure_statement(path: Path, *, spin: bool = False) -> str | None:
-    """The statement that a log without a sweep's columns is read by, where one alone fits it; else None.
-
-    Of a file that bears a sweep's names nothing is guessed: what its values say against them is the user's to decide.
-    ``spin``: a log without a reference will do.
-    """
-    try:
-        if not path.is_file() or path.stat().st_size > LARGEST_ADVISED_BYTES:
-            return None
-        table = read_table(path, max_bytes=LARGEST_ADVISED_BYTES)
-        guess = guessed(table)
-    except (SweepError, OSError):
-        return None
-    if _of_a_sweep(table):
-        return None
-    given = [column.target for column in guess.columns]
-    as_it_is = all(str(column) == f"{column.target}={column.target}" for column in guess.columns)
-    return None if as_it_is or (is_spin(given) and not spin) else guess.text

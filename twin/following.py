@@ -65,3 +65,9 @@ def swing_deg(measured: Array, driver: Array) -> tuple[float, float] | None:
         return None
     back = float(np.mean(np.diff(smooth) * np.diff(travel) < 0.0))
     return (float(centre + low), float(centre + high)) if min(back, 1.0 - back) > _BACK else None
+
+
+def slope_of(reference_rad: Array, measured_rad: Array) -> int:
+    """Whether the readings (n,) count with the reference (1) or against it (-1)."""
+    same, other = (abs(np.mean(np.exp(1j * (measured_rad - sign * reference_rad)))) for sign in (1.0, -1.0))
+    return 1 if same >= other else -1

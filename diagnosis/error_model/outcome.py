@@ -12,6 +12,7 @@ from diagnosis.error_model.least_squares import Minimum
 from diagnosis.error_model.model import LOWER_LIMIT, NAMES, UPPER_LIMIT, Readings
 from diagnosis.error_model.result import BaselineFit, Contributions, SearchRange, Senses
 from twin.angles import Array
+from twin.confidence import student_95
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -53,7 +54,7 @@ def _result(
     squares = residual**2 if weights is None else weights[k] * residual**2
     sigma = float(np.sqrt(squares.sum() / freedom))
     covariance = sigma**2 * _inverse(exact.curvature[k])
-    half = _student(freedom) * np.sqrt(np.diagonal(covariance))
+    half = student_95(freedom) * np.sqrt(np.diagonal(covariance))
     point = exact.points[k].copy()
     rms = float(np.sqrt(np.mean(residual[counted] ** 2)))
     return BaselineFit(
@@ -121,10 +122,3 @@ def _inverse(curvature: Array) -> Array:
     scale = 1.0 / np.sqrt(np.maximum(np.diagonal(curvature), 1e-300))
     values, vectors = np.linalg.eigh(curvature * scale[:, None] * scale)
     return np.asarray((vectors / np.maximum(values, 1e-13)) @ vectors.T * scale[:, None] * scale)
-
-
-def _student(freedom: int) -> float:
-    """Half width of a 95 % interval in standard errors."""
-    from scipy.special import stdtrit
-
-    return float(stdtrit(freedom, 0.975))

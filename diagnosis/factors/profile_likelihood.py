@@ -10,6 +10,7 @@ from diagnosis.error_model import least_squares, model
 from diagnosis.error_model.model import NAMES
 from diagnosis.error_model.result import BaselineFit
 from twin.angles import Array
+from twin.confidence import student_95
 
 _POINTS = 81
 """Values at which the profile is computed, an odd number: the fitted value is the middle one."""
@@ -31,8 +32,6 @@ def profile(fit: BaselineFit, gram: Array, index: int) -> Profile:
 
     ``gram`` (10, 10) is the quadratic form of the readings, so no pass over them is needed.
     """
-    from scipy.special import stdtrit
-
     error = fit.standard_errors[index]
     offsets = np.linspace(-_REACH, _REACH, _POINTS) * error
     start = np.tile(fit.point, (_POINTS, 1))
@@ -47,7 +46,7 @@ def profile(fit: BaselineFit, gram: Array, index: int) -> Profile:
     curvature, _, _ = least_squares.on_gram(gram[None])(fit.point[None])
     variance = float(np.mean(np.diagonal(fit.covariance @ curvature[0])))
     rise = (found.cost - found.cost[middle]) / max(variance, 1e-300)
-    limit = float(stdtrit(max(fit.degrees_of_freedom, 1), 0.975)) ** 2
+    limit = student_95(max(fit.degrees_of_freedom, 1)) ** 2
     low = _crossing(start[middle::-1, index], rise[middle::-1], limit)
     high = _crossing(start[middle:, index], rise[middle:], limit)
     return Profile(NAMES[index], low if low is not None else -np.inf, high if high is not None else np.inf)

@@ -8,6 +8,7 @@ import numpy as np
 
 from diagnosis.error_model.result import BaselineFit
 from twin.angles import Array
+from twin.confidence import student_95
 
 _SAME_DEG = 1e-4
 _FEWEST_REPEATS = 2.0
@@ -20,8 +21,6 @@ def between_angles(fit: BaselineFit, reference_deg: Array) -> tuple[BaselineFit,
     Where the readings of an angle scatter less than the angles do, the mean residual of each angle is what counts:
     the variance of a reading is then sum n_g mean_g^2 / (angles - 6), never less than under independence.
     """
-    from scipy.special import stdtrit
-
     used = ~fit.outliers
     _, group = np.unique(np.round(np.remainder(reference_deg[used], 360.0) / _SAME_DEG), return_inverse=True)
     count = np.bincount(group)
@@ -34,7 +33,7 @@ def between_angles(fit: BaselineFit, reference_deg: Array) -> tuple[BaselineFit,
         return fit, None
     covariance = fit.covariance * (between / fit.sigma_rad) ** 2
     freedom = angles - _PARAMETERS
-    half = float(stdtrit(freedom, 0.975)) * np.sqrt(np.diagonal(covariance))
+    half = student_95(freedom) * np.sqrt(np.diagonal(covariance))
     words = (
         f"{angles} different angles, {np.mean(count):.0f} readings each: the intervals count angles, not readings "
         f"({between / fit.sigma_rad:.1f} times wider)"

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from diagnosis.factors.channels import output_sense
 from diagnosis.factors.mirror import By, KnownSense
 from twin.angles import Array
+from twin.following import slope_of
 from twin.sweep import Sweep
 
 
@@ -21,9 +20,4 @@ def known_senses(
         told = KnownSense(output_sense(measured, sweep.vx, sweep.vy), "channels")
     if told is None:
         return None, None
-    slope = 1 if _follows(reference, measured, 1) >= _follows(reference, measured, -1) else -1
-    return (slope * told.output, told.output), told.by
-
-
-def _follows(reference: Array, measured: Array, sense: int) -> float:
-    return float(np.abs(np.mean(np.exp(1j * (measured - sense * reference)))))
+    return (slope_of(reference, measured) * told.output, told.output), told.by

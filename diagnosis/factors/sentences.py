@@ -12,6 +12,7 @@ from diagnosis.factors.null_space import HIDDEN, invisible_count
 from diagnosis.factors.profile_likelihood import Profile
 from twin.angles import Array
 from twin.baseline import FACTORS
+from twin.confidence import student_95
 
 _FEW = 9
 """Degrees of freedom from which a cause of three times the noise stands out of what is left: what explain asks for."""
@@ -57,12 +58,10 @@ def said_of_these_readings(
 
 def said_of_few_readings(fit: BaselineFit) -> tuple[str, ...]:
     """How much wider so few readings make the intervals, and that they do not judge the error model itself."""
-    from scipy.special import stdtrit
-
     freedom = max(fit.degrees_of_freedom, 1)
     if freedom >= _FEW:
         return ()
-    wider = float(stdtrit(freedom, 0.975) / stdtrit(np.inf, 0.975))
+    wider = student_95(freedom) / student_95(np.inf)
     return (
         f"few readings: beside six parameters {freedom} degree{'s' if freedom > 1 else ''} of freedom are left, which "
         f"makes intervals {wider:.1f} times as wide as many readings of this scatter would; whether the error model "

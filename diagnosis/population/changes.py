@@ -17,6 +17,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.factors.change_point import Change, change_point
+from diagnosis.population.apart import RESIDUAL
 from diagnosis.population.batch import ZERO, Batch
 from diagnosis.population.false_discovery import believed
 from diagnosis.population.pooled import FALSE_SHARE, SENSOR, Figures
@@ -53,7 +54,7 @@ def courses(batch: Batch) -> Iterator[Course]:
     """The factors, the residual's RMS, and each coefficient of the causes that the batch shares."""
     for place, factor in enumerate(FACTORS[:ZERO]):
         yield Course(factor.label, factor.shown_unit or "1", batch.arrays["fitted"][:, place])
-    yield Course("residual RMS", "deg", batch.arrays["sigma_deg"])
+    yield Course(RESIDUAL, "deg", batch.arrays["sigma_deg"])
     for number, one in enumerate(batch.present):
         figures = batch.figures_of_present(number)
         for values in _sizes(figures):

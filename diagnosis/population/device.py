@@ -19,6 +19,7 @@ from diagnosis.population.noise import whitened
 from twin.angles import Array, radians
 from twin.baseline import FACTORS
 from twin.effect import BoolArray
+from twin.following import slope_of
 from twin.sweep import Sweep
 
 BLOCKS = 48
@@ -112,12 +113,6 @@ def _widest_gap_deg(reference_deg: Array) -> float:
     """The widest part of the turn without a reading."""
     angles = np.sort(np.mod(reference_deg, 360.0))
     return float(np.max(np.diff(angles, append=angles[0] + 360.0)))
-
-
-def slope_of(reference_rad: Array, measured_rad: Array) -> int:
-    """Whether the readings (n,) count with the reference (1) or against it (-1)."""
-    same, other = (abs(np.mean(np.exp(1j * (measured_rad - sign * reference_rad)))) for sign in (1.0, -1.0))
-    return 1 if same >= other else -1
 
 
 def _of_device(sweep: Sweep, fit: BaselineFit, question: Question) -> Arrays:

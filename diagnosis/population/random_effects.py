@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.angles import Array
+from twin.confidence import student_95
 
 _HALVINGS = 200
 """Steps of a bisection: it ends when two numbers follow one another, long before."""
@@ -37,7 +38,7 @@ class RandomEffects:
     @property
     def error(self) -> float:
         """Standard error of the mean, from its interval."""
-        return (self.high - self.low) / (2.0 * _student(self.devices - 1))
+        return (self.high - self.low) / (2.0 * student_95(self.devices - 1))
 
 
 def random_effects(values: Array, errors: Array) -> RandomEffects:
@@ -49,7 +50,7 @@ def random_effects(values: Array, errors: Array) -> RandomEffects:
     weights = 1.0 / (errors**2 + variance)
     mean = float(weights @ values / weights.sum())
     squares = float(weights @ (values - mean) ** 2)
-    half = _student(freedom) * np.sqrt(squares / (freedom * weights.sum()))
+    half = student_95(freedom) * np.sqrt(squares / (freedom * weights.sum()))
     ends = [_variance_with(values, errors, float(chdtri(freedom, p))) for p in (0.025, 0.975)]
     return RandomEffects(
         mean=mean,
@@ -81,9 +82,3 @@ def _variance_with(values: Array, errors: Array, wanted: float) -> float:
             break
         low, high = (middle, high) if squares(middle) > wanted else (low, middle)
     return 0.5 * (low + high)
-
-
-def _student(freedom: int) -> float:
-    from scipy.special import stdtrit
-
-    return float(stdtrit(freedom, 0.975))

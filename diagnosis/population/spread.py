@@ -20,6 +20,7 @@ from diagnosis.population.pooled import (
 from diagnosis.population.random_effects import RandomEffects, random_effects
 from twin.angles import Array
 from twin.baseline import FACTORS, Factor
+from twin.confidence import student_95
 from twin.effect import BoolArray
 
 _TRUSTED = 30
@@ -145,11 +146,9 @@ def _size(
 
 def _own_size(halves: Array) -> tuple[float, tuple[float, float], None, float]:
     """Root mean square over devices of a size whose phase is each one's own, from the halves' products."""
-    from scipy.special import stdtrit
-
     product = np.einsum("nt,nt->n", *halves)
     count = product.size
-    half = float(stdtrit(count - 1, 0.975) * np.std(product, ddof=1) / np.sqrt(count))
+    half = float(student_95(count - 1) * np.std(product, ddof=1) / np.sqrt(count))
     mean = float(product.mean())
     low, middle, high = (float(np.sqrt(max(value, 0.0))) for value in (mean - half, mean, mean + half))
     return middle, (low, high), None, middle

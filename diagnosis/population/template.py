@@ -13,10 +13,11 @@ from diagnosis.error_model.fit import fit_baseline
 from diagnosis.factors.channels import output_sense
 from diagnosis.factors.mirror import DECIDED_LOG_ODDS
 from diagnosis.population.candidates import candidates_for, overlaps
-from diagnosis.population.device import FEWEST_ROWS, Question, left_over, slope_of
+from diagnosis.population.device import FEWEST_ROWS, Question, left_over
 from diagnosis.population.noise import autoregression
 from twin.angles import Array, radians
 from twin.chain import Chain
+from twin.following import slope_of
 from twin.motion import Motion
 from twin.sweep import Sweep
 

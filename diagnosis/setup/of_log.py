@@ -205,7 +205,7 @@ def _angle(target: str, source: str, values: Array, said: Meaning) -> Column:
         return Column(target, Term(source), None if said.unit.name == "deg" else said.unit.name)
     known = values[np.isfinite(values)]
     span = float(np.ptp(known))
-    if (said.counts and bool(np.all(known % 1.0 == 0.0))) or (span > 370.0 and bool(np.all(known % 1.0 == 0.0))):
+    if (said.counts or span > 370.0) and bool(np.all(known % 1.0 == 0.0)):
         wraps = bool(np.any(np.abs(np.diff(known)) > 0.5 * span))
         full = [many for many in COUNTS_PER_TURN if wraps and 0.98 * many <= span <= many]
         counts = float(full[0]) if full else 2.0 ** max(int(np.ceil(np.log2(span + 1.0))), _FEWEST_BITS)

@@ -20,6 +20,7 @@ from diagnosis.thermal.evidence import FAMILY_LEVEL, Evidence
 from diagnosis.thermal.levels import Span
 from diagnosis.thermal.sums import Mask, Model
 from twin.angles import TAU, Array
+from twin.confidence import student_95
 from twin.motion import NOMINAL_C
 
 Verdict = Literal["sensitive", "immune", "not told"]
@@ -146,23 +147,19 @@ def _drifts(found: Evidence, span: Span, mask: Mask, weight: Array) -> tuple[Arr
 
 def _figures(found: Evidence, span: Span, mask: Mask, factor: int) -> tuple[Figure, ...]:
     """A factor's value at 25 C and its coefficients per kelvin, per kelvin squared, ... with their intervals."""
-    from scipy.special import stdtrit
-
     value, covariance = _of_factor(found, mask, factor)
     count = int(np.count_nonzero(mask[factor]))
     turned = from_25(span, mask.shape[1])[:count]
     value, error = turned @ value, _errors(turned, covariance)
-    half = float(stdtrit(found.freedom[factor], 0.975)) * error
+    half = student_95(found.freedom[factor]) * error
     return tuple(Figure(float(v), float(v - h), float(v + h)) for v, h in zip(value, half, strict=True))
 
 
 def law_at(found: Evidence, model: Model, factor: int, temperature_c: Array) -> tuple[Array, Array]:
     """A factor's law (n,) in the model at temperatures (n,) [C], and half of its 95 % interval."""
-    from scipy.special import stdtrit
-
     value, covariance = _of_factor(found, model.terms, factor)
     powers = model.span.powers(temperature_c, model.terms.shape[1] - 1)
-    return value @ powers, float(stdtrit(found.freedom[factor], 0.975)) * _errors(powers.T, covariance)
+    return value @ powers, student_95(found.freedom[factor]) * _errors(powers.T, covariance)
 
 
 def _errors(combined: Array, covariance: Array) -> Array:

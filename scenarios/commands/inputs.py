@@ -143,6 +143,12 @@ class SweepFiles:
         )
 
 
+def none_usable(first: UserError, files: int) -> SweepError:
+    """The error that ends a command of so many files where none can be used: why the first cannot."""
+    more = f" (and none of the other {files - 1} files can be used)" if files > 1 else ""
+    return SweepError(f"{first}{more}")
+
+
 def read_sweeps(
     paths: Sequence[Path],
     *,
@@ -167,6 +173,5 @@ def read_sweeps(
             first = first or error
             unusable.append(Unusable(name, str(error).removeprefix(f"{path}: ").removeprefix(f"{name}: ")))
     if first is not None and not sweeps:
-        more = f" (and none of the other {len(paths) - 1} files can be used)" if len(paths) > 1 else ""
-        raise SweepError(f"{first}{more}")
+        raise none_usable(first, len(paths))
     return SweepsRead(tuple(with_motion(sweeps)), tuple(unusable))

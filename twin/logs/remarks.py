@@ -9,8 +9,8 @@ from twin.logs.names import Meaning, meaning_of
 from twin.logs.units import COUNTS, unit_of
 
 _SAID = re.compile(r"([^\W\d][\w.]*)\s*(?:\bin\b|[:=\[(])(?=\s*([^\s,;:=()\[\]]+))")
-_OF_ROLES = {role: role for role in ("angle", "time", "temperature", "speed", "current")}
-"""What a unit of a column of this role measures."""
+_MEASURED = ("angle", "time", "temperature", "speed", "current")
+"""Roles of columns that are called as what their units measure."""
 
 
 def units_remarked(names: Sequence[str], remarks: Sequence[str]) -> dict[int, str]:
@@ -39,7 +39,7 @@ def _meant(word: str, unit: str, names: Sequence[str], said: Sequence[Meaning]) 
     own = meaning_of(word)
     own = own if own.role else meaning_of(word.lower().removesuffix("s"))
     known = unit_of(unit)
-    if own.role not in _OF_ROLES or _OF_ROLES[own.role] != ("angle" if known is None else known.quantity):
+    if own.role not in _MEASURED or own.role != ("angle" if known is None else known.quantity):
         return []
     # An angle's word may stand for one side alone.
     side = own.reference - own.sensor if own.role == "angle" and (own.reference or own.sensor > 1) else 0

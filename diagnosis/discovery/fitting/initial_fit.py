@@ -25,6 +25,7 @@ from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
 from twin.catalogue import find
 from twin.chain import Chain
+from twin.following import slope_of
 from twin.motion import Motion
 from twin.sweep import Sweep
 
@@ -69,9 +70,7 @@ def baseline_fit(fit: Fit) -> Fit:
 
 def senses_of_angles(observations: Observations) -> int:
     """Whether the readings count with the reference (1) or against it (-1)."""
-    reference, measured = observations.motion.shaft_rad, observations.measured
-    same, other = (abs(np.mean(np.exp(1j * (measured - sign * reference)))) for sign in (1.0, -1.0))
-    return 1 if same >= other else -1
+    return slope_of(observations.motion.shaft_rad, observations.measured)
 
 
 def counted_alike(twin: Chain, observations: Observations, senses: tuple[int, int] | None) -> Chain:

@@ -11,10 +11,10 @@ from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, root_weig
 from diagnosis.discovery.fitting.profile import Profile
 from diagnosis.discovery.fitting.projection import projected
 from twin.catalogue import find
+from twin.confidence import student_95
 
 Deviations = dict[tuple[str, str], float]
 """Standard deviation of a parameter, by effect and parameter."""
-_TWO_SIDED_95 = 0.975
 _JOINT_95 = 0.95
 
 
@@ -30,10 +30,7 @@ def standard_deviations(fit: Fit) -> Deviations:
 
 def quantile_95(fit: Fit) -> float:
     """Half width of a 95 % interval in standard deviations: Student's t, as the noise is known from what is left."""
-    from scipy.special import stdtrit
-
-    freedom = max(fit.rows - len(fit.free), 1)
-    return float(stdtrit(freedom, _TWO_SIDED_95))
+    return student_95(max(fit.rows - len(fit.free), 1))
 
 
 def interval_of_derived(fit: Fit, key: str, name: str) -> tuple[float, float]:

@@ -18,6 +18,7 @@ def robust_rms(values: Array) -> float:
 
 _BOUND = 1.5
 """In units of their RMS: a third of the values may lie anywhere before the estimate does."""
+_ROUNDS = 40
 
 
 def bounded_rms(values: Array) -> float:
@@ -41,7 +42,6 @@ def bounded_rms(values: Array) -> float:
     return float(np.sqrt(found))
 
 
-_ROUNDS = 40
 LEFT_BY_MEDIAN = 0.866
 """Robust RMS of white noise of RMS 1 once the median of nine neighbours is taken off it (of a million readings)."""
 

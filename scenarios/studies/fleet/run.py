@@ -17,7 +17,7 @@ from diagnosis.population.looks import looked_at
 from diagnosis.population.template import LOOKED_AT, Template, template_of
 from diagnosis.report.provenance import Provenance
 from scenarios.commands.fail_on import FoundError, asked, raise_found
-from scenarios.commands.inputs import SweepFiles
+from scenarios.commands.inputs import SweepFiles, none_usable
 from scenarios.commands.outputs import HTML, JSON, PARQUET, OutputFiles, json_text
 from scenarios.studies.engine import run_study
 from scenarios.studies.fleet.answer import FLEET, answer_of, in_answer
@@ -36,7 +36,7 @@ from scenarios.studies.identity import Identity
 from scenarios.studies.machines import Machines
 from scenarios.studies.study_folder import StudyFolder
 from twin.catalogue import CATALOGUE
-from twin.errors import SweepError, UserError
+from twin.errors import UserError
 from twin.shown_name import distinct_names
 from twin.sweep import Sweep
 
@@ -211,7 +211,7 @@ def first_usable(paths: Sequence[Path], names: Sequence[str], reading: Reading) 
         if len(sweeps) == LOOKED_AT:
             break
     if first is not None and not sweeps:
-        raise SweepError(f"{first} (and none of the other {len(paths) - 1} files can be used)")
+        raise none_usable(first, len(paths))
     return sweeps
 
 

@@ -15,6 +15,7 @@ from diagnosis.discovery.fitting.intervals import (
     parabola_95,
     quantile_95,
     standard_deviations,
+    with_open_torques,
 )
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.marks.row_masks import raw_residual
@@ -26,8 +27,8 @@ from diagnosis.report.as_read import as_read, values_as_read
 from diagnosis.report.as_well import as_well
 from diagnosis.report.facts import facts, recorded_columns
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
-from diagnosis.report.motion import motion_answer
-from diagnosis.report.over_class import over_class
+from diagnosis.report.motion import TORQUE, motion_answer
+from diagnosis.report.over_class import moved, over_class
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.recordings import in_recordings, recordings_answer
 from diagnosis.report.rounded import rounded
@@ -58,7 +59,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             **made.to_dict(),
             "sweep": _sweep(found),
             "baseline": {
-                "parameters": parameters_before,
+                "parameters": over_class(parameters_before, [_by_torques(found.baseline)]),
                 "rms_deg": _rms(residual[kept]),
                 "rms_all_rows_deg": _rms(residual),
                 "heldout_rms_deg": found.baseline_held_deg,
@@ -190,27 +191,12 @@ def _extended_parameters(found: Discovery) -> dict[str, dict[str, Any]]:
     """The factors with the causes, as well known as all that explains the sweep as well leaves them."""
     # Where another explanation leaves a factor is what matters there; to follow each along its likelihood takes long.
     others = [(everywhere(name), _factors(fit, parabola_95(fit))) for name, fit in found.rival_fits]
-    return over_class(baseline_parameters(found.fit), others)
+    return over_class(baseline_parameters(found.fit), [*others, _by_torques(found.fit)])
 
 
-def moved(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[str]:
-    """Factors that stand elsewhere once the causes are known: outside of the 95 % interval that they had before."""
-    return [
-        name
-        for name, known in before.items()
-        if known["low"] is not None
-        and known["high"] is not None
-        and not known["low"] <= after[name]["value"] <= known["high"]
-        # A factor that the causes leave hardly known has not moved.
-        and not _holds(after[name], known)
-    ]
-
-
-def _holds(wide: Mapping[str, Any], known: Mapping[str, Any]) -> bool:
-    """Whether an interval holds another one whole; one without ends holds any."""
-    if wide["low"] is None or wide["high"] is None:
-        return True
-    return bool(wide["low"] <= known["low"] and known["high"] <= wide["high"])
+def _by_torques(fit: Fit) -> tuple[str, dict[str, dict[str, Any]]]:
+    """The same as far as torques leave them open that no speed tells from the sensor."""
+    return TORQUE, _factors(fit, with_open_torques(fit, intervals_95(fit)))
 
 
 def _change(found: Discovery, change: Change) -> dict[str, Any]:
@@ -277,7 +263,7 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
     fit = found.fit
     effect = find(key, fit.chain.effects)
     values = {**effect.null(), **fit.chain.values.get(key, {}), **found.words.get(key, {})}
-    derived, known = effect.derived(values), intervals_95(fit)
+    derived, known = effect.derived(values), with_open_torques(fit, intervals_95(fit))
     figures: dict[str, dict[str, Any]] = {}
     for name, param in effect.params.items():
         if param.role == "per turn" or name not in values or np.ndim(values[name]):
@@ -292,6 +278,7 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
             # Of a phase no less can be known than nothing.
             low, high = max(low, value - 180.0), min(high, value + 180.0)
         figures[name] = _figure(value, low, high, param.unit)
+        figures[name] |= _if_no_torque(fit, key, name, (low, high))
         figures[name] |= _marks(param, value, deviation.get((key, name), 0.0))
         if param.unit == "s" and name in effect.zoomed and (key, name) not in deviation:
             figures[name] |= _between_readings(fit, value)
@@ -309,6 +296,12 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
             told |= {"low": told["low"] + min(low - value, 0.0), "high": told["high"] + max(high - value, 0.0)}
     figures.update({name: _derived(fit, key, name, figure) for name, figure in derived.items()})
     return figures
+
+
+def _if_no_torque(fit: Fit, key: str, name: str, ends: tuple[float, float]) -> dict[str, Any]:
+    """The interval of a parameter if nothing of it is a torque's, where that may be and widens its ends."""
+    own = intervals_95(fit).get((key, name), ends)
+    return {"as_named": list(own)} if own[1] - own[0] < ends[1] - ends[0] else {}
 
 
 def _derived(fit: Fit, key: str, name: str, figure: tuple[float, float, float, str]) -> dict[str, Any]:

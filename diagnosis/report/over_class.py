@@ -1,4 +1,4 @@
-"""Intervals of the factors over all that explains the readings as well, and what is said of those that it widens."""
+"""Intervals of the factors over all that explains the readings as well, which have moved, and what is said of them."""
 
 from __future__ import annotations
 
@@ -43,6 +43,26 @@ def over_class(named: Mapping[str, Any], others: Sequence[tuple[str, Mapping[str
 def _much(own: Interval, ends: Interval) -> bool:
     """Whether an interval that spans both is much wider than one's own."""
     return max(own[1], ends[1]) - min(own[0], ends[0]) > _MUCH * (own[1] - own[0])
+
+
+def moved(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[str]:
+    """Factors that stand elsewhere once the causes are known: outside of the 95 % interval that they had before."""
+    return [
+        name
+        for name, known in before.items()
+        if known["low"] is not None
+        and known["high"] is not None
+        and not known["low"] <= after[name]["value"] <= known["high"]
+        # A factor that the causes leave hardly known has not moved.
+        and not _holds(after[name], known)
+    ]
+
+
+def _holds(wide: Mapping[str, Any], known: Mapping[str, Any]) -> bool:
+    """Whether an interval holds another one whole; one without ends holds any."""
+    if wide["low"] is None or wide["high"] is None:
+        return True
+    return bool(wide["low"] <= known["low"] and known["high"] <= wide["high"])
 
 
 def open_words(answer: Mapping[str, Any]) -> str:

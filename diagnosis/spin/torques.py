@@ -35,6 +35,35 @@ def torque_columns(motion: Motion) -> Array:
     return np.concatenate(columns)
 
 
+def as_large_as_seen(motion: Motion, off_rad: Array, usable: BoolArray) -> Array:
+    """Angles (m, n) [rad] by which torques turn the shaft that make all that is seen of an order, cosine and sine.
+
+    Of the orders that the speeds leave open, as far as no torque of them is in :func:`torque_columns`. ``off_rad`` (n,)
+    is what readings are off the motion.
+    """
+    found = motion.estimated
+    orders = [] if found is None else [one.order for one in found.torques if not (one.separable or one.scatter_rad_s2)]
+    if found is None or not orders:
+        return np.zeros((0, len(motion)))
+    angle, speed = motion.shaft_rad, motion.speed_rad_s
+    waves = [np.ones_like(angle), *(wave(order * angle) for order in orders for wave in (np.cos, np.sin))]
+    seen = np.linalg.lstsq(np.stack(waves).T[usable], off_rad[usable], rcond=None)[0][1:].reshape(-1, 2)
+    usual, acceleration = float(np.median(np.abs(speed))), rate(speed, motion.time_s, found.slices)
+    moved = [
+        size
+        * (order * usual) ** 2
+        * response(
+            order,
+            shaft_rad=angle,
+            speed_rad_s=speed,
+            acceleration_rad_s2=acceleration,
+            damping_per_s=found.damping_per_s,
+        )
+        for order, size in zip(orders, np.linalg.norm(seen, axis=1), strict=True)
+    ]
+    return np.concatenate(moved)
+
+
 _LEAST = 1e-4
 """Of what a direction does, against the noise of all readings: less than that moves no whitened reading by 1/20000."""
 

@@ -52,6 +52,13 @@ SPINS: tuple[Mutation, ...] = tuple(
             f"{_SEARCH}::test_a_candidate_gains_to_first_order_what_it_gains_in_the_fit",
         ),
         (
+            "spins.no_torque_widens_an_interval",
+            "diagnosis/discovery/fitting/intervals.py",
+            "if (free.key, free.name) not in found or by_torques == 0.0:",
+            "if True:",
+            f"{_EXPLAIN}::test_what_a_torque_may_have_done_is_in_the_intervals",
+        ),
+        (
             "spins.lines_are_matched_to_torques",
             "diagnosis/discovery/search/screening.py",
             "weighted if observations.loose is None else observations.loose.whitened(weighted)",

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, root_weights, value_of
+from diagnosis.discovery.fitting.open_torques import shifts
 from diagnosis.discovery.fitting.profile import Profile
 from diagnosis.discovery.fitting.projection import projected
 from twin.catalogue import find
@@ -44,7 +45,8 @@ def interval_of_derived(fit: Fit, key: str, name: str) -> tuple[float, float]:
     value = effect.derived(values)[name][0]
     if value <= 0.0 or not places:
         return value, value
-    covariance = fit.covariance()[np.ix_(places, places)]
+    by_torques = shifts(fit)
+    covariance = (fit.covariance() + by_torques @ by_torques.T)[np.ix_(places, places)]
 
     def log_at(parameter: str, by: float) -> float:
         moved = effect.derived({**values, parameter: float(values[parameter]) + by})[name][0]
@@ -89,6 +91,25 @@ def intervals_95(fit: Fit) -> Mapping[tuple[str, str], tuple[float, float]]:
         ]
         ends = Profile(fit, fit.covariance(), quantile_95(fit)).intervals(known)
         found |= {(fit.free[place].key, fit.free[place].name): both for place, both in ends.items()}
+    return found
+
+
+def with_open_torques(
+    fit: Fit, known: Mapping[tuple[str, str], tuple[float, float]]
+) -> dict[tuple[str, str], tuple[float, float]]:
+    """These 95 % intervals, wider by what torques may have done that the log's speeds do not tell from the sensor.
+
+    The same intervals where a reference was recorded.
+    """
+    found = dict(known)
+    away = quantile_95(fit) * np.linalg.norm(shifts(fit), axis=1)
+    for free, by_torques in zip(fit.free, away, strict=True):
+        if (free.key, free.name) not in found or by_torques == 0.0:
+            continue
+        param, value = find(free.key, fit.chain.effects).params[free.name], value_of(fit.chain, free)
+        low, high = found[free.key, free.name]
+        low, high = value - float(np.hypot(value - low, by_torques)), value + float(np.hypot(high - value, by_torques))
+        found[free.key, free.name] = (max(low, param.lower), min(high, param.upper))
     return found
 
 

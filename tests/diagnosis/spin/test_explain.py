@@ -169,3 +169,18 @@ def test_columns_say_which_of_a_logs_are_those_of_a_spin(tmp_path: Path) -> None
         "compensate", log, "--columns", "time_s=t_ms:ms, measured_deg=ang:rad", "--table", tmp_path / "t.csv"
     )
     assert done.code == 0, done.err
+
+
+def test_what_a_torque_may_have_done_is_in_the_intervals() -> None:
+    """A shaft that a torque turns to and fro once a turn, at one speed: the sensor's own offset is none."""
+    swing = even(9.0, error_deg=0.5)
+    told = explain(swing).to_dict()["extended"]["parameters"]
+    for name in ("Vx_over_Ax", "Vy_over_Ay"):
+        assert told[name]["low"] < 0.0 < told[name]["high"]
+    assert abs(told["Vy_over_Ay"]["value"]) > 0.008 > told["Vy_over_Ay"]["as_named"][1] - told["Vy_over_Ay"]["value"]
+    assert told["Vy_over_Ay"]["open_by"] == ["torque_ripple"]
+    # What is not seen of an order no torque has done.
+    assert told["gain_ratio"]["high"] - told["gain_ratio"]["low"] < 1e-3
+    amplitude = at_one_speed().to_dict()["causes"][0]["parameters"]["amplitude_deg"]
+    assert amplitude["low"] == 0.0
+    assert amplitude["as_named"] == pytest.approx([0.5, 0.5], abs=0.01)

@@ -41,6 +41,7 @@ BASE: dict[str, tuple[str, ...]] = {
     "design": ("-o", "out/study", "--no-plot"),
     "recover": ("-o", "out/study", "--no-plot"),
     "fleet": (*(f"s{k}.csv" for k in range(8)), "-o", "out/study"),
+    "lab": ("--no-browser",),
 }
 """Arguments with which a command does little; a study ends where its work would begin."""
 WORDS = frozenset(
@@ -83,6 +84,7 @@ RIGHT: dict[str, str] = {
     "--bore": "0 36.9",
     "--output-sense": "-1",
     "--remanence": "0",
+    "--port": "0",
     **dict.fromkeys(("--diameter", "--height", "--air-gap"), "36.9"),
     **dict.fromkeys(("--off-axis", "--tilt", "--magnet-off-axis", "--magnet-tilt", "--stray"), "-1 0 36.9"),
 }
@@ -128,6 +130,7 @@ NUMBERS = [one for one in options() if one.kind in ("number", "text") and one.na
 def test_what_no_number_can_mean_is_refused(option: Option, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for module in ("design", "recovery", "training", "fleet"):
         monkeypatch.setattr(f"scenarios.studies.{module}.run.run_study", begun)
+    monkeypatch.setattr("scenarios.lab.command.Server", begun)
     full = f"{option.command} {option.name}"
     right = RIGHT.get(full, RIGHT.get(option.name, "")).split()
     right += [""] if {full, option.name} & NONE_IS_RIGHT else []

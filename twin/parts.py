@@ -95,6 +95,17 @@ class Parts:
             converter=self.converter if name in ("sampling", "converter") else None,
         )
 
+    def without(self, name: str) -> Parts:
+        """The parts with one of them ideal, by the name of its operation; the scale stays."""
+        plates, converter = name == "plates", name in ("sampling", "converter")
+        return replace(
+            self,
+            disk=Disk(gain=self.gain) if name == "disk" else self.disk,
+            plate=None if plates else self.plate,
+            plate_y=None if plates else self.plate_y,
+            converter=None if converter else self.converter,
+        )
+
     def in_mirror(self) -> Parts:
         """The parts of the chain that counts the other way on both sides and reads the same."""
         return self if self.ideal else replace(self, mirrored=not self.mirrored)

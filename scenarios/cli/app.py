@@ -9,6 +9,7 @@ from typer.core import TyperCommand
 
 from scenarios.cli.bench import bench
 from scenarios.cli.effects import causes, check_effect, new_effect
+from scenarios.cli.lab import lab
 from scenarios.cli.logs import doctor, import_log
 from scenarios.cli.simulation import hardware, paper, simulate, spinning
 from scenarios.cli.studies import design, fleet, generate, recover
@@ -85,6 +86,7 @@ for command in (
     recover,
     import_log,
     doctor,
+    lab,
 ):
     # Python keeps the word import for itself.
     app.command("import" if command is import_log else None, cls=Command)(with_verbosity(command))

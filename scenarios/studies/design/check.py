@@ -49,6 +49,11 @@ def design_twin(study: DesignStudy, row: Array, which: float) -> Chain:
         Magnet(shape=magnet.shape, grade=name, **own),
         Placement(**{key: float(np.ravel(value)[0]) for key, value in vars(place).items() if np.ndim(value)}),
     )
+    return twin_at(chain, assembly)
+
+
+def twin_at(chain: Chain, assembly: Assembly) -> Chain:
+    """The twin of the chain's sensor at another magnet: its effects as they are at that one's field."""
     values = {
         key: {name: float(value) for name, value in params.items()}
         for key, params in scaled_values(chain, assembly).items()

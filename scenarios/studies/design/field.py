@@ -36,7 +36,7 @@ class Designs(Assembly):
     def __post_init__(self) -> None:
         """Many designs are what this is for."""
 
-    @property
+    @cached_property
     def count(self) -> int:
         """How many designs there are."""
         return int(np.prod(designs_of(self.magnet, self.placement)))
@@ -180,25 +180,29 @@ def followed(effect: Effect) -> tuple[str, ...]:
 
 
 def errors_deg(chain: Chain, designs: Designs, motion: Motion) -> Array:
-    """Expected angle error (designs, n) [deg] of the chain with each design's magnet, its zero set at 25 C.
+    """Expected angle error (designs, n) [deg] of the chain with each design's magnet, its zero set at 25 C."""
+    return zeroed_deg(in_designs(chain, designs).error(motion), motion)
+
+
+def in_designs(chain: Chain, designs: Designs) -> Chain:
+    """The chain with each design's magnet, its effects at that one's field.
 
     ``chain`` has a magnet: its nominal field is what the chain's parameters are stated at.
     """
     placed, keys = misplaced(chain, designs)
-    own = replace(chain, values=scaled_values(chain.without(*keys), designs), magnet=placed)
-    return _zeroed(own.error(motion), motion)
+    return replace(chain, values=scaled_values(chain.without(*keys), designs), magnet=placed)
 
 
 def cause_errors(chain: Chain, designs: Designs, motion: Motion) -> Iterator[tuple[str, Array]]:
     """Cause and its error alone (designs, n) [deg]: the magnet's field first, then each effect on an ideal field."""
     bare = replace(chain, values={}, magnet=designs, parts=Parts())
-    yield "field", _zeroed(bare.error(motion), motion)
+    yield "field", zeroed_deg(bare.error(motion), motion)
     for name in [part.name for part in chain.described]:
         described = replace(chain, values={}, magnet=designs, parts=chain.parts.only(name))
-        yield name, _zeroed(described.error(motion) - bare.error(motion), motion)
+        yield name, zeroed_deg(described.error(motion) - bare.error(motion), motion)
     placed, keys = misplaced(chain, designs)
     for key in keys:
-        yield key, _zeroed(replace(bare, magnet=placed).error(motion) - bare.error(motion), motion)
+        yield key, zeroed_deg(replace(bare, magnet=placed).error(motion) - bare.error(motion), motion)
     for key, params in scaled_values(chain.without(*keys), designs).items():
         effect = find(key, chain.effects)
         # Taken off like the zero, or no part of an expected reading.
@@ -206,10 +210,11 @@ def cause_errors(chain: Chain, designs: Designs, motion: Motion) -> Iterator[tup
             continue
         alone = replace(chain, values={key: params}, magnet=None, parts=Parts())
         error = np.broadcast_to(alone.error(motion), (designs.count, len(motion)))
-        yield key, _zeroed(error, motion)
+        yield key, zeroed_deg(error, motion)
 
 
-def _zeroed(error_rad: Array, motion: Motion) -> Array:
+def zeroed_deg(error_rad: Array, motion: Motion) -> Array:
+    """Errors (designs, n) [rad] in degrees, without their mean over the readings at 25 C: that is calibrated away."""
     calibrated = np.abs(motion.temperature_c - NOMINAL_C) < 1e-9
     mean = np.angle(np.mean(np.exp(1j * error_rad[..., calibrated]), axis=-1, keepdims=True))
     return np.asarray(np.degrees((error_rad - mean + np.pi) % (2.0 * np.pi) - np.pi))

@@ -82,19 +82,15 @@ class DesignStudy:
     def figures(self, designs: Designs, numbers: IntArray) -> dict[str, Array]:
         """Columns (designs,) by name; ``numbers`` (designs,) are what the mounting errors are drawn from."""
         demand, motion = self.demand, self.demand.motion(POINTS)
-        assert self.chain.magnet is not None
-        low, high = _field_span(designs, demand)
-        # The signal is weakest, and the noise largest in the angle, where the field is.
-        weakest = low / self.chain.magnet.nominal_mT
-        noise = self.chain.values.get(NOISE.name, {}).get("rms_deg", 0.0) / weakest
+        low, high = field_span(designs, demand)
         figures = {
             "field_mT": designs.nominal_mT,
             "field_low_mT": low,
             "field_high_mT": high,
             "margin_mT": np.minimum(low - demand.window_mT[0], demand.window_mT[1] - high),
             "error_deg": np.max(np.abs(errors_deg(self.chain, designs, motion)), axis=1),
-            "stray_error_deg": np.degrees(np.arcsin(np.minimum(1.0 / low, 1.0))),
-            "resolution_bits": np.log2(360.0 / (_ROUNDING * np.maximum(noise, 1e-9))),
+            "stray_error_deg": stray_error_deg(low),
+            "resolution_bits": resolution_bits(noise_deg(self.chain, low)),
         }
         for cause, error in cause_errors(self.chain, designs, motion):
             figures[f"error_deg.{cause}"] = np.max(np.abs(error), axis=1)
@@ -107,7 +103,7 @@ class DesignStudy:
         uniforms = np.concatenate([np.random.default_rng(s).random((count, MOUNTING_UNIFORMS)) for s in streams])
         parts = designs.spread(count, lambda placement: mounted(placement, demand.tolerance, uniforms))
         error = np.max(np.abs(errors_deg(self.chain, parts, demand.motion(MOUNTED_POINTS))), axis=1)
-        low, high = _field_span(parts, demand)
+        low, high = field_span(parts, demand)
         good = (error <= demand.max_error_deg) & (low >= demand.window_mT[0]) & (high <= demand.window_mT[1])
         return {
             "yield": good.reshape(-1, count).mean(axis=1),
@@ -115,7 +111,24 @@ class DesignStudy:
         }
 
 
-def _field_span(designs: Designs, demand: Demand) -> tuple[Array, Array]:
+def noise_deg(chain: Chain, low_mT: Array) -> Array:
+    """RMS of the noise in the angle [deg] where the field is weakest (designs,) [mT]: there the signal is, too."""
+    assert chain.magnet is not None
+    weakest = low_mT / chain.magnet.nominal_mT
+    return np.asarray(chain.values.get(NOISE.name, {}).get("rms_deg", 0.0) / weakest)
+
+
+def stray_error_deg(low_mT: Array) -> Array:
+    """The most that a stray field of 1 mT turns a field of this strength (designs,) [mT] by [deg]."""
+    return np.asarray(np.degrees(np.arcsin(np.minimum(1.0 / low_mT, 1.0))))
+
+
+def resolution_bits(noise: Array) -> Array:
+    """Bits of the grid of a turn whose rounding scatters as much as this noise (designs,) [deg RMS]."""
+    return np.asarray(np.log2(360.0 / (_ROUNDING * np.maximum(noise, 1e-9))))
+
+
+def field_span(designs: Designs, demand: Demand) -> tuple[Array, Array]:
     """Lowest and highest in-plane field (designs,) [mT] over the turn and the temperatures."""
     field = designs.in_plane_mT(np.arange(POINTS) * TAU / POINTS)
     warm = designs.warm(np.asarray(demand.temperatures))

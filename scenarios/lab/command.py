@@ -1,0 +1,47 @@
+"""``halltwin lab``: serve the page until Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+import threading
+import webbrowser
+from pathlib import Path
+
+from scenarios.lab import twins
+from scenarios.lab.server import Server
+from scenarios.lab.session import Session
+from twin.errors import UserError
+from twin.limits import require_within
+
+
+def run(*, twin: str | None, port: int, browser: bool) -> None:
+    """The command. Ctrl-C is its only end, and so none of a failure. Raises UserError."""
+    require_within("port", port, 0, 65535, whole=True)
+    sensor = twins.named(twin or twins.DEFAULT)
+    with tempfile.TemporaryDirectory(prefix="halltwin-lab-") as folder:
+        session = Session(sensor, Path(folder))
+        with _listening(session, port) as server:
+            print(f"the page is at {server.guard.url}\nonly this machine can open it; Ctrl-C ends it", flush=True)
+            if browser and _has_screen():
+                threading.Thread(target=webbrowser.open, args=(server.guard.url,), daemon=True).start()
+            try:
+                server.serve_forever(poll_interval=0.2)
+            except KeyboardInterrupt:
+                return
+
+
+def _listening(session: Session, port: int) -> Server:
+    """The server at its port. Raises UserError where that is taken."""
+    try:
+        return Server(session.routes(), port=port)
+    except OSError as error:
+        raise UserError(
+            f"port {port}: cannot be listened at ({error.strerror}); give another, or none for a free one"
+        ) from None
+
+
+def _has_screen() -> bool:
+    """Whether a browser would open a window; without a screen it would take the terminal instead."""
+    return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

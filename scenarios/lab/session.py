@@ -1,0 +1,133 @@
+"""What one page works on, and what the server answers to it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+
+from diagnosis.report.provenance import version
+from scenarios.lab import twins
+from scenarios.lab.design import (
+    Asked,
+    alone,
+    asked_of,
+    at_once,
+    command_of,
+    error_map,
+    over_tolerances,
+    sizes_of,
+    study_of,
+)
+from scenarios.lab.server import Reply, Routes, Upload
+from scenarios.lab.twins import Sensor
+from scenarios.studies.design.space import TOLERANCES
+from twin.angles import Array
+from twin.catalogue import find
+from twin.errors import UserError
+from twin.magnet.magnet import SMALLEST_MM, Shape
+from twin.magnet.materials import GRADES
+from twin.presets import preset_names
+
+_MAP = 24
+"""Sizes and air gaps of the map."""
+_SIZES_MM, _GAPS_MM = (3.0, 12.0), (0.4, 5.0)
+_WALL = 0.95
+"""The widest bore of a ring, in diameters: see ``twin/magnet/magnet.py``."""
+
+
+class Session:
+    """The sensor that the page works on; requests come from several threads at once."""
+
+    def __init__(self, sensor: Sensor, folder: Path) -> None:
+        self._folder = folder
+        self._lock = threading.Lock()
+        self._sensor = sensor
+
+    def routes(self) -> Routes:
+        """What the server answers."""
+        return Routes(
+            gets={"start": lambda: Reply.of(self.start())},
+            asks={
+                "design/at-once": self._at_once,
+                "design/causes": self._causes,
+                "design/study": self._over_tolerances,
+                "design/map": self._map,
+                "twin/preset": self._preset,
+                "twin/save": self._save,
+            },
+            uploads={"twin/open": self._open_twin},
+        )
+
+    def start(self) -> dict[str, Any]:
+        """What the page begins with."""
+        return {
+            "version": version(),
+            "presets": list(preset_names()),
+            "shapes": list(get_args(Shape)),
+            "grades": {
+                name: {"remanence_T": one.remanence_T, "percent_per_K": one.percent_per_K, "source": one.source}
+                for name, one in GRADES.items()
+            },
+            "tolerances": dict(TOLERANCES),
+            "twin": self._told(),
+        }
+
+    def _told(self) -> dict[str, Any]:
+        """The sensor, with the causes in it and what each is in words."""
+        chain = self._sensor.chain
+        named = {key: find(key, chain.effects).signature for key in chain.values}
+        return {**self._sensor.told(), "causes": named}
+
+    def _asked(self, content: Any) -> tuple[Sensor, Asked]:
+        """The sensor as it is, and the design that is asked about. Raises UserError."""
+        sensor = self._sensor
+        sensor.begins()
+        return sensor, asked_of(content)
+
+    def _at_once(self, content: Any) -> Reply:
+        sensor, asked = self._asked(content)
+        told = at_once(sensor.chain, asked)
+        return Reply.of({**told, "command": command_of(asked, sensor=sensor.name)})
+
+    def _causes(self, content: Any) -> Reply:
+        sensor, asked = self._asked(content)
+        return Reply.of({"alone_deg": alone(sensor.chain, asked)})
+
+    def _over_tolerances(self, content: Any) -> Reply:
+        sensor, asked = self._asked(content)
+        return Reply.of(over_tolerances(study_of(sensor.chain, asked.demand), asked))
+
+    def _map(self, content: Any) -> Reply:
+        sensor, asked = self._asked(content)
+        sizes, gaps = _spans(asked)
+        return Reply.of(error_map(sensor.chain, asked, sizes, gaps))
+
+    def _preset(self, content: Any) -> Reply:
+        return self._take(twins.preset(content.get("name") if isinstance(content, Mapping) else content))
+
+    def _open_twin(self, upload: Upload) -> Reply:
+        with self._lock:
+            return self._take(twins.dropped(upload, self._folder))
+
+    def _take(self, sensor: Sensor) -> Reply:
+        self._sensor = sensor
+        return Reply.of(self._told())
+
+    def _save(self, content: Any) -> Reply:
+        sensor, asked = self._asked(content)
+        return Reply(twins.saved(sensor, asked), "application/toml", download="twin.toml")
+
+
+def _spans(asked: Asked) -> tuple[Array, Array]:
+    """Sizes and air gaps [mm] of the map, wide enough to hold the design. Raises UserError where there is none."""
+    size = float(np.asarray(getattr(asked.magnet, sizes_of(asked.magnet)[0])))
+    gap = float(np.asarray(asked.placement.air_gap_mm))
+    smallest = float(asked.magnet.bore_mm) / _WALL if asked.magnet.shape == "ring" else SMALLEST_MM
+    low, high = max(min(_SIZES_MM[0], size), smallest), max(_SIZES_MM[1], size, 2.0 * smallest)
+    if not low < high:
+        raise UserError(f"magnet of {size:g} mm has no others beside it on a map; expected a smaller bore")
+    return np.linspace(low, high, _MAP), np.linspace(min(_GAPS_MM[0], gap), max(_GAPS_MM[1], gap), _MAP)

@@ -1,0 +1,73 @@
+"""The twin that the page works on: from the command line, a preset, or a file that was dropped; and saved again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from scenarios.commands.marks import marked
+from scenarios.lab.design import Asked, asked_at
+from scenarios.lab.dropped import kept
+from scenarios.lab.server import Upload
+from scenarios.studies.design.check import twin_at
+from twin.chain import Chain
+from twin.errors import UserError
+from twin.extensions import effects_with
+from twin.files import read_twin, twin_text
+from twin.magnet.assembly import Assembly
+from twin.presets import read_preset, read_twin_or_preset
+
+DEFAULT = "imc-14bit"
+"""As ``halltwin design`` has it."""
+LARGEST_TWIN_BYTES = 2_000_000
+"""A twin of a thousand turns takes 0.1 MB."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sensor:
+    """A twin, and the name or path that the command line knows it by."""
+
+    name: str
+    chain: Chain
+
+    def begins(self) -> Asked:
+        """The design that the page begins with. Raises UserError where there is no magnet."""
+        if self.chain.magnet is None:
+            raise UserError(
+                f"{self.name}: has no [magnet], so its figures are stated at no field; give a twin that has one"
+            )
+        return asked_at(self.chain.magnet)
+
+    def told(self) -> dict[str, Any]:
+        """What the page says of it; ``design`` is where it begins, or ``no_design`` why there is none."""
+        try:
+            begun: dict[str, Any] = {"design": self.begins().to_dict()}
+        except UserError as error:
+            begun = {"design": None, "no_design": str(error)}
+        return {"name": self.name, **begun}
+
+
+def named(name: str) -> Sensor:
+    """A preset, or a twin file of the command line's. Raises TwinError."""
+    return Sensor(name, read_twin_or_preset(name, effects=effects_with()))
+
+
+def preset(name: Any) -> Sensor:
+    """A preset that was chosen on the page: a name alone, never a path. Raises TwinError."""
+    return Sensor(str(name), read_preset(str(name), effects=effects_with()))
+
+
+def dropped(upload: Upload, folder: Path) -> Sensor:
+    """A twin file that was dropped on the page. Raises TwinError."""
+    path, name = kept(upload, folder, stem="twin", endings=(".toml",), most=LARGEST_TWIN_BYTES)
+    try:
+        return Sensor(name, read_twin(path, effects=effects_with()))
+    except UserError as error:
+        raise UserError(str(error).replace(path.name, name)) from None
+
+
+def saved(sensor: Sensor, asked: Asked) -> bytes:
+    """The twin file of a design: the sensor with that magnet in that place."""
+    text = twin_text(twin_at(sensor.chain, Assembly(asked.magnet, asked.placement)))
+    return marked(Path("twin.toml"), text.encode())

@@ -1,0 +1,75 @@
+"""How fast the page follows a hand: from a move of the pointer to the redraw, the whole chain at 360 angles between.
+
+    python -m tests.benchmarks.lab [moves]
+
+A headless Chromium drags the magnet of the page; the page itself notes when the pointer moved and when everything that
+follows from it was drawn. Beside it, the time that the program alone takes for an answer.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from tests.scenarios.lab.browser import BROWSER, WHY_SKIPPED, browsing, opened
+from tests.scenarios.lab.dragging import DRAG_TIMES
+from tests.scenarios.lab.serving import Client, serving
+
+_FRAME_S = 1.0 / 60.0
+
+
+def dragged(client: Client, folder: Path, moves: int) -> list[float]:
+    """Milliseconds from move to redraw, of so many moves at sixty a second."""
+    with browsing(folder) as browser:
+        page = opened(browser, client.server.guard.url, folder)
+        page.until("document.querySelector('#map-plot rect') && !document.querySelector('#figures.waiting')")
+        x, y = page.middle("#side [data-part=magnet] .south")
+        page.mouse("mousePressed", x, y)
+        for step in range(moves):
+            due = time.monotonic() + _FRAME_S
+            turn = 2.0 * math.pi * step / 60.0
+            page.mouse("mouseMoved", x + 12.0 * math.sin(turn), y + 20.0 * math.sin(0.7 * turn))
+            time.sleep(max(due - time.monotonic(), 0.0))
+        page.mouse("mouseReleased", x, y)
+        time.sleep(0.5)
+        times: list[float] = page.of(DRAG_TIMES)
+        return times
+
+
+def answered(client: Client, times: int) -> list[float]:
+    """Milliseconds that the program takes for an answer, connection and JSON included."""
+    design = client.ask("start").json["twin"]["design"]
+    taken = []
+    for step in range(times):
+        design["placement"]["air_gap_mm"] = 1.0 + 2.0 * step / times
+        start = time.perf_counter()
+        json.loads(client.ask("design/at-once", design).content)
+        taken.append(1e3 * (time.perf_counter() - start))
+    return taken
+
+
+def main() -> None:
+    """Measure and tell."""
+    moves = int(sys.argv[1]) if len(sys.argv) > 1 else 300
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "server").mkdir()
+        with serving(folder / "server") as client:
+            rows = {"the program alone": answered(client, moves)}
+            if BROWSER is None:
+                print(WHY_SKIPPED)
+            else:
+                rows["drag to redraw"] = dragged(client, folder, moves)
+    for what, taken in rows.items():
+        median, high = np.quantile(taken, [0.5, 0.95])
+        print(f"{what}: median {median:.1f} ms, 95 % within {high:.1f} ms, {len(taken)} times")
+
+
+if __name__ == "__main__":
+    main()

@@ -93,18 +93,21 @@ def run(
         show(answer)
     finally:
         # Whatever becomes of what is printed: the search took minutes.
-        files.write(
-            {
-                outputs.json: lambda: json_text(answer),
-                outputs.report: lambda: page(found.discovery, answer),
-                outputs.extended: lambda: twin_text(found.extended),
-                outputs.plot: found.plot,
-            }
-        )
+        files.write(contents_of(found, answer, outputs))
     files.tell_written()
     if _interrupted(answer):
         raise SystemExit(INTERRUPTED)
     raise_found(words, in_explanation(answer))
+
+
+def contents_of(found: Explanation, answer: Mapping[str, Any], outputs: Outputs) -> dict[Path | None, Any]:
+    """What each output holds; ``answer`` is that of ``found`` as plain values."""
+    return {
+        outputs.json: lambda: json_text(answer),
+        outputs.report: lambda: page(found.discovery, answer),
+        outputs.extended: lambda: twin_text(found.extended),
+        outputs.plot: found.plot,
+    }
 
 
 def _check_one_by_one(outputs: Outputs, known: Known) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import tempfile
@@ -9,20 +10,21 @@ import threading
 import webbrowser
 from pathlib import Path
 
-from scenarios.lab import twins
+from scenarios.lab import sweeps, twins
 from scenarios.lab.server import Server
 from scenarios.lab.session import Session
 from twin.errors import UserError
 from twin.limits import require_within
 
 
-def run(*, twin: str | None, port: int, browser: bool) -> None:
+def run(sweep: str | None, *, twin: str | None, port: int, browser: bool) -> None:
     """The command. Ctrl-C is its only end, and so none of a failure. Raises UserError."""
     require_within("port", port, 0, 65535, whole=True)
     sensor = twins.named(twin or twins.DEFAULT)
+    recording = None if sweep is None else sweeps.named(sweep)
     with tempfile.TemporaryDirectory(prefix="halltwin-lab-") as folder:
-        session = Session(sensor, Path(folder))
-        with _listening(session, port) as server:
+        session = Session(sensor, Path(folder), sweep=recording, held=twin is not None)
+        with contextlib.closing(session), _listening(session, port) as server:
             print(f"the page is at {server.guard.url}\nonly this machine can open it; Ctrl-C ends it", flush=True)
             if browser and _has_screen():
                 threading.Thread(target=webbrowser.open, args=(server.guard.url,), daemon=True).start()

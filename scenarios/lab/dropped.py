@@ -5,6 +5,7 @@ The name from outside is shown and written into answers; it is never a path.
 
 from __future__ import annotations
 
+import secrets
 import shutil
 from pathlib import Path
 
@@ -27,7 +28,10 @@ def kept(
         raise UserError(f"{name}: expected a file ending in {' or '.join(endings)}; drop one that does")
     if most is not None and upload.size > most:
         raise UserError(f"{name}: holds more than {most / 1e6:g} MB; expected a smaller file")
-    path, left = folder / f"{stem}{ending}", upload.size
+    for before in folder.glob(f"{stem}-*"):
+        before.unlink(missing_ok=True)
+    # No name of a user's holds this one, so that messages can be told which file is meant: see as_called.
+    path, left = folder / f"{stem}-{secrets.token_hex(8)}{ending}", upload.size
     with path.open("wb") as out:
         while left:
             block = upload.stream.read(min(left, _BLOCK_BYTES))
@@ -45,6 +49,11 @@ def plain_name(given: str) -> str:
     if given.startswith((".", "-")):
         raise UserError(f"{shown(given)}: begins with '{given[0]}'; rename the file and drop it again")
     return given
+
+
+def as_called(error: UserError, path: Path, name: str) -> UserError:
+    """The error of reading a dropped file, with the name that the file came with."""
+    return UserError(str(error).replace(str(path), name).replace(path.name, name))
 
 
 def emptied(folder: Path) -> Path:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, get_args
 
 import numpy as np
 
 from diagnosis.report.provenance import version
-from scenarios.lab import twins
+from scenarios.lab import sweeps, twins
 from scenarios.lab.design import (
     Asked,
     alone,
@@ -22,7 +23,11 @@ from scenarios.lab.design import (
     sizes_of,
     study_of,
 )
+from scenarios.lab.dropped import emptied
+from scenarios.lab.explain_worker import ANSWER, EXTENDED, REPORT
+from scenarios.lab.explaining import Explaining, question_of
 from scenarios.lab.server import Reply, Routes, Upload
+from scenarios.lab.sweeps import Recording
 from scenarios.lab.twins import Sensor
 from scenarios.studies.design.space import TOLERANCES
 from twin.angles import Array
@@ -31,26 +36,38 @@ from twin.errors import UserError
 from twin.magnet.magnet import SMALLEST_MM, Shape
 from twin.magnet.materials import GRADES
 from twin.presets import preset_names
+from twin.shown import shown
 
 _MAP = 24
 """Sizes and air gaps of the map."""
 _SIZES_MM, _GAPS_MM = (3.0, 12.0), (0.4, 5.0)
+_KINDS = {ANSWER: "application/json", REPORT: "text/html; charset=utf-8", EXTENDED: "application/toml"}
+"""Files of an answer; each is saved, none is shown: a report has styles of its own, which the page's policy forbids."""
 _WALL = 0.95
 """The widest bore of a ring, in diameters: see ``twin/magnet/magnet.py``."""
 
 
 class Session:
-    """The sensor that the page works on; requests come from several threads at once."""
+    """The sensor and the sweep that the page works on; requests come from several threads at once."""
 
-    def __init__(self, sensor: Sensor, folder: Path) -> None:
+    def __init__(self, sensor: Sensor, folder: Path, *, sweep: Recording | None = None, held: bool = False) -> None:
         self._folder = folder
         self._lock = threading.Lock()
-        self._sensor = sensor
+        self._sensor, self._sweep, self._held = sensor, sweep, held
+        self._explaining = Explaining()
+
+    def close(self) -> None:
+        """End whatever still runs."""
+        self._explaining.close()
 
     def routes(self) -> Routes:
         """What the server answers."""
         return Routes(
-            gets={"start": lambda: Reply.of(self.start())},
+            gets={
+                "start": lambda: Reply.of(self.start()),
+                "explain": lambda: Reply.of(self._explaining.stand()),
+                **{f"explain/{name}": partial(self._file, name) for name in _KINDS},
+            },
             asks={
                 "design/at-once": self._at_once,
                 "design/causes": self._causes,
@@ -58,8 +75,11 @@ class Session:
                 "design/map": self._map,
                 "twin/preset": self._preset,
                 "twin/save": self._save,
+                "explain/begin": self._begin,
+                "explain/stop": self._stop,
+                "explain/look": lambda content: Reply.of(self._explaining.look(content)),
             },
-            uploads={"twin/open": self._open_twin},
+            uploads={"twin/open": self._open_twin, "sweep/open": self._open_sweep},
         )
 
     def start(self) -> dict[str, Any]:
@@ -74,6 +94,8 @@ class Session:
             },
             "tolerances": dict(TOLERANCES),
             "twin": self._told(),
+            "sweep": None if self._sweep is None else self._sweep.name,
+            "held": self._held,
         }
 
     def _told(self) -> dict[str, Any]:
@@ -120,6 +142,36 @@ class Session:
     def _save(self, content: Any) -> Reply:
         sensor, asked = self._asked(content)
         return Reply(twins.saved(sensor, asked), "application/toml", download="twin.toml")
+
+    # ---- the sweep -----------------------------------------------------------------------------------------------
+
+    def _open_sweep(self, upload: Upload) -> Reply:
+        with self._lock:
+            # What explains the sweep before reads the file that the new one takes the place of.
+            self._explaining.close()
+            self._sweep = sweeps.dropped(upload, self._folder)
+        return Reply.of({"name": self._sweep.name})
+
+    def _begin(self, content: Any) -> Reply:
+        """Explain the sweep, held against the sensor's twin or not. Raises UserError."""
+        if not isinstance(content, Mapping) or not isinstance(content.get("held"), bool):
+            raise UserError(f"a question is {shown(content)}; expected held, true or false")
+        with self._lock:
+            sweep, sensor = self._sweep, self._sensor
+            if sweep is None:
+                raise UserError("there is no sweep; open one first")
+            twin = (sensor.source, sensor.name) if content["held"] else None
+            folder = emptied(self._folder / "answer")
+            self._explaining.begin(question_of(sweep.path, sweep.name, shown=sweep.shown, twin=twin, folder=folder))
+        return Reply.of(self._explaining.stand())
+
+    def _stop(self, content: Any) -> Reply:
+        self._explaining.stop()
+        return Reply.of(self._explaining.stand())
+
+    def _file(self, name: str) -> Reply:
+        content, download = self._explaining.file(name)
+        return Reply(content, _KINDS[name], download=download)
 
 
 def _spans(asked: Asked) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from scenarios.commands.marks import marked
 from scenarios.lab.design import Asked, asked_at
-from scenarios.lab.dropped import kept
+from scenarios.lab.dropped import as_called, kept
 from scenarios.lab.server import Upload
 from scenarios.studies.design.check import twin_at
 from twin.chain import Chain
@@ -26,10 +26,11 @@ LARGEST_TWIN_BYTES = 2_000_000
 
 @dataclass(frozen=True, eq=False)
 class Sensor:
-    """A twin, and the name or path that the command line knows it by."""
+    """A twin, the name or path that the command line knows it by, and where it is read from."""
 
     name: str
     chain: Chain
+    source: str
 
     def begins(self) -> Asked:
         """The design that the page begins with. Raises UserError where there is no magnet."""
@@ -50,21 +51,21 @@ class Sensor:
 
 def named(name: str) -> Sensor:
     """A preset, or a twin file of the command line's. Raises TwinError."""
-    return Sensor(name, read_twin_or_preset(name, effects=effects_with()))
+    return Sensor(name, read_twin_or_preset(name, effects=effects_with()), name)
 
 
 def preset(name: Any) -> Sensor:
     """A preset that was chosen on the page: a name alone, never a path. Raises TwinError."""
-    return Sensor(str(name), read_preset(str(name), effects=effects_with()))
+    return Sensor(str(name), read_preset(str(name), effects=effects_with()), str(name))
 
 
 def dropped(upload: Upload, folder: Path) -> Sensor:
     """A twin file that was dropped on the page. Raises TwinError."""
     path, name = kept(upload, folder, stem="twin", endings=(".toml",), most=LARGEST_TWIN_BYTES)
     try:
-        return Sensor(name, read_twin(path, effects=effects_with()))
+        return Sensor(name, read_twin(path, effects=effects_with()), str(path))
     except UserError as error:
-        raise UserError(str(error).replace(path.name, name)) from None
+        raise as_called(error, path, name) from None
 
 
 def saved(sensor: Sensor, asked: Asked) -> bytes:

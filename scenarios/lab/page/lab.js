@@ -1,6 +1,7 @@
 // Where the page begins: what the program tells at the start, the twin that is chosen, files that are dropped.
 import { ask, complain, got, handOver, say } from "./ask.js";
 import { DesignView } from "./design.js";
+import { ExplainView } from "./explain.js";
 
 const by = (id) => document.getElementById(id);
 
@@ -21,6 +22,30 @@ function showTwin(twin) {
   select.value = twin.name;
 }
 
+const VIEWS = ["design", "explain"];
+
+/** Show one of the views; its name stands behind the address, so that a reload comes back to it. */
+function show(name) {
+  const chosen = VIEWS.includes(name) ? name : VIEWS[0];
+  for (const view of VIEWS) {
+    by(view).classList.toggle("away", view !== chosen);
+    const tab = by(`tab-${view}`);
+    tab.setAttribute("aria-selected", String(view === chosen));
+    tab.tabIndex = view === chosen ? 0 : -1;
+  }
+  history.replaceState(null, "", `#${chosen}`);
+}
+
+VIEWS.forEach((view, k) => {
+  by(`tab-${view}`).addEventListener("click", () => show(view));
+  by(`tab-${view}`).addEventListener("keydown", (event) => {
+    if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
+    const next = VIEWS[(k + (event.key === "ArrowRight" ? 1 : VIEWS.length - 1)) % VIEWS.length];
+    show(next);
+    by(`tab-${next}`).focus();
+  });
+});
+
 await trying(async () => {
   const start = await got("start");
   const select = by("preset");
@@ -28,11 +53,19 @@ await trying(async () => {
   const design = new DesignView(start);
   const take = (twin) => {
     showTwin(twin);
+    by("held-name").textContent = twin.name;
     design.begin(twin);
   };
   take(start.twin);
+  show(start.sweep ? "explain" : location.hash.slice(1));
+  const explain = new ExplainView(start);
   select.addEventListener("change", () => trying(async () => take(await ask("twin/preset", { name: select.value }))));
-  const open = (file) => trying(async () => {
+  const open = (file) => (file.name.toLowerCase().endsWith(".toml") ? openTwin(file) : openSweep(file));
+  const openSweep = (file) => {
+    show("explain");
+    return explain.open(file);
+  };
+  const openTwin = (file) => trying(async () => {
     say(`reading ${file.name}`);
     take(await handOver("twin/open", file));
     say(`opened ${file.name}`);
@@ -41,7 +74,7 @@ await trying(async () => {
   by("twin-file").addEventListener("change", (event) => {
     const [file] = event.target.files;
     event.target.value = "";
-    if (file) open(file);
+    if (file) openTwin(file);
   });
   document.addEventListener("dragover", (event) => {
     event.preventDefault();

@@ -107,17 +107,21 @@ export class Plot {
     if (this.stale && this.drawn) return;
     this.drawn = true;
     const { width } = this;
-    const largest = Math.max(0, ...(data.lines ?? []).flatMap((line) => line.values.map(Math.abs)));
+    const largest = Math.max(0, ...(data.limits ? (data.lines ?? []).flatMap((line) => line.values.map(Math.abs)) : []));
     // A limit far beyond the curves would press them flat: it is left out, and its name with it.
     const limits = (data.limits ?? []).filter((limit) => limit.value <= 2.5 * largest);
-    const entries = [...(data.lines ?? []).filter((one) => one.name), ...(data.bands ?? []), ...limits];
+    const entries = [...(data.dots ?? []).filter((one) => one.name), ...(data.columns ?? []).filter((one) => one.name), ...(data.lines ?? []).filter((one) => one.name), ...(data.bands ?? []), ...limits];
     const legend = legendOf(entries, width);
     const top = legend.height + 22;
     const frame = { left: 46, right: width - 8, top, bottom: top + this.height };
     const span = data.span ?? this.span;
     const values = (data.lines ?? []).flatMap((line) => line.values);
+    for (const { y, low: bottom, high: top_ } of [...(data.dots ?? []), ...(data.columns ?? [])]) {
+      for (const part of [y, bottom, top_]) if (part) for (const value of part) values.push(value);
+    }
     const reach = [...values, ...(data.bars ?? []).map((bar) => bar.value), ...(data.include ?? []), ...limits.flatMap((limit) => (limit.both ? [limit.value, -limit.value] : [limit.value]))];
-    let [low, high] = [Math.min(...reach), Math.max(...reach)];
+    let [low, high] = [Infinity, -Infinity];
+    for (const value of reach) [low, high] = [Math.min(low, value), Math.max(high, value)];
     if (!(high > low)) [low, high] = [low - 1e-3, high + 1e-3];
     const marks = ticks(low, high, 5);
     [low, high] = [marks[0], marks[marks.length - 1]];
@@ -153,9 +157,19 @@ export class Plot {
       drawn.append(element("title", {}, `order ${bar.at}: ${shown(bar.value)} deg`));
       parts.push(drawn);
     }
+    for (const { style, x, y } of data.dots ?? []) {
+      let path = "";
+      for (let k = 0; k < x.length; k += 1) path += `M${px(x[k]).toFixed(1)} ${py(y[k]).toFixed(1)}h0`;
+      parts.push(element("path", { class: `dots ${style}${x.length < 150 ? " few" : ""}`, d: path }));
+    }
+    for (const { style, x, low: bottom, high: top_ } of data.columns ?? []) {
+      let path = "";
+      for (let k = 0; k < x.length; k += 1) path += `M${(px(x[k]) - 0.5).toFixed(1)} ${(py(top_[k]) - 0.5).toFixed(1)}h1V${(py(bottom[k]) + 0.5).toFixed(1)}h-1z`;
+      parts.push(element("path", { class: `band-${style}`, d: path }));
+    }
     for (const line of data.lines ?? []) {
       const count = line.values.length;
-      const at = line.at ?? ((k) => span[0] + ((span[1] - span[0]) * k) / (count - (line.open ? 0 : 1)));
+      const at = line.x ? (k) => line.x[k] : ((k) => span[0] + ((span[1] - span[0]) * k) / (count - (line.open ? 0 : 1)));
       let path = "";
       for (let k = 0; k < count; k += 1) path += `${k ? "L" : "M"}${px(at(k)).toFixed(1)} ${py(line.values[k]).toFixed(1)}`;
       parts.push(element("path", { class: `line ${line.style}`, d: path }));
@@ -190,7 +204,9 @@ function legendOf(entries, width) {
   for (const entry of entries) {
     const long = 41 + wide(entry.name);
     if (x && x + long - 14 > width) [x, y] = [0, y + 17];
-    const sample = entry.values ? element("path", { class: `line ${entry.style}`, d: `M${x} ${y - 4}h22` })
+    const sample = entry.y ? element("path", { class: `dots few ${entry.style}`, d: `M${x + 4} ${y - 4}h0m7 0h0m7 0h0` })
+      : entry.high && entry.x ? element("rect", { class: `band-${entry.style}`, x, y: y - 10, width: 22, height: 11 })
+      : entry.values ? element("path", { class: `line ${entry.style}`, d: `M${x} ${y - 4}h22` })
       : "low" in entry ? element("rect", { class: entry.style, x, y: y - 10, width: 22, height: 11 })
       : element("path", { class: "limit", d: `M${x} ${y - 4}h22` });
     group.append(sample, text(entry.name, { x: x + 27, y }));

@@ -199,3 +199,33 @@ def complaints(browser: Browser) -> list[str]:
         if entry.get("level") == "error" and "status of 400" not in entry["text"]:
             found.append(entry["text"])
     return found
+
+
+def file_in(folder: Path, name: str) -> bytes:
+    """What the browser has saved there; a download takes its time."""
+    for _ in range(400):
+        if (folder / name).is_file() and not list(folder.glob("*.crdownload")):
+            content = (folder / name).read_bytes()
+            (folder / name).unlink()
+            return content
+        time.sleep(0.05)
+    raise AssertionError(f"{name} was not saved; there is {[path.name for path in folder.iterdir()]}")
+
+
+def cut_off(page: Page, width: int) -> list[str]:
+    """What of the page lies beyond the sides of the screen: the page itself, and words in its pictures."""
+    script = """[...document.querySelectorAll("svg text")].filter((one) => { const own = one.getBoundingClientRect();
+        return own.width && (own.right > innerWidth + 1 || own.left < -1); }).map((one) => one.textContent)"""
+    found: list[str] = page.of(script)
+    reach = page.of("document.documentElement.scrollWidth")
+    return found + ([f"the page, {reach} wide"] if reach > width else [])
+
+
+def unnamed(page: Page, within: str) -> list[str]:
+    """Controls and pictures within some parts of the page of which a screen reader has nothing to say."""
+    script = """[...document.querySelectorAll("%s")].flatMap((part) => [...part.querySelectorAll(
+        "input:not([hidden]), select, button, svg:not([aria-hidden]), [tabindex]")])
+        .filter((one) => !(one.labels?.length || one.ariaLabel || one.textContent.trim()))
+        .map((one) => one.outerHTML)"""
+    found: list[str] = page.of(script % within)
+    return found

@@ -73,7 +73,8 @@ class Client:
 @contextlib.contextmanager
 def serving(folder: Path, twin: str = twins.DEFAULT) -> Iterator[Client]:
     """A server with a folder of its own, until the end."""
-    server = Server(Session(twins.named(twin), folder).routes())
+    session = Session(twins.named(twin), folder)
+    server = Server(session.routes())
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True)
     thread.start()
     try:
@@ -82,3 +83,4 @@ def serving(folder: Path, twin: str = twins.DEFAULT) -> Iterator[Client]:
         server.shutdown()
         server.server_close()
         thread.join()
+        session.close()

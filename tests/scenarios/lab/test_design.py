@@ -6,7 +6,6 @@ import csv
 import json
 import shlex
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +18,6 @@ from tests.command_line import halltwin
 from tests.scenarios.lab.serving import Client, serving
 from twin.files import from_dict
 from twin.motion import Motion
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with serving(tmp_path_factory.mktemp("lab")) as one:
-        yield one
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import quote
 
@@ -13,12 +12,6 @@ from scenarios.lab import server as served
 from scenarios.lab.assets import ASSETS
 from scenarios.lab.guard import ADDRESS
 from tests.scenarios.lab.serving import Client, serving
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with serving(tmp_path_factory.mktemp("lab")) as one:
-        yield one
 
 
 def test_the_page_gets_what_it_is_made_of(client: Client) -> None:

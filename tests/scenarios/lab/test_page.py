@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from tests.scenarios.lab.browser import BROWSER, WHY_SKIPPED, Page, browsing, complaints, opened
+from tests.scenarios.lab.browser import BROWSER, WHY_SKIPPED, Page, complaints, cut_off, file_in, unnamed
 from tests.scenarios.lab.dragging import DRAG_TIMES, drag
-from tests.scenarios.lab.serving import Client, serving
+from tests.scenarios.lab.serving import Client
 
 pytestmark = pytest.mark.skipif(BROWSER is None, reason=WHY_SKIPPED)
 AT_REST = "document.querySelector('#map-plot rect') && !document.querySelector('#figures.waiting')"
@@ -26,23 +26,6 @@ COMMAND = "document.getElementById('command').textContent"
 ERROR = "[...document.querySelectorAll('#error-plot path.line.first')].pop().getAttribute('d')"
 
 
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with serving(tmp_path_factory.mktemp("lab")) as one:
-        yield one
-
-
-@pytest.fixture(scope="module")
-def saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("saved")
-
-
-@pytest.fixture(scope="module")
-def page(client: Client, saved: Path) -> Iterator[Page]:
-    with browsing(saved) as browser:
-        yield opened(browser, client.server.guard.url, saved)
-
-
 @pytest.fixture(autouse=True)
 def fresh(page: Page) -> Iterator[None]:
     """The page as it begins; and nothing that the browser complains of at the end."""
@@ -54,19 +37,6 @@ def fresh(page: Page) -> Iterator[None]:
     page.until(AT_REST)
     yield
     assert complaints(page.browser) == []
-
-
-def file_in(folder: Path, name: str) -> bytes:
-    """What the browser has saved there; a download takes its time."""
-    import time
-
-    for _ in range(200):
-        if (folder / name).is_file() and not list(folder.glob("*.crdownload")):
-            content = (folder / name).read_bytes()
-            (folder / name).unlink()
-            return content
-        time.sleep(0.05)
-    raise AssertionError(f"{name} was not saved; there is {[path.name for path in folder.iterdir()]}")
 
 
 def test_it_shows_the_figures_of_the_program(page: Page, client: Client) -> None:
@@ -130,12 +100,7 @@ def test_keys_do_what_the_pointer_does(page: Page) -> None:
 
 
 def test_every_control_and_picture_has_a_name(page: Page) -> None:
-    unnamed = page.of(
-        """[...document.querySelectorAll("input:not([hidden]), select, button, svg:not([aria-hidden]), [tabindex]")]
-        .filter((one) => !(one.labels?.length || one.ariaLabel || one.textContent.trim()))
-        .map((one) => one.outerHTML)"""
-    )
-    assert unnamed == []
+    assert unnamed(page, "header, #design") == []
 
 
 def test_a_wrong_number_is_one_line_and_the_next_right_one_takes_it_away(page: Page) -> None:
@@ -194,12 +159,7 @@ def test_a_picture_is_saved_as_it_is_seen(page: Page, saved: Path) -> None:
 @pytest.mark.parametrize("width", [1280, 390])
 def test_nothing_is_wider_than_the_screen(page: Page, width: int, dark: bool, tmp_path: Path) -> None:
     page.resize(width, dark=dark)
-    assert page.of("document.documentElement.scrollWidth") <= width
-    cut = page.of(
-        """[...document.querySelectorAll("svg text")].filter((one) => { const own = one.getBoundingClientRect();
-        return own.width && (own.right > innerWidth + 1 || own.left < -1); }).map((one) => one.textContent)"""
-    )
-    assert cut == []
+    assert cut_off(page, width) == []
     page.picture(tmp_path / "page.png")
     content = (tmp_path / "page.png").read_bytes()
     assert int.from_bytes(content[16:20], "big") == width

@@ -1,0 +1,242 @@
+"""An explained sweep as the page shows it: the error in layers that are taken off and put on, its factors moved.
+
+All is the answer's own: the residual is that of its fit, with another chain in the place of the one found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from diagnosis import Explanation
+from diagnosis.discovery.finding import Finding
+from diagnosis.discovery.fitting.intervals import intervals_95
+from diagnosis.discovery.fitting.linearised_chain import Linear
+from diagnosis.discovery.marks.row_masks import raw_residual
+from diagnosis.report.data import Readings, binned, highest_order, noise_level, readings, spectrum, two_ways
+from diagnosis.report.pictures import angle_bins
+from scenarios.lab.columns import drawn, highest_in_columns
+from twin.angles import Array
+from twin.baseline import FACTORS
+from twin.catalogue import find
+from twin.chain import Chain
+from twin.effect import BoolArray
+from twin.errors import UserError
+from twin.mechanics.zero import ZERO
+from twin.motion import RPM
+from twin.shown import shown
+
+MODEL = "error model"
+"""The layer of the paper's factors, or of a given twin's."""
+_WIDEST = 4000
+_BEFORE = tuple(dict.fromkeys(factor.key for factor in FACTORS if factor.effect is not ZERO))
+_REACH, _PAST_NULL = 10.0, 1.25
+"""A slider goes so many half widths of the 95 % interval to either side; or so far past the value of no effect, if that
+is more."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """What is to be drawn: layers that are off, values that were moved, over what, in how many pixels' columns."""
+
+    off: frozenset[str]
+    values: Mapping[str, float]
+    over: str
+    width: int
+    with_spectrum: bool
+
+
+def look_of(content: Any) -> Look:
+    """The look that the page asks for. Raises UserError."""
+    known = {"off", "values", "over", "width", "spectrum"}
+    if not isinstance(content, Mapping) or set(content) != known:
+        raise UserError(f"a look is {shown(content)}; expected {', '.join(sorted(known))}")
+    off, values, width = content["off"], content["values"], content["width"]
+    if not isinstance(off, list) or not all(isinstance(one, str) for one in off):
+        raise UserError(f"off is {shown(off)}; expected names of layers")
+    plain = isinstance(values, Mapping) and all(
+        isinstance(value, int | float) and not isinstance(value, bool) for value in values.values()
+    )
+    if not plain:
+        raise UserError(f"values is {shown(values)}; expected numbers by name")
+    if isinstance(width, bool) or not isinstance(width, int) or not 10 <= width <= _WIDEST:
+        raise UserError(f"width is {shown(width)}; expected a whole number from 10 to {_WIDEST}")
+    return Look(
+        off=frozenset(off),
+        values={name: float(value) for name, value in values.items()},
+        over=str(content["over"]),
+        width=width,
+        with_spectrum=bool(content["spectrum"]),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Layers:
+    """The layers of one answer."""
+
+    explained: Explanation
+
+    @cached_property
+    def read(self) -> Readings:
+        """Its readings."""
+        return readings(self.explained.discovery)
+
+    @cached_property
+    def across(self) -> dict[str, tuple[Array, str]]:
+        """What a residual can be drawn over: the values (n,) and their name with the unit."""
+        motion, (clock, clock_name) = self.read.motion, self.read.clock
+        found = {"angle": (self.read.angle_deg, "shaft angle / deg"), "clock": (clock, clock_name)}
+        if "temperature_c" in motion.columns and np.ptp(motion.temperature_c) > 0.0:
+            found["temperature"] = (motion.temperature_c, "temperature / °C")
+        speed = np.abs(motion.speed_rad_s) / RPM
+        if np.ptp(speed) > 1e-6 * np.max(speed, initial=0.0):
+            found["speed"] = (speed, "speed / rpm")
+        return found
+
+    @cached_property
+    def causes(self) -> dict[str, Finding]:
+        """The causes found, by a name of their own: of two with one name the second bears a number."""
+        found: dict[str, Finding] = {}
+        for cause in self.explained.discovery.causes:
+            name, count = cause.name, 2
+            while name in found:
+                name, count = f"{cause.name} {count}", count + 1
+            found[name] = cause
+        return found
+
+    def told(self) -> dict[str, Any]:
+        """What the page begins with: layers with what each leaves, factors with their intervals, axes."""
+        fit = self.explained.discovery.fit
+        whole = self._rms(self.residual_deg(fit.chain))
+        layers = [
+            {
+                "name": MODEL,
+                "without_deg": self._rms(self.residual_deg(fit.chain.without(*_BEFORE))),
+                "fixed": None,
+            }
+        ]
+        for name, cause in self.causes.items():
+            fixed = self._fixed(cause)
+            without = None if fixed else self._rms(self.residual_deg(fit.chain.without(*cause.keys)))
+            layers.append({"name": name, "without_deg": without, "fixed": fixed})
+        return {
+            "layers": layers,
+            "all_deg": whole,
+            "measured_deg": self._rms(self.read.error_deg),
+            "sliders": self._sliders(),
+            "across": {key: name for key, (_, name) in self.across.items()},
+            "readings": len(self.read.error_deg),
+            "two_ways": two_ways(self.read.motion),
+        }
+
+    def _fixed(self, cause: Finding) -> str | None:
+        """Why a cause cannot be taken off the mean of the readings; None where it can."""
+        effect = find(cause.keys[0], self.explained.discovery.fit.chain.effects)
+        if cause.rows:
+            return "it touches single readings, which no picture of the mean holds"
+        if effect.footprint == "spread":
+            return "it makes the readings scatter and leaves their mean"
+        if not set(cause.keys) & set(self.explained.discovery.fit.chain.values):
+            return "it acts on the words as sent; the readings shown are decoded"
+        return None
+
+    def _sliders(self) -> list[dict[str, Any]]:
+        """Every fitted number of factors and causes, with the span that its slider goes over."""
+        fit = self.explained.discovery.fit
+        labels = {(factor.key, factor.param): factor.label for factor in FACTORS}
+        owners = {key: name for name, cause in self.causes.items() for key in cause.keys}
+        sliders = []
+        for (key, name), (low, high) in intervals_95(fit).items():
+            effect = find(key, fit.chain.effects)
+            param = effect.params[name]
+            value = fit.chain.values.get(key, {}).get(name, param.null)
+            if np.ndim(value) or param.role in ("per turn", "random"):
+                continue
+            half = 0.5 * (high - low) if np.isfinite(high - low) else 0.0
+            # A zero has no value of no effect: it goes as far as the error does.
+            away = self._rms(self.read.error_deg) if effect is ZERO else _PAST_NULL * abs(float(value) - param.null)
+            reach = max(_REACH * half, away, 1e-6)
+            sliders.append(
+                {
+                    "name": f"{key}.{name}",
+                    "label": labels.get((key, name), name.rpartition("_")[0].replace("_", " ") or name),
+                    "of": owners.get(key, MODEL),
+                    "unit": "" if param.unit == "1" else param.unit,
+                    "value": float(value),
+                    "low": float(max(value - reach, param.lower)),
+                    "high": float(min(value + reach, param.upper)),
+                    "half_width": float(half),
+                }
+            )
+        return sliders
+
+    def look(self, look: Look) -> dict[str, Any]:
+        """The residual with some layers off and some values moved, for a picture of so many columns. Raises UserError.
+
+        With all layers off it is the error as measured, less its mean.
+        """
+        if look.over not in self.across:
+            raise UserError(f"over is {shown(look.over)}; expected one of {', '.join(self.across)}")
+        left = self.residual_deg(self._chain(look))
+        x, name = self.across[look.over]
+        plain = self.read.plain
+        span = (0.0, 360.0) if look.over == "angle" else (float(x.min()), float(x.max()))
+        told: dict[str, Any] = {"x": name, "span": span, "rms_deg": self._rms(left), "ways": {}}
+        for way, mask in self._ways(plain):
+            told["ways"][way] = drawn(x[mask], left[mask], span, look.width)
+            if look.over == "angle":
+                at, mean = binned(x[mask], left[mask], angle_bins(int(np.count_nonzero(mask)), each=5))
+                kept = np.isfinite(mean)
+                told["ways"][way]["mean"] = {"x": at[kept].round(3).tolist(), "y": mean[kept].round(6).tolist()}
+        if look.with_spectrum:
+            told["spectrum"] = self._spectrum(left, look.width)
+        return told
+
+    def residual_deg(self, chain: Chain) -> Array:
+        """What another chain in the place of the fitted one leaves of each reading [deg] (n,)."""
+        found = self.explained.discovery
+        fit = found.fit
+        if chain is fit.chain:
+            return self.read.after_deg
+        linear = Linear(chain, fit.observations.motion, blur=fit.weighting.blur, observables=1)
+        return np.asarray(np.degrees(raw_residual(replace(fit, chain=chain, linear=linear), found.sweep)))
+
+    def _chain(self, look: Look) -> Chain:
+        """The extended twin with what was moved, less what is off. Raises UserError."""
+        chain = self.explained.discovery.fit.chain
+        known = {one["name"] for one in self._sliders()} if look.values else set()
+        for name, value in look.values.items():
+            if name not in known:
+                raise UserError(f"values has {shown(name)}; expected some of {', '.join(sorted(known))}")
+            key, _, param = name.rpartition(".")
+            chain = chain.with_effect(key, **{param: value})
+        unknown = look.off - {MODEL, *self.causes}
+        if unknown:
+            raise UserError(f"off has {shown(min(unknown))}; expected some of {', '.join((MODEL, *self.causes))}")
+        off = [
+            key for name in look.off - {MODEL} if not self._fixed(self.causes[name]) for key in self.causes[name].keys
+        ]
+        return chain.without(*off, *(_BEFORE if MODEL in look.off else ()))
+
+    def _ways(self, plain: BoolArray) -> list[tuple[str, BoolArray]]:
+        direction = self.read.motion.direction
+        found = [("forward", plain & (direction >= 0.0)), ("backward", plain & (direction < 0.0))]
+        return [(name, mask) for name, mask in found if mask.any()]
+
+    def _spectrum(self, left: Array, width: int) -> dict[str, Any]:
+        motion = self.read.motion
+        order, amplitude = spectrum(motion, left, self.read.plain, highest_order(motion, ()))
+        level = noise_level(order, amplitude, both=two_ways(motion))
+        at, high, noise = highest_in_columns(order, amplitude, level, max(width // 2, 10))
+        return {
+            "order": at.round(4).tolist(),
+            "amplitude_deg": high.round(7).tolist(),
+            "noise_deg": noise.round(7).tolist(),
+        }
+
+    def _rms(self, values: Array) -> float:
+        return float(np.sqrt(np.mean(values[self.read.plain] ** 2)))

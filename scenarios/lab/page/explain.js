@@ -1,0 +1,184 @@
+// The explain view: a sweep goes in, the search is watched and stopped, and the answer is taken apart layer by layer.
+import { ask, complain, got, handOver, latest, say } from "./ask.js";
+import { layerName, Layers, Numbers } from "./layers.js";
+import { become, Plot, shown } from "./plot.js";
+import { picture, save, showCommand } from "./save.js";
+
+const WATCHED_EVERY_MS = 250;
+const AT_REST_MS = 160;
+const COLOURS = { forward: "first", backward: "second" };
+const by = (id) => document.getElementById(id);
+const node = (name, properties = {}, ...children) => {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+};
+
+export class ExplainView {
+  constructor(start) {
+    this.sweep = start.sweep;
+    by("held").checked = start.held;
+    this.residual = new Plot(by("residual-plot"), { span: [0, 360], x: "", y: "error left / deg", height: 260, words: "What is left of each reading's error" });
+    this.spectrum = new Plot(by("spectrum-plot"), { span: [0, 1], x: "order / cycles a turn", y: "amplitude / deg", height: 170, words: "Spectrum of what is left" });
+    this.look = latest((whole) => this.askLook(whole));
+    by("open-sweep").addEventListener("click", () => by("sweep-file").click());
+    by("sweep-file").addEventListener("change", (event) => {
+      const [file] = event.target.files;
+      event.target.value = "";
+      if (file) this.open(file);
+    });
+    by("begin").addEventListener("click", () => this.begin());
+    by("stop").addEventListener("click", () => this.trying(async () => this.show(await ask("explain/stop", {}))));
+    by("over").addEventListener("change", () => this.changed());
+    by("all-on").addEventListener("click", () => {
+      this.layers.allOn();
+      this.numbers.fitted();
+      this.changed();
+    });
+    by("copy-explain").addEventListener("click", async () => {
+      await navigator.clipboard.writeText(by("explain-command").textContent);
+      say("copied the command line");
+    });
+    for (const name of ["residual", "spectrum"]) {
+      const button = document.querySelector(`[data-of=${name}]`);
+      button.setAttribute("aria-label", `Save the picture of ${name} as SVG`);
+      button.addEventListener("click", () => save(picture(this[name].svg), `halltwin_${name}.svg`));
+    }
+    this.ready();
+    if (start.sweep) this.begin();
+  }
+
+  async trying(work) {
+    try {
+      complain(null);
+      await work();
+    } catch (error) {
+      complain(error.message);
+      by("progress").textContent = "";
+    }
+  }
+
+  ready() {
+    by("sweep-name").textContent = this.sweep ?? "";
+    by("begin").disabled = !this.sweep;
+  }
+
+  open(file) {
+    return this.trying(async () => {
+      by("progress").textContent = `reading ${file.name}`;
+      this.sweep = (await handOver("sweep/open", file)).name;
+      this.ready();
+      await this.begin();
+    });
+  }
+
+  begin() {
+    return this.trying(async () => {
+      by("answer").hidden = true;
+      this.show(await ask("explain/begin", { held: by("held").checked }));
+    });
+  }
+
+  /** Show where the search stands, and look again while it works. */
+  show(stand) {
+    clearTimeout(this.timer);
+    const working = stand.state === "working";
+    by("begin").hidden = working;
+    by("stop").hidden = !working;
+    by("open-sweep").disabled = working;
+    if (working) {
+      by("progress").textContent = `${Math.floor(stand.elapsed_s)} s: ${stand.words}`;
+      this.timer = setTimeout(() => this.trying(async () => this.show(await got("explain"))), WATCHED_EVERY_MS);
+      return;
+    }
+    by("progress").textContent = "";
+    if (stand.state === "failed") complain(stand.words);
+    if (stand.state === "done") this.take(stand.answer);
+  }
+
+  take(answer) {
+    this.answer = answer;
+    const names = answer.causes.filter((one) => one.name !== "unnamed").map((one) => one.name.replaceAll("_", " "));
+    by("answer-verdict").textContent = `${answer.verdict[0].toUpperCase()}${answer.verdict.slice(1)}${names.length ? `: ${names.join(", ")}` : ""}`;
+    by("answer-words").textContent = `${answer.verdict_words.replaceAll("->", "→")} ${answer.name}: ${answer.sweep_words}.`;
+    become(by("answer-figures"), figures(answer));
+    this.layers = new Layers(by("layers"), answer, () => this.changed());
+    this.numbers = new Numbers(by("factors"), answer, () => this.changed());
+    const names_ = { angle: "shaft angle", clock: answer.across.clock.split(" / ")[0], temperature: "temperature", speed: "speed" };
+    by("over").replaceChildren(...Object.keys(answer.across).map((key) => node("option", { value: key, textContent: names_[key] })));
+    by("cause-list").replaceChildren(...causes(answer));
+    by("next").replaceChildren(...(answer.next.length ? answer.next : [{ do: "nothing: all that can be searched for was", why: "" }]).map((one) => node("li", {}, capital(one.do), node("small", { textContent: one.why.replaceAll("_", " ") }))));
+    showCommand(by("explain-command"), answer.command);
+    by("answer").hidden = false;
+    by("spectrum-note").textContent = `${answer.two_ways ? "Order 0: half of the step between the directions. " : ""}Dashed: what noise alone passes at one order in twenty.`;
+    this.look(true);
+    say(`explained ${answer.name}`);
+  }
+
+  /** Something was switched or moved: what is left follows at once, its spectrum when all rests. */
+  changed() {
+    this.look(false);
+    clearTimeout(this.rest);
+    this.rest = setTimeout(() => this.look(true), AT_REST_MS);
+  }
+
+  async askLook(whole) {
+    const start = performance.now();
+    const width = Math.round(Math.max(this.residual.host.clientWidth - 54, 50));
+    const told = await ask("explain/look", { off: [...this.layers.off], values: this.numbers.values, over: by("over").value, width, spectrum: whole });
+    complain(null);
+    this.layers.show(told.rms_deg);
+    this.drawResidual(told);
+    if (told.spectrum) this.drawSpectrum(told.spectrum);
+    performance.measure("look to redraw", { start, end: performance.now() });
+  }
+
+  drawResidual(told) {
+    const off = [...this.layers.off].map((name) => layerName(name, this.answer.held_against));
+    by("residual-title").textContent = off.length ? `What is left without ${off.join(", ")}` : "What is left";
+    const [dots, columns, lines] = [[], [], []];
+    for (const [way, part] of Object.entries(told.ways)) {
+      const name = Object.keys(told.ways).length > 1 ? way : "readings";
+      (part.y ? dots : columns).push({ name, style: COLOURS[way], ...part });
+      if (part.mean) lines.push({ name: "", style: COLOURS[way], values: part.mean.y, x: part.mean.x });
+    }
+    const marks = told.x.startsWith("shaft angle") ? [0, 90, 180, 270, 360] : undefined;
+    this.residual.draw({ dots, columns, lines, x: told.x, span: told.span, marks, include: [0] });
+    const few = columns.length ? "Of the readings in each column of the picture the lowest and the highest. " : "";
+    by("residual-note").textContent = `${few}${lines.length ? "Lines: their mean." : ""}`;
+  }
+
+  drawSpectrum({ order, amplitude_deg: amplitude, noise_deg: noise }) {
+    const span = [Math.min(0, order[0]), order[order.length - 1]];
+    this.spectrum.draw({ span, include: [0], lines: [{ name: "left", style: "first", values: amplitude, x: order }, { name: "noise alone, at most", style: "ink dashed", values: noise, x: order }] });
+  }
+}
+
+const capital = (words) => words.charAt(0).toUpperCase() + words.slice(1);
+
+function figures(answer) {
+  const one = answer.figures;
+  const model = answer.held_against === "given twin" ? "the twin" : "the error model";
+  const cards = [
+    ["Error as measured", one.measured_deg, "deg RMS", "its zero taken off"],
+    [`Left by ${model}`, one.baseline_held_out_deg, "deg RMS", "on readings it never saw"],
+    ["Left by the extended twin", one.extended_held_out_deg, "deg RMS", "on readings it never saw"],
+    ["Closer by", one.gain, "times", "extended twin over that before"],
+    ["Noise floor", one.noise_floor_deg, "deg RMS", one.noise_floor_deg === null ? "no angle was read several times in a row" : "from repeated readings"],
+  ];
+  return cards.map(([name, value, unit, beside]) => node("div", {}, node("dt", { textContent: name }), node("dd", { className: "value" }, `${shown(value)} `, node("small", { textContent: unit })), node("dd", { className: "beside", textContent: beside })));
+}
+
+function causes(answer) {
+  const parts = answer.setup.map((words) => node("p", { className: "error", textContent: words }));
+  for (const words of answer.changed) parts.push(node("p", { textContent: capital(words.replaceAll("->", "→")) }));
+  for (const cause of answer.causes) {
+    parts.push(node("h4", { textContent: `${cause.name.replaceAll("_", " ")} (${cause.stage})` }));
+    for (const words of [...cause.parameters, `held-out RMS ${cause.held_out} deg, false alarm ${cause.false_alarm}`, ...cause.said]) parts.push(node("p", { textContent: words.replaceAll("->", "→") }));
+  }
+  if (!answer.causes.length) parts.push(node("p", { textContent: "No cause stands out of the noise." }));
+  const rows = answer.factors.map((row) => node("tr", {}, node("th", { scope: "row", textContent: row.label }), node("td", { className: "number", textContent: row.before }), node("td", { className: "number", textContent: row.after }), node("td", { textContent: row.flag })));
+  const head = node("thead", {}, node("tr", {}, ...["factor", "before", "with the causes", ""].map((words, k) => node("th", { scope: "col", textContent: words, className: k && k < 3 ? "number" : "" }))));
+  parts.push(node("h4", { textContent: "Factors of the error model" }), node("div", { className: "scroll" }, node("table", {}, head, node("tbody", {}, ...rows))));
+  return parts;
+}

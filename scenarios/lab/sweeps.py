@@ -1,0 +1,36 @@
+"""The sweep that the page explains: from the command line, or a file that was dropped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from scenarios.commands.inputs import ENDINGS, SweepFiles, sweep_paths
+from scenarios.lab.dropped import kept
+from scenarios.lab.server import Upload
+from twin.errors import UserError
+from twin.shown_name import shown_name, shown_path
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A sweep's file, what it is called, and how a command line would name it."""
+
+    path: Path
+    name: str
+    shown: str
+
+
+def named(name: str) -> Recording:
+    """The sweep of the command line, read once to see that it is one. Raises UserError."""
+    found = sweep_paths([name])
+    if len(found) != 1:
+        raise UserError(f"{name}: stands for {len(found)} sweeps; the page explains one: give one file")
+    SweepFiles([name]).recording(found[0])
+    return Recording(found[0], shown_name(found[0]), shown_path(found[0]))
+
+
+def dropped(upload: Upload, folder: Path) -> Recording:
+    """A file that was dropped on the page, not yet read. Raises UserError for what no sweep is called."""
+    path, name = kept(upload, folder, stem="sweep", endings=ENDINGS)
+    return Recording(path, name, name)

@@ -250,6 +250,18 @@ class Motion:
         return (moved + 1) / max(self.turns, 1e-9) if self.turns > 0.5 else float(moved + 1)
 
     @cached_property
+    def angles_in_a_turn(self) -> float:
+        """Angles of the turn at which there are readings, by the widest gap between two: all turns laid on one another.
+
+        Readings of many turns that do not fall on the same angles tell finer structure than those of one turn do.
+        """
+        if len(self) < 2:
+            return self.points_per_turn
+        places = np.sort(np.mod(self.shaft_rad, TAU))
+        widest = float(max(np.max(np.diff(places)), places[0] + TAU - places[-1]))
+        return max(self.points_per_turn, TAU / (widest + AT_ONE_ANGLE_RAD))
+
+    @cached_property
     def provides(self) -> frozenset[str]:
         """What effects may need of a motion and this one has: recorded columns, and properties of the protocol."""
         found = set(self.columns)

@@ -77,7 +77,8 @@ def sweeps_of(spins: Sequence[Spin]) -> list[Sweep]:
         calmer = [replace(log, found=log.found.kept(~out)) for log, out in zip(logs, parts, strict=True)]
         if all(log.found.rows.size >= FEWEST_ROWS for log in calmer):
             logs = calmer
-            fit = _fitted(logs)
+            # From one speed to another a shaft goes by all between: what of a torque grows with the speed shows there.
+            fit = _fitted(logs, most_growing=fit.growing)
     channels = all("vx" in log.spin.others for log in logs)
     torques = _torques(fit, told_by_channels=CHANNELS_TELL if channels else 0)
     ends = np.cumsum([0, *(log.found.rows.size for log in logs)])
@@ -95,7 +96,7 @@ def _checked(found: Turning, spin: Spin) -> Turning:
     return found
 
 
-def _fitted(logs: Sequence[_Log]) -> MotionFit:
+def _fitted(logs: Sequence[_Log], **known: Array) -> MotionFit:
     """The motion in all logs, one behind the other."""
     times, stretches, begins, number = [], [], 0.0, 0
     for log in logs:
@@ -105,7 +106,7 @@ def _fitted(logs: Sequence[_Log]) -> MotionFit:
         begins, number = float(times[-1][-1]) + 1.0, int(stretches[-1][-1]) + 1
     time, stretch = np.concatenate(times), np.concatenate(stretches)
     readings = np.concatenate([log.found.readings_rad for log in logs])
-    return fitted_motion(readings, time, runs(stretch))
+    return fitted_motion(readings, time, runs(stretch), **known)
 
 
 def _sweep(log: _Log, fit: MotionFit, own: slice, torques: tuple[Torque, ...]) -> Sweep:

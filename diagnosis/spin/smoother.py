@@ -51,7 +51,9 @@ class MotionFit:
     about it all. ``terms`` are the coefficients: cosine and sine of each order of the error [rad], of each order's
     torque [rad/s^2], of what of it grows with the speed [rad/s^2 for each rad/s] and of what reverses with it [rad/s^2]
     up to the order 4, and of an error of order 2 that grows with the speed [rad for each rad/s]. ``separable``
-    (orders,): whether a torque that makes all that is seen of an order would be told.
+    (orders,): whether a torque that makes all that is seen of an order would be told. ``growing`` (orders up to 4,) is
+    the standard deviation of what of a torque grows with the speed [rad/s^2 for each rad/s], infinite where that is not
+    told.
     """
 
     shaft_rad: Array
@@ -62,6 +64,10 @@ class MotionFit:
     usable: BoolArray
     damping_per_s: float
     separable: BoolArray
+    growing: Array
+
+
+_ANY = np.full(HIGHEST_OF_FRICTION, np.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +83,8 @@ class _Estimate:
     damping_per_s: float = 0.0
     terms: Drawn | None = None
     separable: BoolArray = field(default_factory=lambda: np.zeros(HIGHEST_ORDER, dtype=bool))
+    growing: Array = field(default_factory=lambda: _ANY)
+    most_growing: Array = field(default_factory=lambda: _ANY)
 
     @cached_property
     def rates(self) -> tuple[Array, Array]:
@@ -100,7 +108,9 @@ class _Estimate:
         reduced = made.problem.reduced(log_penalty)
         separable = _separable(reduced, variance, usual)
         both_ways = bool(np.ptp(np.sign(self.rates[0])) > 0.0)
-        terms = _drawn(reduced, made.sd, variance, usual, separable, both_ways=both_ways)
+        terms, growing = _drawn(
+            reduced, made.sd, variance, usual, separable, both_ways=both_ways, most_growing=self.most_growing
+        )
         torques = slice(_OF_ERROR, _OF_FRICTION)
         start = made.problem.start + reduced.step - reduced.pulled @ terms.values
         smooth = made.problem.spline.design @ start
@@ -121,6 +131,7 @@ class _Estimate:
             variance=variance,
             terms=terms,
             separable=separable,
+            growing=growing,
         )
 
     def _with_columns(self) -> _Estimate:
@@ -134,7 +145,9 @@ class _Estimate:
         return replace(self, damping_per_s=damping, problem=replace(self.problem, columns=columns))
 
 
-def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]) -> MotionFit:
+def fitted_motion(
+    readings_rad: Array, time_s: Array, stretches: Sequence[slice], *, most_growing: Array = _ANY
+) -> MotionFit:
     """Estimate the motion behind unwrapped readings.
 
     Torques locked to the angle are told from the error of the sensor by the speeds of the motion alone: one speed does
@@ -146,6 +159,8 @@ def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]
         Readings (n,) [rad], continuous within each stretch, and their times [s], rising.
     stretches : sequence of slice
         The rows of each stretch, one behind the other.
+    most_growing : ndarray
+        What of each order's torque (orders up to 4,) is known to grow with the speed at most [rad/s^2 for each rad/s].
     """
     spline = Spline.over(time_s, stretches)
     problem = Problem(
@@ -159,7 +174,7 @@ def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]
     )
     start = problem.reduced(0.0).step
     shaft, free = np.asarray(spline.design @ start), np.full(_OF_ERROR, np.inf)
-    found = _Estimate(replace(problem, start=start), stretches, shaft, free)
+    found = _Estimate(replace(problem, start=start), stretches, shaft, free, most_growing=most_growing)
     # The first round finds the motion and its speed, which what torques do follows.
     found = found.next()
     if _several_speeds(found.rates[0]):
@@ -178,6 +193,7 @@ def fitted_motion(readings_rad: Array, time_s: Array, stretches: Sequence[slice]
         usable=found.problem.weights > 0.0,
         damping_per_s=found.damping_per_s,
         separable=found.separable,
+        growing=found.growing,
     )
 
 
@@ -224,17 +240,25 @@ def _told(reduced: Reduced, variance: float, sd: Array) -> BoolArray:
 
 
 def _drawn(
-    reduced: Reduced, sd: Array, variance: float, usual_rad_s: float, separable: BoolArray, *, both_ways: bool
-) -> Drawn:
+    reduced: Reduced,
+    sd: Array,
+    variance: float,
+    usual_rad_s: float,
+    separable: BoolArray,
+    *,
+    both_ways: bool,
+    most_growing: Array,
+) -> tuple[Drawn, Array]:
     """The coefficients, each order's torque by a scatter of its own; none where it would not be told.
 
     A torque that grows with the speed, as a modulated viscous friction does, is told from a constant one by three
-    speeds or more. Where it is not, it is taken to be there, half as large. One that reverses with the speed, as a
-    modulated dry friction does, is told by a log of ``both_ways``. An error of order 2 that grows with the speed, as of
-    a channel that is read late, is told by three speeds; where it is not, none is taken to be there.
+    speeds or more. Where it is not, it is taken to be there, half as large, but no larger than it is known to be at
+    most. One that reverses with the speed, as a modulated dry friction does, is told by a log of ``both_ways``. An
+    error of order 2 that grows with the speed, as of a channel that is read late, is told by three speeds; where it is
+    not, none is taken to be there.
     """
     if len(sd) <= _OF_ERROR:
-        return solved(reduced.normal, reduced.gradient, variance, sd)
+        return solved(reduced.normal, reduced.gradient, variance, sd), _ANY
     pairs = [np.arange(place, place + 2) for place in range(_OF_ERROR, len(sd), 2)]
     growing = pairs[HIGHEST_ORDER:][:HIGHEST_OF_FRICTION]
     reversing = pairs[HIGHEST_ORDER + HIGHEST_OF_FRICTION : -1] if both_ways else []
@@ -248,11 +272,14 @@ def _drawn(
         groups.append(pairs[-1])
     found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
     sd = found.sd.copy()
-    for group, beside in zip(growing, pairs, strict=False):
-        sd[group] = 0.5 * sd[beside] / usual_rad_s
+    for group, beside, most in zip(growing, pairs, most_growing, strict=False):
+        sd[group] = np.minimum(0.5 * sd[beside] / usual_rad_s, most)
     found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
-    told = [group for group in growing if np.mean(found.told[group]) > _TOLD]
-    return drawn(reduced.normal, reduced.gradient, variance, groups=[*groups, *told], sd=found.sd) if told else found
+    told = np.array([bool(np.mean(found.told[group]) > _TOLD) for group in growing])
+    more = [group for group, is_told in zip(growing, told, strict=True) if is_told]
+    if more:
+        found = drawn(reduced.normal, reduced.gradient, variance, groups=[*groups, *more], sd=found.sd)
+    return found, np.where(told, found.sd[[group[0] for group in growing]], np.inf)
 
 
 def _waves(shaft_rad: Array) -> Array:

@@ -59,6 +59,20 @@ SPINS: tuple[Mutation, ...] = tuple(
             f"{_EXPLAIN}::test_what_a_torque_may_have_done_is_in_the_intervals",
         ),
         (
+            "spins.the_way_between_two_speeds_is_forgotten",
+            "diagnosis/spin/of_log.py",
+            "fit = _fitted(logs, most_growing=fit.growing)",
+            "fit = _fitted(logs)",
+            f"{_EXPLAIN}::test_between_two_speeds_a_shaft_shows_what_of_a_torque_grows",
+        ),
+        (
+            "spins.turns_tell_no_more_than_one",
+            "twin/magnet/magnet_harmonic.py",
+            "2 * order < motion.angles_in_a_turn",
+            "2 * order < motion.points_per_turn",
+            "tests/twin/test_magnet_harmonic.py::test_turns_at_other_angles_tell_finer_structure",
+        ),
+        (
             "spins.lines_are_matched_to_torques",
             "diagnosis/discovery/search/screening.py",
             "weighted if observations.loose is None else observations.loose.whitened(weighted)",

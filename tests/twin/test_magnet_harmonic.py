@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from twin.chain import Chain
+from twin.magnet.magnet_harmonic import shapes
 from twin.motion import Motion
 
 TURN = Motion.from_angle(np.arange(720) * np.pi / 360.0)
@@ -25,3 +26,15 @@ def test_the_field_of_a_cylinder_beside_its_dipoles(order: int) -> None:
     np.testing.assert_allclose(x + 1j * y, field, atol=(1.0 + order) * share**2)
     x, y = Chain().with_effect("magnet_harmonic", **line).channels(TURN)
     np.testing.assert_allclose(np.hypot(x, y), 1.0, atol=1e-12)
+
+
+def orders(points_a_turn: float) -> set[float]:
+    """Orders that are looked for in forty turns with so many readings each."""
+    motion = Motion.from_angle(np.arange(int(40 * points_a_turn)) * 2.0 * np.pi / points_a_turn)
+    return {shape["order"] for shape in shapes(motion)}
+
+
+def test_turns_at_other_angles_tell_finer_structure() -> None:
+    """Eleven readings a turn, in each turn at the same angles, and about as many that are not."""
+    assert orders(11.0) == {3.0, 4.0, 5.0}
+    assert orders(11.1) == {3.0, 4.0, 5.0, 6.0, 7.0, 8.0}

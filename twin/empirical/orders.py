@@ -91,7 +91,7 @@ def _low_orders(
     orders: Sequence[int], extra: Sequence[Mapping[str, float]] = ({},)
 ) -> Callable[[Motion], Sequence[Mapping[str, float]]]:
     def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
-        return [{"order": float(k), **more} for more in extra for k in orders if 2 * k < motion.points_per_turn]
+        return [{"order": float(k), **more} for more in extra for k in orders if 2 * k < motion.angles_in_a_turn]
 
     return shapes
 

@@ -36,7 +36,7 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     # Of two periods the line of the offset is that of gain and phase of a single one.
-    return [{"periods": float(p)} for p in range(3, MOST_PERIODS + 1) if 6 * p < motion.points_per_turn]
+    return [{"periods": float(p)} for p in range(3, MOST_PERIODS + 1) if 6 * p < motion.angles_in_a_turn]
 
 
 def with_periods(effects: Sequence[Effect], periods: int, *, given: bool) -> tuple[Effect, ...]:

@@ -33,7 +33,7 @@ def field_size(signal: Array, motion: Motion, values: Parameters, rng: np.random
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     ratios = RADIUS_RATIOS if "vx" in motion.provides else RADIUS_RATIOS[:1]
-    orders = [order for order in range(3, 9) if 2 * order < motion.points_per_turn]
+    orders = [order for order in range(3, 9) if 2 * order < motion.angles_in_a_turn]
     return [{"order": float(order), "radius_ratio": ratio} for ratio in ratios for order in orders]
 
 

@@ -13,11 +13,13 @@ from diagnosis import Explanation, explain
 from diagnosis.progress import Progress
 from diagnosis.report.console import text
 from diagnosis.report.explain_plot import residual_figure
+from diagnosis.spin.of_log import sweeps_of
 from tests.command_line import halltwin
 from tests.hidden.spins.generator import draw
 from tests.hidden.spins.judging import left_by
 from tests.spin_answerer import explained
 from twin.errors import SweepError
+from twin.spin import Spin
 
 TIME = np.arange(0.0, 4.0, 0.001)
 
@@ -184,3 +186,15 @@ def test_what_a_torque_may_have_done_is_in_the_intervals() -> None:
     amplitude = at_one_speed().to_dict()["causes"][0]["parameters"]["amplitude_deg"]
     assert amplitude["low"] == 0.0
     assert amplitude["as_named"] == pytest.approx([0.5, 0.5], abs=0.01)
+
+
+def test_between_two_speeds_a_shaft_shows_what_of_a_torque_grows() -> None:
+    """Cogging of order 3 that does not grow, and a jerk from one speed to the other that the motion is not told in."""
+    columns = draw("two_speeds", seed=440220981).logs[0].columns
+    (sweep,) = sweeps_of([Spin.from_columns({name: columns[name] for name in ("time_s", "measured_deg")})])
+    assert sweep.set_aside > 400
+    assert sweep.estimated is not None
+    cogging = sweep.estimated.torques[2]
+    speed = float(np.median(np.radians(6.0 * np.abs(sweep.speed_rpm))))
+    assert cogging.scatter_rad_s2 > 100.0
+    assert cogging.growing_rad_s * speed < 0.1 * cogging.scatter_rad_s2

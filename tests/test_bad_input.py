@@ -65,7 +65,6 @@ UNUSABLE: dict[str, tuple[bytes, tuple[str, ...]]] = {
     "no header": (text(*ROWS), ("line 1", "header", "reference_deg")),
     "no header under a comment": (text("# measured today", *ROWS), ("line 2", "header")),
     "missing column": (text("reference_deg,angle", *ROWS), ("line 1", "measured_deg is missing", "angle", "rename")),
-    "names in capitals": (text("Reference_Deg,MEASURED_DEG", *ROWS), ("reference_deg is missing", "Reference_Deg")),
     "spaces between cells": (text(*(line.replace(",", " ") for line in LINES)), ("line 1", "is missing")),
     "words": (with_row("20.0,banana"), ("line 12", "measured_deg", "'banana'", "not a number")),
     "escape codes in a cell": (with_row("20.0,\x1b[31mred"), ("line 12", "measured_deg", "not a number")),

@@ -9,3 +9,7 @@ class UserError(ValueError):
 
 class SweepError(UserError):
     """The sweep cannot be used; the message says in one line where, what was found and what was expected."""
+
+
+class ColumnMissing(SweepError):
+    """A file has none of a sweep's names for a column that is needed: it may be a log under names of its own."""

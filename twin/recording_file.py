@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from twin.angles import Array
@@ -22,6 +23,7 @@ def read_recording(
     name: str | None = None,
     columns: str | None = None,
     pole_pairs: int | None = None,
+    guess: bool = False,
 ) -> Sweep | Spin:
     """Read a file as :meth:`twin.Sweep.read` does; one without ``reference_deg`` is a :class:`~twin.spin.Spin`.
 
@@ -35,10 +37,10 @@ def read_recording(
     def checked(found: Mapping[str, Array]) -> Sweep | Spin:
         return recording_of(found, name=called, pole_pairs=pole_pairs)
 
-    found = read_sweep(Path(path), checked, columns=columns, max_bytes=max_bytes, spin=True)
+    found, read_as = read_sweep(Path(path), checked, columns=columns, max_bytes=max_bytes, spin=True, guess=guess)
     used = ", ".join(found.columns)
     LOG.info("read %s: %d rows, %d rejected; %s", found.name, found.rows, len(found.rejected), used)
-    return found
+    return replace(found, read_as=read_as)
 
 
 def recording_of(columns: Mapping[str, Array], *, name: str, pole_pairs: int | None = None) -> Sweep | Spin:

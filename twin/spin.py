@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from twin.angles import Array, IntArray
 from twin.errors import SweepError
-from twin.logs.turn_seen import turns_seen
+from twin.logs.turn_seen import is_turn, turns_seen
 from twin.periods import checked_pole_pairs
 from twin.sweep_checks import as_recorded, check_both_channels, rows_in_use
+
+if TYPE_CHECKING:
+    from twin.logs.guess import Guess
 
 FEWEST_ROWS = 64
 """Readings of which a motion and an error are told; a turn of fewer tells neither."""
@@ -38,6 +41,8 @@ class Spin:
         Of the file, or of the kind of thing that the columns came from.
     row_numbers : ndarray
         Numbers (n,) of the used rows.
+    read_as : Guess or None
+        Of a log under names of its own: the statement by which its columns were read.
     """
 
     measured_deg: Array
@@ -46,6 +51,7 @@ class Spin:
     rejected: Mapping[int, str] = field(default_factory=dict)
     name: str = "spin"
     row_numbers: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    read_as: Guess | None = None
 
     def __repr__(self) -> str:
         return f"Spin({self.name!r}, {len(self)} readings, columns {', '.join(self.columns)})"
@@ -151,7 +157,8 @@ def why_no_turn(measured_deg: Array) -> str | None:
     span = float(np.ptp(travel))
     if span >= 360.0:
         return None
-    if seen := turns_seen(measured_deg):
+    seen = turns_seen(measured_deg)
+    if seen and not is_turn(360.0, seen[0]):
         return (
             f"these begin anew after {seen[0][0]:.4g} deg, which is no turn: another unit, or another number of "
             "counts, which halltwin doctor tells"

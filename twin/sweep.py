@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from twin.angles import Array, IntArray, radians
 from twin.bounded_input import LARGEST_SWEEP_BYTES
-from twin.errors import SweepError
+from twin.errors import ColumnMissing
 from twin.estimated_motion import EstimatedMotion
 from twin.log import LOG
 from twin.motion import RPM, Motion
@@ -31,6 +31,9 @@ from twin.sweep_checks import (
 from twin.sweep_columns import COLUMNS, REQUIRED, lacking
 from twin.sweep_file import write_columns
 from twin.sweep_reader import read_sweep
+
+if TYPE_CHECKING:
+    from twin.logs.guess import Guess
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +69,8 @@ class Sweep:
     estimated : EstimatedMotion or None
         Where no reference was recorded: ``reference_deg`` is the motion that was estimated from the readings, and this
         how freely the shaft may have moved beside it.
+    read_as : Guess or None
+        Of a log under names of its own: the statement by which its columns were read, see :mod:`twin.logs.statement`.
     """
 
     reference_deg: Array
@@ -91,6 +96,7 @@ class Sweep:
     recordings: Recordings | None = None
     senses: tuple[int, int] | None = None
     estimated: EstimatedMotion | None = None
+    read_as: Guess | None = None
 
     def __repr__(self) -> str:
         left = "" if self.rows == len(self) else f" of {self.rows}"
@@ -186,7 +192,7 @@ class Sweep:
         """
         if missing := lacking(columns):
             found = ", ".join(columns) or "none"
-            raise SweepError(f"{name}: {missing}; found {found}; rename the column or add it")
+            raise ColumnMissing(f"{name}: {missing}; found {found}; rename the column or add it")
         data = as_recorded(columns, name=name, required=REQUIRED)
         check_both_channels(data, name=name)
         keep, rejected = rows_in_use(data)
@@ -226,6 +232,7 @@ class Sweep:
         name: str | None = None,
         columns: str | None = None,
         pole_pairs: int | None = None,
+        guess: bool = False,
     ) -> Self:
         """Read a sweep file and check it.
 
@@ -241,6 +248,9 @@ class Sweep:
             ``"reference_deg=enc_counts*360/40000, measured_deg=angle:rad"``; None: it has those of a sweep.
         pole_pairs : int, optional
             See :meth:`from_columns`.
+        guess : bool, optional
+            Read a log under names of its own by the one statement that fits it, which ``read_as`` then holds; False:
+            such a log is refused with the statement as advice.
 
         Returns
         -------
@@ -254,10 +264,10 @@ class Sweep:
         """
         called = name or shown_name(path)
         checked = partial(cls.from_columns, name=called, pole_pairs=pole_pairs)
-        found = read_sweep(Path(path), checked, columns=columns, max_bytes=max_bytes)
+        found, read_as = read_sweep(Path(path), checked, columns=columns, max_bytes=max_bytes, guess=guess)
         used = ", ".join(found.columns)
         LOG.info("read %s: %d rows, %d rejected; %s", found.name, found.rows, len(found.rejected), used)
-        return found
+        return replace(found, read_as=read_as)
 
     def write(self, path: str | Path) -> None:
         """Write the used rows as CSV, whole or not at all.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from twin.bounded_input import LARGEST_SWEEP_BYTES, blocks, checked_bytes
 from twin.errors import SweepError, UserError
 from twin.sweep_columns import COLUMNS, TOLD_BY_SENSOR
 from twin.sweep_text import parse_csv
+
+if TYPE_CHECKING:
+    from twin.logs.guess import Guess
 
 RAISED_BY = "--max-size (max_bytes of Sweep.read)"
 _EXPECTED = "a sweep (CSV)"
@@ -28,22 +31,27 @@ def read_sweep(
     columns: str | None = None,
     max_bytes: int = LARGEST_SWEEP_BYTES,
     spin: bool = False,
-) -> _Checked:
-    """The columns of a file, checked: those of a sweep as they are, or a log's by the statement ``columns``.
+    guess: bool = False,
+) -> tuple[_Checked, Guess | None]:
+    """The columns of a file, checked: those of a sweep as they are, or a log's by a statement, which is given, too.
 
-    ``spin``: a log without a reference will do, see :func:`twin.sweep_columns.is_spin`.
+    The statement is ``columns``, or with ``guess`` the one that fits, if that is one alone. ``spin``: a log without a
+    reference will do, see :func:`twin.sweep_columns.is_spin`.
     The message for a file that is refused ends with the statement that would read it, if any. Raises SweepError.
     """
     if columns is not None:
         from twin.logs.read import read_log
 
-        return checked(read_log(path, columns=columns, max_bytes=max_bytes).columns)
+        log = read_log(path, columns=columns, max_bytes=max_bytes)
+        return checked(log.columns), log.guess
     try:
-        return checked(read_columns(path, max_bytes=max_bytes, spin=spin))
+        return checked(read_columns(path, max_bytes=max_bytes, spin=spin)), None
     except SweepError as error:
-        from twin.logs.read import refused
+        from twin.logs.unasked import Unread
 
-        raise SweepError(refused(path, str(error), spin=spin)) from None
+        unread = Unread(path, error, max_bytes=max_bytes, spin=spin)
+    log = unread.log()
+    return unread.checked(log, checked, guess=guess), log.guess
 
 
 def read_columns(path: Path, *, max_bytes: int = LARGEST_SWEEP_BYTES, spin: bool = False) -> dict[str, Array]:

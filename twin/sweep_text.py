@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.angles import Array
-from twin.errors import SweepError
+from twin.errors import ColumnMissing, SweepError
 from twin.sweep_columns import COLUMNS, TOLD_BY_SENSOR, lacking
 from twin.text_input import MISSING, cells_of, no_text, utf8_or_latin1
 
@@ -131,7 +131,7 @@ def _check_header(header: tuple[str, ...], *, where: str, spin: bool) -> None:
             raise SweepError(f"{where}: column {cell} stands {header.count(cell)} times; expected it once: keep one")
     missing = lacking(header, spin=spin)
     if missing:
-        raise SweepError(f"{where}: {missing}; found {found}; rename the column or add it")
+        raise ColumnMissing(f"{where}: {missing}; found {found}; rename the column or add it")
 
 
 def _shown(text: str, most: int = 40) -> str:

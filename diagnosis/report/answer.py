@@ -27,6 +27,7 @@ from diagnosis.report.as_read import as_read, values_as_read
 from diagnosis.report.as_well import as_well
 from diagnosis.report.facts import facts, recorded_columns
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
+from diagnosis.report.how_read import how_read
 from diagnosis.report.motion import TORQUE, motion_answer
 from diagnosis.report.over_class import moved, over_class
 from diagnosis.report.provenance import Provenance
@@ -161,6 +162,7 @@ def _sweep(found: Discovery) -> dict[str, Any]:
         **counts(found),
         "turns": found.fit.observations.motion.turns,
         "columns": recorded_columns(sweep),
+        **how_read(sweep),
         **facts(found),
         "output_bits": found.bits,
         "wild": len(numbers),

@@ -13,6 +13,7 @@ from diagnosis.factors.air_gaps import AirGaps, laws
 from diagnosis.factors.findings import Findings, one_sense
 from diagnosis.report import temperature_answer
 from diagnosis.report.gap_answer import gap_answer
+from diagnosis.report.how_read import how_read
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.row_counts import counts_of
 from diagnosis.thermal.over_temperature import OverTemperature
@@ -45,6 +46,7 @@ def one_sweep(found: Findings) -> dict[str, Any]:
     answer: dict[str, Any] = {
         "sweep": found.sweep.name,
         **counts_of(found.sweep, found.glitch_rows),
+        **how_read(found.sweep),
         "parameters": parameters(found),
         "senses": {
             "sensor": fit.senses.sensor,

@@ -109,7 +109,10 @@ def checked(record: Record, found_before: tuple[Finding, ...] = ()) -> Checked:
     ended = False
     alone = () if "reference_deg" in record.columns else WITHOUT_REFERENCE
     replaced = {kind for check in alone for kind in check.kinds}
+    told = {finding.kind for finding in found_before}
     for check in (*(one for one in CHECKS if not replaced & set(one.kinds)), *alone):
+        if told >= set(check.kinds):
+            continue
         if ended and "reference_deg" in check.needs:
             continue
         missing = tuple(name for name in check.needs if name not in record.columns)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.setup.finding import Finding
+from diagnosis.setup.missing_reference import hardly_a_reference
 from diagnosis.setup.ratio import POLE_PAIRS, pole_pairs
 from diagnosis.setup.record import FEWEST, Record
 from twin.angles import Array
@@ -93,6 +94,10 @@ def read_record(
     except OpenGuess as two:
         if two.example:
             raise
+        if two.alone:
+            guess = Guess(two.alone, unused=unused_by(two.alone, table))
+            found = _of(table, guess, name=name, refused=str(two))
+            return replace(found, findings=(hardly_a_reference(two.what, found.record, option=two.options[0]),))
         if two.fit:
             return _of_several(table, two, name=name)
         found = _by_names(table, name=name, refused=str(two))

@@ -123,6 +123,7 @@ def _sweep(log: _Log, fit: MotionFit, own: slice, torques: tuple[Torque, ...]) -
         rejected=spin.rejected,
         name=spin.name,
         row_numbers=spin.row_numbers[rows],
+        read_as=spin.read_as,
         set_aside=len(spin) - rows.size,
         estimated=EstimatedMotion(
             stretch=log.found.stretch,

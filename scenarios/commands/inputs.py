@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import glob
 import hashlib
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypedDict
 
 from scenarios.commands.fail_on import FoundError
 from twin.bounded_input import LARGEST_SWEEP_BYTES
 from twin.ending import ending_of
 from twin.errors import SweepError, UserError
+from twin.logs.asked_back import in_words
+from twin.logs.guess import Guess
 from twin.recording_file import read_recording
 from twin.shown_name import distinct_names
 from twin.spin import Spin
@@ -134,13 +138,42 @@ class SweepFiles:
 
     def read_one(self, path: Path, *, name: str | None = None) -> Sweep:
         """One of the files, under the name that messages call it by. Raises SweepError."""
-        return Sweep.read(path, max_bytes=self.max_bytes, name=name, columns=self.columns, pole_pairs=self.pole_pairs)
+        found = Sweep.read(path, name=name, pole_pairs=self.pole_pairs, **self._reading())
+        tell_how_read([found], self.columns)
+        return found
 
     def recording(self, path: Path, *, name: str | None = None) -> Sweep | Spin:
         """The same; one without a reference as the spin that it is."""
-        return read_recording(
-            path, max_bytes=self.max_bytes, name=name, columns=self.columns, pole_pairs=self.pole_pairs
-        )
+        found = read_recording(path, name=name, pole_pairs=self.pole_pairs, **self._reading())
+        tell_how_read([found], self.columns)
+        return found
+
+    def _reading(self) -> _Reading:
+        return {"max_bytes": self.max_bytes, "columns": self.columns, "guess": True}
+
+
+class _Reading(TypedDict):
+    """How a file is read, whatever it holds."""
+
+    max_bytes: int
+    columns: str | None
+    guess: bool
+
+
+def tell_how_read(recordings: Sequence[Sweep | Spin], stated: str | None) -> None:
+    """Print on stderr by which guess logs were read, those that were read alike in one line; none if it was stated."""
+    names: dict[Guess, list[str]] = {}
+    for recording in recordings if stated is None else ():
+        if recording.read_as is not None:
+            names.setdefault(recording.read_as, []).append(recording.name)
+    for guess, files in names.items():
+        said = [
+            f"read as {in_words([guess.text])}",
+            *(f"taken for granted: {note}" for note in guess.notes),
+            *([f"not used: {', '.join(guess.unused)}"] if guess.unused else []),
+        ]
+        more = f" and {len(files) - _NAMED} more" if len(files) > _NAMED else ""
+        print(f"{', '.join(files[:_NAMED])}{more}: {'; '.join(said)}", file=sys.stderr)
 
 
 def none_usable(first: UserError, files: int) -> SweepError:
@@ -168,10 +201,11 @@ def read_sweeps(
     first: SweepError | None = None
     for path, name in zip(paths, distinct_names(paths), strict=True):
         try:
-            sweeps.append(read(path, max_bytes=max_bytes, name=name, columns=columns))
+            sweeps.append(read(path, max_bytes=max_bytes, name=name, columns=columns, guess=True))
         except SweepError as error:
             first = first or error
             unusable.append(Unusable(name, str(error).removeprefix(f"{path}: ").removeprefix(f"{name}: ")))
     if first is not None and not sweeps:
         raise none_usable(first, len(paths))
+    tell_how_read(sweeps, columns)
     return SweepsRead(tuple(with_motion(sweeps)), tuple(unusable))

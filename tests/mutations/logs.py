@@ -196,9 +196,15 @@ LOGS: tuple[Mutation, ...] = (
         ),
         (
             "logs.of_counts_any_may_make_the_turn",
-            "if one.off_deg <= _CLEARLY * least + _ALIKE_DEG]",
+            "if one.off_deg <= _CLEARLY * least * one.step_deg + _ALIKE_DEG]",
             "]",
             "test_guess.py::test_of_geared_logs_drawn_at_random_none_is_misread",
+        ),
+        (
+            "logs.a_larger_unit_is_off_by_more",
+            "least = min((one.off_deg / one.step_deg for one in kept), default=0.0)",
+            "least = min((one.off_deg for one in kept), default=0.0) / max(one.step_deg for one in kept)",
+            "test_guess.py::test_radians_twenty_times_and_degrees_of_an_eighteenth_turn_are_asked_back",
         ),
     ),
     *of_one_file(

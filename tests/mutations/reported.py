@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.mutations.mutation import Mutation
+from tests.mutations.mutation import Mutation, of_one_file
 
 _CASES = "tests/reported_cases/test_reported_cases.py"
 _HARD = f"{_CASES}::test_a_draw_that_was_hard_is_answered_rightly"
@@ -130,5 +130,65 @@ REPORTED = (
         "np.clip(left, 0.0, 2.0 ** (1 - last))",
         "left",
         ("tests/twin/test_adc_inl.py::test_weights_that_are_off_do_what_a_successive_approximation_does[2-12.0]",),
+    ),
+    *of_one_file(
+        "twin/logs/unasked.py",
+        "tests/untidy/test_unasked.py",
+        (
+            "logs.a_sweeps_own_names_are_guessed_at",
+            "if guess and (_in_capitals(log.guess.columns) or not _bears_names_of_a_sweep(log.table)):",
+            "if guess:",
+            "::test_what_goes_against_a_sweeps_own_names_is_refused_and_told",
+        ),
+        (
+            "logs.capitals_are_other_names",
+            "_in_capitals(log.guess.columns) or ",
+            "",
+            "::test_names_in_capitals_are_those_names",
+        ),
+        (
+            "logs.a_statement_is_advised_that_is_refused_itself",
+            '            raise SweepError(f"{error} (read as {option})") from None',
+            "            raise SweepError(str(self.why)) from None",
+            "::test_what_is_wrong_under_the_statement_that_fits_is_told",
+        ),
+        (
+            "logs.a_long_log_is_not_looked_at",
+            "most = self.max_bytes if missing else LARGEST_READ_TWICE",
+            "most = LARGEST_READ_TWICE",
+            "::test_a_long_log_is_read_by_its_guess",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/candidates.py",
+        "tests/untidy/test_doubtful.py",
+        (
+            "logs.a_counter_of_rows_is_a_reference",
+            "        if unit.counts and counts_rows(table.values[k], said[k]):",
+            "        if False:",
+            "::test_a_counter_of_rows_is_asked_about",
+        ),
+        (
+            "logs.a_sensors_own_counts_are_its_reference",
+            "    if copied and one.weight < _NAMED_BOTH:",
+            "    if False:",
+            "::test_one_sensor_that_stands_twice_is_asked_about",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/angles.py",
+        "tests/untidy/test_doubtful.py",
+        (
+            "logs.a_zero_makes_another_sensor",
+            "    away = (wrap_deg(error - error[:1]) for error in (b - a, b + a))",
+            "    away = (wrap_deg(error) for error in (b - a, b + a))",
+            "::test_one_sensor_that_stands_twice_is_asked_about",
+        ),
+        (
+            "logs.a_short_span_beside_degrees_is_radians",
+            "            own.append(degrees)",
+            "            pass",
+            "::test_a_short_span_beside_degrees_is_in_degrees",
+        ),
     ),
 )

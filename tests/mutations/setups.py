@@ -252,7 +252,7 @@ SETUPS: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
-        "twin/logs/read.py",
+        "twin/logs/unasked.py",
         _SEVERAL,
         (
             "logs.a_comment_is_a_header",

@@ -115,6 +115,11 @@ def test_of_geared_logs_drawn_at_random_none_is_misread(tmp_path: Path) -> None:
     assert found.count("right") >= 51
 
 
+def test_radians_twenty_times_and_degrees_of_an_eighteenth_turn_are_asked_back(tmp_path: Path) -> None:
+    """A turn of 20 times 2 pi, or 360 deg of an angle of which 18 are a turn: the same numbers, and no name tells."""
+    assert outcome(3031296, tmp_path, drawn_geared) == "asked back"
+
+
 def test_electrical_degrees_are_read_and_said(tmp_path: Path) -> None:
     """An electrical angle of seven pole pairs, wrapped and in radians; its errors are those of the shaft."""
     path = tmp_path / "log.csv"

@@ -177,13 +177,6 @@ def test_rows_keep_their_numbers(tmp_path: Path) -> None:
     assert list(Sweep.read(tmp_path / "sweep.csv").rejected) == [5]
 
 
-@pytest.mark.parametrize("command", ["explain", "diagnose", "compensate", "monitor"])
-def test_a_log_that_is_refused_is_told_how_it_would_be_read(command: str, tmp_path: Path) -> None:
-    ended = halltwin(command, written(WAYS["counts of the sensor"], tmp_path))
-    assert ended.code == 2
-    assert OPTION.findall(ended.err) == ["reference_deg=ref_deg, measured_deg='AS5600 raw'*360/4096"]
-
-
 def test_diagnose_reads_a_log_by_columns(tmp_path: Path) -> None:
     """And finds in it what it finds in the sweep that import writes of it."""
     path = written(WAYS["counts of the sensor"], tmp_path)

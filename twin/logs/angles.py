@@ -42,8 +42,10 @@ _SMALL_STEP_DEG = 90.0
 """Rows that are typically closer than this follow one another round the turn."""
 _FULL_SHARE = 0.9
 """Share of a turn that wrapped counts fill at least."""
-_PRINTED = 1e-5
-"""Share of a turn to which an angle is printed at least."""
+_SAME_DEG = 1e-6
+"""Steps that differ by less are one: cells of a file have nine digits."""
+_DIGITS, _WHOLE = 6, 1e-9
+"""Digits behind the point of which the last is looked for, and how far from it what a file holds may lie."""
 _EVEN = 0.8
 """By how much an angle moves at least with the other, on a span that tells little of units."""
 _LEAST_DEG, _SHORT_DEG = 6.4, 100.0
@@ -84,6 +86,11 @@ def units_of_pair(reference: Array, measured: Array, *, said: tuple[Meaning, Mea
         return []
     reference, measured = reference[both], measured[both]
     options = [options_of(values, one) for values, one in zip((reference, measured), said, strict=True)]
+    degrees = AngleUnit("deg")
+    for own, one, other in zip(options, said, said[::-1], strict=True):
+        if one.unit is None and other.unit == UNITS["deg"] and degrees not in own:
+            # A short span looks like radians, but beside degrees.
+            own.append(degrees)
     many = min(sum(bool(one.counts) for one in each) for each in options) > _FEW
     untold = any(one.unit is None for one in said)
     step = -(-reference.size // _JUDGED_ROWS)
@@ -93,7 +100,9 @@ def units_of_pair(reference: Array, measured: Array, *, said: tuple[Meaning, Mea
         if many and pair[0].counts and pair[1].counts:
             continue
         a, b = pair[0].degrees(reference[::step]), pair[1].degrees(measured[::step])
-        if not _fit(a, b, pair) or (untold and (distance_deg(b, a) > _MOST_GUESSED_DEG or _lags(a, b))):
+        if not _fit(a, b, pair, untold=all(one.unit is None for one in said)) or (
+            untold and (distance_deg(b, a) > _MOST_GUESSED_DEG or _lags(a, b))
+        ):
             continue
         # By the span, so that no unit wins by making all angles small.
         fitting.append((360.0 * distance_deg(b, a) / float(np.ptp(a)), pair))
@@ -104,11 +113,11 @@ def units_of_pair(reference: Array, measured: Array, *, said: tuple[Meaning, Mea
     return _with_rivals(preferred(kept), kept, reference, measured, said=said)
 
 
-def _fit(reference: Array, measured: Array, pair: Pair) -> bool:
-    """Whether angles (n,), in degrees by the units of a pair, go round together."""
+def _fit(reference: Array, measured: Array, pair: Pair, *, untold: bool) -> bool:
+    """Whether angles (n,), in degrees by the units of a pair, go round together; ``untold``: no name tells a unit."""
     if min(np.ptp(reference), np.ptp(measured)) == 0.0 or not follows(measured, reference):
         return False
-    if {one.name for one in pair} == {"deg"} and max(np.ptp(reference), np.ptp(measured)) <= _LEAST_DEG:
+    if untold and {one.name for one in pair} == {"deg"} and max(np.ptp(reference), np.ptp(measured)) <= _LEAST_DEG:
         return False
     return not (any(one.counts for one in pair) and drifts(reference, measured))
 
@@ -150,10 +159,39 @@ def same_angle(measured_deg: Array, reference_deg: Array) -> bool:
 
 def is_copy(reference: Array, measured: Array, units: Pair) -> bool:
     """Whether two angles (n,) are one, in other units or over other turns: they differ by the rounding of both."""
-    both = np.isfinite(reference) & np.isfinite(measured)
-    a, b = units[0].degrees(reference[both]), units[1].degrees(measured[both])
-    rounding = sum(0.5 * 360.0 / one.counts if one.counts else 360.0 * _PRINTED for one in units)
+    rounding, (a, b) = _as_compared(reference, measured, units)
     return bool(np.max(np.abs(wrap_deg(b - a)), initial=0.0) <= rounding)
+
+
+def is_one_sensors(reference: Array, measured: Array, units: Pair) -> bool:
+    """Whether two angles (n,) are those of one sensor: one, or so but for their zero and the way that they count."""
+    rounding, (a, b) = _as_compared(reference, measured, units)
+    away = (wrap_deg(error - error[:1]) for error in (b - a, b + a))
+    return any(one.size == 0 or float(np.ptp(one)) <= 2.0 * rounding for one in away)
+
+
+def _as_compared(reference: Array, measured: Array, units: Pair) -> tuple[float, tuple[Array, Array]]:
+    """What is rounded off two angles [deg], and they [deg] where both are known."""
+    both = np.isfinite(reference) & np.isfinite(measured)
+    a, b = reference[both], measured[both]
+    rounding = _rounding_deg(a, units[0]) + _rounding_deg(b, units[1])
+    return rounding, (units[0].degrees(a), units[1].degrees(b))
+
+
+def _rounding_deg(values: Array, unit: AngleUnit) -> float:
+    """By how much [deg] values (n,) in a unit are rounded: half a count, or half of the digit that most of them end in.
+
+    Of numbers with so many digits in all, the large ones have fewer behind the point. Nothing is rounded off angles
+    that go on by one and the same step, as those do that were set.
+    """
+    step = wrap_deg(np.diff(unit.degrees(values)))
+    if step.size and np.max(np.abs(wrap_deg(step - step[0]))) <= _SAME_DEG:
+        return 0.0
+    if unit.counts:
+        return 0.5 * 360.0 / unit.counts
+    needs = [np.abs(values - np.round(values, k)) > _WHOLE for k in range(_DIGITS)]
+    digits = float(np.median(np.sum(needs, axis=0)))
+    return float(0.5 * 10.0**-digits * UNITS[unit.name].factor)
 
 
 def drifts(reference: Array, measured: Array) -> bool:

@@ -16,12 +16,25 @@ class OpenGuess(SweepError):
     """No single guess is right as it stands; ``options`` are the statements of which one may be meant.
 
     ``fit``: each of several fits names and values as well as the others; else they go against what a name says.
-    ``example``: the option is no statement as yet, since nothing in the log tells a number of it.
+    ``example``: the option is no statement as yet, since nothing in the log tells a number of it. ``what``: what is odd
+    about the log, alone. ``alone``: of two columns that are hardly a reference and a sensor, the sensor and what stands
+    beside it.
     """
 
-    def __init__(self, said: str, options: tuple[str, ...], *, fit: bool = False, example: bool = False) -> None:
+    def __init__(
+        self,
+        said: str,
+        options: tuple[str, ...],
+        *,
+        what: str,
+        fit: bool = False,
+        example: bool = False,
+        alone: tuple[Column, ...] = (),
+    ) -> None:
         super().__init__(said)
         self.options = options
+        self.what = what
+        self.alone = alone
         self.fit = fit
         self.example = example
 
@@ -33,20 +46,24 @@ def raise_several(table: Table, fitting: Sequence[tuple[Column, ...]], meaning: 
     raise_open(table, what, [text_of(one) for one in fitting], fit=True)
 
 
-def raise_open(table: Table, what: str, options: Sequence[str], *, fit: bool = False) -> NoReturn:
+def raise_open(
+    table: Table, what: str, options: Sequence[str], *, fit: bool = False, alone: tuple[Column, ...] = ()
+) -> NoReturn:
     """Raise OpenGuess: what is odd about a log, and the statements of which one may be meant."""
     which = "say which it is" if len(options) > 1 else "if so, say it"
     raise OpenGuess(
         f"{table.file}: {what} (found {table.listed()}); {which}: {in_words(options)}",
         tuple(options),
+        what=what,
         fit=fit,
+        alone=alone,
     )
 
 
 def raise_untold(table: Table, what: str, example: str) -> NoReturn:
     """Raise OpenGuess: a number that nothing in a log tells, and the statement that it belongs in."""
     said = f"{table.file}: {what} (found {table.listed()}); say it: {in_words([example])}"
-    raise OpenGuess(said, (example,), example=True)
+    raise OpenGuess(said, (example,), what=what, example=True)
 
 
 def in_words(options: Sequence[str]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NoReturn
 
@@ -12,8 +12,9 @@ import numpy as np
 from twin.angles import Array
 from twin.errors import SweepError
 from twin.logs.alone import alone, in_order
-from twin.logs.angles import AngleUnit, Pair, is_copy, units_of_pair
+from twin.logs.angles import AngleUnit, units_of_pair
 from twin.logs.asked_back import raise_open, raise_several
+from twin.logs.candidates import Candidate, candidates_of, weight_of
 from twin.logs.channels import angle_of, channels
 from twin.logs.devices import meanings_of
 from twin.logs.errors_listed import statements_of_errors
@@ -22,8 +23,10 @@ from twin.logs.names import Meaning
 from twin.logs.odd_factors import odd_factor
 from twin.logs.others import others
 from twin.logs.ratios import Turned, turned
+from twin.logs.row_counters import counts_rows
 from twin.logs.statement import Column, text_of
 from twin.logs.table import LARGEST, Table
+from twin.sweep_columns import is_spin
 
 _SIDES = 2
 _ERROR_IS = "an error is the reading less the true angle, a correction the reverse"
@@ -49,23 +52,6 @@ class Guess:
         return text_of(self.columns)
 
 
-@dataclass(frozen=True)
-class _Candidate:
-    """Two columns as reference and sensor, the units that fit, and how much their names speak for it."""
-
-    reference: int
-    measured: int
-    units: Pair
-    weight: int
-
-    def columns(self, table: Table) -> tuple[Column, Column]:
-        sources = table.sources
-        return (
-            self.units[0].column("reference_deg", sources[self.reference]),
-            self.units[1].column("measured_deg", sources[self.measured]),
-        )
-
-
 def guessed(table: Table) -> Guess:
     """The one statement that fits a table. Raises SweepError where none does, and where two do."""
     if table.entries:
@@ -80,16 +66,18 @@ def guessed(table: Table) -> Guess:
             f"{table.file}: {len(angles)} columns may be angles (found {table.listed()}); say which are meant: "
             '--columns "reference_deg=NAME, measured_deg=NAME"'
         )
-    pair = _pair(table, said, angles, usable)
+    candidates = candidates_of(table, said, angles)
+    pair = _pair(table, said, angles, usable, candidates)
     found = channels(table, said, usable, None if pair is None else pair[1].of(table))
     if pair is None and not found.columns and (listed := statements_of_errors(table, said, usable)):
         return _one_of(listed, (_ERROR_IS,), table)
     if pair is None:
         pair = _by_channels(table, said, angles, found.columns)
-        if pair is None and (single := alone(table, said, usable, found)) is not None:
+        if pair is None and (single := alone(table, _without_counters(table, said), usable, found)) is not None:
             columns = in_order(single.columns)
             return Guess(columns, single.notes, unused_by(columns, table, single.why))
         if pair is None:
+            _raise_doubtful(table, said, usable, candidates)
             _raise_no_angles(table)
         if any(column.per for column in pair):
             # A radius that goes with a period is none of the turn.
@@ -108,6 +96,14 @@ def _borne_out(said: Meaning, values: Array) -> Meaning:
     if said.role == "direction" and np.unique(values[np.isfinite(values)]).size > _DIRECTIONS:
         return Meaning("")
     return said
+
+
+def _without_counters(table: Table, said: tuple[Meaning, ...]) -> tuple[Meaning, ...]:
+    """What names say, but for those that call a counter of rows an angle."""
+    return tuple(
+        Meaning("") if one.role == "angle" and counts_rows(values, one) else one
+        for values, one in zip(table.values, said, strict=True)
+    )
 
 
 def _guessed_of_entries(table: Table) -> Guess:
@@ -145,13 +141,14 @@ def _left(table: Table, place: int, why: str) -> str:
 
 
 def _pair(
-    table: Table, said: tuple[Meaning, ...], angles: list[int], usable: list[int]
+    table: Table, said: tuple[Meaning, ...], angles: list[int], usable: list[int], candidates: Sequence[Candidate]
 ) -> tuple[Column, Column] | None:
     """The reference and the sensor; None where there are not two angles. Raises SweepError, see :func:`guessed`."""
-    fitting = list(_candidates(table, said, angles))
+    fitting = [one for one in candidates if not one.doubt]
     if not fitting:
-        several = _turned(table, said, angles)
-        if several is not None:
+        turning = [k for k in angles if not counts_rows(table.values[k], said[k])]
+        several = _turned(table, said, turning)
+        if several is not None or candidates:
             return several
         _raise_contradiction(table, said, angles)
         _raise_odd_factor(table, said, angles)
@@ -161,6 +158,24 @@ def _pair(
         whole = [_with_others(table, said, usable, one.columns(table)) for one in fitting]
         raise_several(table, whole, _WHICH_IS_TRUE if swapped else "")
     return fitting[0].columns(table)
+
+
+def _raise_doubtful(
+    table: Table, said: tuple[Meaning, ...], usable: list[int], candidates: Sequence[Candidate]
+) -> None:
+    """Raise OpenGuess where two angles follow each other and one of them is hardly a reference."""
+    if not candidates:
+        rows = [k for k in usable if said[k].role == "other" and counts_rows(table.values[k], said[k])]
+        angles = [k for k in usable if said[k].role in ("angle", "")]
+        candidates = candidates_of(table, said, [*angles, *rows]) if len(angles) == 1 else []
+    if not candidates:
+        return
+    whole = [_with_others(table, said, usable, one.columns(table)) for one in candidates]
+    # What has a time, too, may be a log without a reference.
+    single = tuple(column for column in whole[0] if column.target != "reference_deg")
+    if is_spin([column.target for column in single]):
+        whole.append(single)
+    raise_open(table, candidates[0].doubt, list(map(text_of, whole)), alone=single)
 
 
 def _with_others(
@@ -173,7 +188,7 @@ def _with_others(
 
 def _turned(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[Column, Column] | None:
     """A reference and a sensor of which one turns a whole number of times faster. Raises OpenGuess where two fit."""
-    weighed = [(_weight(said[a], said[b]), a, b) for a, b in itertools.permutations(angles, 2)]
+    weighed = [(weight_of(said[a], said[b]), a, b) for a, b in itertools.permutations(angles, 2)]
     for weight in sorted({weight for weight, _, _ in weighed if weight >= 0}, reverse=True):
         fitting = [
             one.columns((table.sources[a], table.sources[b]))
@@ -188,57 +203,10 @@ def _turned(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple
     return None
 
 
-def _candidates(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> Iterator[_Candidate]:
-    """Ordered pairs of columns that follow each other in some units: those for which the most speaks in the names.
-
-    A column that holds the other's angle once more, in another unit or over its turns, is no second angle, unless there
-    is no other.
-    """
-    weighed = [(_weight(said[a], said[b]), a, b) for a, b in itertools.permutations(angles, 2)]
-    copies: list[_Candidate] = []
-    for weight in sorted({weight for weight, _, _ in weighed if weight >= 0}, reverse=True):
-        found: list[_Candidate] = []
-        for _, reference, measured in (one for one in weighed if one[0] == weight):
-            a, b = table.values[reference], table.values[measured]
-            if np.array_equal(a, b, equal_nan=True):
-                continue
-            fitting = [
-                _Candidate(reference, measured, units, weight)
-                for units in units_of_pair(a, b, said=(said[reference], said[measured]))
-            ]
-            copied = any(is_copy(a, b, one.units) for one in fitting)
-            (copies if copied else found).extend(fitting)
-        if found:
-            yield from _each_once(found, table)
-            return
-    yield from (one for one in copies if one.weight == copies[0].weight)
-
-
-def _each_once(found: Sequence[_Candidate], table: Table) -> Iterator[_Candidate]:
-    """Pairs without those that differ from an earlier one only by columns which hold the same angles."""
-
-    def alike(one: _Candidate, other: _Candidate) -> bool:
-        sides = ((one.reference, other.reference), (one.measured, other.measured))
-        return any(a != b for a, b in sides) and all(
-            a == b or is_copy(table.values[a], table.values[b], (one.units[side], other.units[side]))
-            for side, (a, b) in enumerate(sides)
-        )
-
-    kept: list[_Candidate] = []
-    for one in found:
-        if not any(alike(one, other) for other in kept):
-            kept.append(one)
-            yield one
-
-
-def _weight(reference: Meaning, measured: Meaning) -> int:
-    return reference.reference - reference.sensor + measured.sensor - measured.reference
-
-
 def _raise_contradiction(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> None:
     """Raise SweepError where two columns follow each other in other units than their names say."""
     free = tuple(Meaning(one.role, one.reference, one.sensor) for one in said)
-    fitting = list(_candidates(table, free, angles))
+    fitting = candidates_of(table, free, angles)
     if not fitting:
         return
     named = (fitting[0].reference, fitting[0].measured)
@@ -254,8 +222,8 @@ def _raise_contradiction(table: Table, said: tuple[Meaning, ...], angles: list[i
 
 def _raise_odd_factor(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> None:
     """Raise OpenGuess where two columns follow each other by a factor that no encoder and no whole gear has."""
-    pairs = [pair for pair in itertools.permutations(angles, 2) if _weight(said[pair[0]], said[pair[1]]) >= 0]
-    for a, b in sorted(pairs, key=lambda pair: -_weight(said[pair[0]], said[pair[1]])):
+    pairs = [pair for pair in itertools.permutations(angles, 2) if weight_of(said[pair[0]], said[pair[1]]) >= 0]
+    for a, b in sorted(pairs, key=lambda pair: -weight_of(said[pair[0]], said[pair[1]])):
         odd = odd_factor(
             (table.values[a], table.values[b]), said=(said[a], said[b]), sources=(table.sources[a], table.sources[b])
         )
@@ -266,14 +234,14 @@ def _raise_odd_factor(table: Table, said: tuple[Meaning, ...], angles: list[int]
 
 def _by_name_alone(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple[Column, Column] | None:
     """The pair that names alone single out: what is wrong with its values is said where they are a sweep's."""
-    weighed = [(_weight(said[a], said[b]), a, b) for a, b in itertools.permutations(angles, 2)]
+    weighed = [(weight_of(said[a], said[b]), a, b) for a, b in itertools.permutations(angles, 2)]
     most = max((weight for weight, _, _ in weighed), default=0)
     best = [(a, b) for weight, a, b in weighed if weight == most]
     if most < 1 or len(best) > 1:
         return None
     units = [AngleUnit(one.name) for k in best[0] if (one := said[k].unit)]
     # Units that nothing tells are no guess to go by.
-    return _Candidate(*best[0], (units[0], units[1]), most).columns(table) if len(units) == _SIDES else None
+    return Candidate(*best[0], (units[0], units[1]), most).columns(table) if len(units) == _SIDES else None
 
 
 def _turned_pair(found: Turned, source: str, measured: Column) -> tuple[Column, Column]:

@@ -37,7 +37,7 @@ _WORDS = {
     "frame": "frame frames framecounter",
     "error": "error err deviation dev abweichung fehler erreur errore",
     "correction": "correction corrections corr comp compensation korrektur correzione correccion",
-    "other": "index idx sample samples n no nr row i id flag flags diff mag_field "
+    "other": "index idx seq sequence sample samples n no nr row i id flag flags diff mag_field "
     "voltage torque crc counter load power valid ok note comment",
 }
 """Words of names, without accents, in English, German, French, Italian and Spanish."""

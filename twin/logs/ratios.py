@@ -25,7 +25,7 @@ _UNEVEN, _NOISE_DEG = 0.25, 3.0
 _LARGEST_STEP_DEG, _LARGEST_STEP_OF_COUNTS_DEG = 150.0, 30.0
 """Typical step from row to row up to which an angle is followed over its turns; up to which counts show their turn."""
 _CLEARLY, _ALIKE_DEG = 1.5, 0.1
-"""A unit is clearly meant where another's steps are off by so many times as much, and this much more."""
+"""A unit is clearly meant where of another's steps so many times as large a part is off, and this much more."""
 _FEW_COUNTS = 4
 """Numbers of counts a turn up to which a column is taken to show its own."""
 
@@ -34,12 +34,14 @@ _FEW_COUNTS = 4
 class Turned:
     """The units of a reference and a sensor, and how often either turns in a turn of the shaft; one of both is 1.
 
-    ``off_deg`` is how far steps of the faster one are off those that the slower one lets expect.
+    ``off_deg`` is how far steps of the faster one are off those that the slower one lets expect, ``step_deg`` how long
+    these are in the mean: a wrong unit scales both.
     """
 
     units: tuple[AngleUnit, AngleUnit]
     times: tuple[float, float]
     off_deg: float
+    step_deg: float
 
     def columns(self, sources: tuple[str, str]) -> tuple[Column, Column]:
         """The statement, with the faster one followed over its turns and divided."""
@@ -66,8 +68,8 @@ def turned(reference: Array, measured: Array, *, said: tuple[Meaning, Meaning]) 
         one = _turned((reference[known], measured[known]), pair)
         found |= {pair: one} if one is not None else {}
     kept = [found[pair] for pair in preferred(list(found))]
-    least = min((one.off_deg for one in kept), default=0.0)
-    return [one for one in kept if one.off_deg <= _CLEARLY * least + _ALIKE_DEG]
+    least = min((one.off_deg / one.step_deg for one in kept), default=0.0)
+    return [one for one in kept if one.off_deg <= _CLEARLY * least * one.step_deg + _ALIKE_DEG]
 
 
 def _turned(values: tuple[Array, Array], units: tuple[AngleUnit, AngleUnit]) -> Turned | None:
@@ -90,7 +92,7 @@ def _turned(values: tuple[Array, Array], units: tuple[AngleUnit, AngleUnit]) -> 
     stumbles = off > _UNEVEN * float(np.median(np.abs(expected))) + _NOISE_DEG
     if stumbles or not same_angle(fast / times, slow) or drifts(slow, fast / times):
         return None
-    return Turned(units, (1.0, times) if first_is_slow else (times, 1.0), off)
+    return Turned(units, (1.0, times) if first_is_slow else (times, 1.0), off, float(np.mean(np.abs(expected))))
 
 
 def _can_be_followed(angle_deg: Array, unit: AngleUnit) -> bool:

@@ -11,14 +11,12 @@ from twin.bounded_input import LARGEST_SWEEP_BYTES, checked_bytes, whole
 from twin.errors import SweepError, UserError
 from twin.log import LOG
 from twin.logs.arrays import read_arrays
-from twin.logs.asked_back import OpenGuess, in_words
 from twin.logs.buses import read_bus_text
 from twin.logs.formats import read_format
 from twin.logs.guess import Guess, guessed, unused_by
 from twin.logs.statement import Column, parsed, values_of
 from twin.logs.table import Table
 from twin.logs.text import decoded, read_rows
-from twin.sweep_columns import REQUIRED, is_spin
 
 EXPECTED = "a log (CSV, XLSX, MAT, NPZ, HDF5, Parquet, MDF, TDMS, a bus log or a firmware's table)"
 
@@ -62,35 +60,3 @@ def read_log(path: Path, *, columns: str | None = None, max_bytes: int = LARGEST
 def by_statement(columns: tuple[Column, ...], table: Table) -> Guess:
     """What is said, with the columns that it leaves out."""
     return Guess(columns, unused=unused_by(columns, table))
-
-
-_NEEDS_REFERENCE = "here a reference is needed; explain and compensate take this log without one, by"
-LARGEST_ADVISED_BYTES = 5_000_000
-"""Of a longer file that was refused nothing is guessed: reading it once took its time."""
-
-
-def refused(path: Path, said: str, *, spin: bool = False) -> str:
-    """What is told of a file that makes no sweep as it is: why, and what ``--columns`` would read it, if anything.
-
-    ``said`` is why by its columns; of a table of entries, as source text of a firmware holds it, there are none.
-    ``spin``: a log without a reference would do.
-    """
-    try:
-        if not path.is_file() or path.stat().st_size > LARGEST_ADVISED_BYTES:
-            return said
-        table = read_table(path, max_bytes=LARGEST_ADVISED_BYTES)
-        advised = f"{said}; or say what is meant"
-        # Columns that bear a sweep's names are those of a sweep, whatever they lack.
-        if table.entries and not any(column in name for name in table.names for column in REQUIRED):
-            said = f"{table.file}: holds a table of {len(table.values[0])} entries, and no columns of a sweep"
-            advised = f"{said}; say what is meant"
-        guess = guessed(table)
-    except OpenGuess as two:
-        return f"{advised}: {in_words(two.options)}"
-    except (SweepError, OSError):
-        return said
-    as_it_is = all(str(column) == f"{column.target}={column.target}" for column in guess.columns)
-    said_so = in_words([guess.text])
-    if not spin and is_spin([column.target for column in guess.columns]):
-        return said if as_it_is else f"{said}; {_NEEDS_REFERENCE}: {said_so}"
-    return said if as_it_is else f"{advised}: {said_so}"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from diagnosis.population.device import Question, blank, estimates
 from scenarios.commands.outputs import json_text
 from scenarios.studies.study_folder import StudyFolder, part_of
 from twin.bounded_input import LARGEST_SWEEP_BYTES
-from twin.errors import UserError
+from twin.errors import SweepError, UserError
 from twin.sweep import Sweep
 from twin.whole_file import write_whole
 
@@ -42,10 +42,29 @@ class Reading:
     max_bytes: int = LARGEST_SWEEP_BYTES
     columns: str | None = None
     pole_pairs: int | None = None
+    guess: bool = False
 
     def sweep(self, path: str, name: str) -> Sweep:
         """One device's sweep, by the reader of ``explain``. Raises SweepError."""
-        return Sweep.read(path, max_bytes=self.max_bytes, name=name, columns=self.columns, pole_pairs=self.pole_pairs)
+        return Sweep.read(
+            path,
+            max_bytes=self.max_bytes,
+            name=name,
+            columns=self.columns,
+            pole_pairs=self.pole_pairs,
+            guess=self.guess,
+        )
+
+    def of(self, devices: Sequence[Sweep]) -> Reading:
+        """How all are read, where the first ``devices`` were read so. Raises SweepError where these differ."""
+        ways = {sweep.read_as.text if sweep.read_as else "": sweep.name for sweep in devices}
+        if len(ways) > 1:
+            one, other = list(ways.items())[:2]
+            raise SweepError(
+                f"{one[1]} and {other[1]}: their columns are guessed to be {one[0] or 'a sweep'!r} and "
+                f"{other[0] or 'a sweep'!r}; devices of a batch are read alike: say how by --columns, or part the files"
+            )
+        return replace(self, columns=next(iter(ways)) or self.columns, guess=False)
 
 
 @dataclass(frozen=True, kw_only=True)

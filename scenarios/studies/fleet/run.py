@@ -17,7 +17,7 @@ from diagnosis.population.looks import looked_at
 from diagnosis.population.template import LOOKED_AT, Template, template_of
 from diagnosis.report.provenance import Provenance
 from scenarios.commands.fail_on import FoundError, asked, raise_found
-from scenarios.commands.inputs import SweepFiles, none_usable
+from scenarios.commands.inputs import SweepFiles, none_usable, tell_how_read
 from scenarios.commands.outputs import HTML, JSON, PARQUET, OutputFiles, json_text
 from scenarios.studies.engine import run_study
 from scenarios.studies.fleet.answer import FLEET, answer_of, in_answer
@@ -137,8 +137,11 @@ def fleet(given: SweepFiles, paths: Sequence[Path], output: Path, *, what: Asked
             "output_sense": "--output-sense",
         },
     )
-    reading = Reading(max_bytes=given.max_bytes, columns=given.columns, pole_pairs=given.pole_pairs)
-    template = template_of(first_usable(paths, names, reading), told_sense=what.output_sense, seed=what.seed)
+    asked = Reading(max_bytes=given.max_bytes, columns=given.columns, pole_pairs=given.pole_pairs, guess=True)
+    first = first_usable(paths, names, asked)
+    reading = asked.of(first)
+    tell_how_read(first, given.columns)
+    template = template_of(first, told_sense=what.output_sense, seed=what.seed)
     with StudyFolder.opened(output, identity) as folder:
         job = Fleet(
             paths=tuple(str(path.absolute()) for path in paths),

@@ -87,8 +87,24 @@ def test_explain_of_a_table_says_what_it_is_and_how_many_statements_fit(tmp_path
     (tmp_path / "table.h").write_text("/* corrections, entry k at k*360/64 */\n" + LOGS["counts of a table"])
     ended = halltwin("explain", tmp_path / "table.h")
     assert ended.code == 2
-    assert "table.h: holds a table of 64 entries, and no columns of a sweep; say what is meant: --columns" in ended.err
+    assert (
+        "table.h: holds a table of 64 entries, and no columns of a sweep; say what is meant (several guesses fit"
+        in ended.err
+    )
     assert "/*" not in ended.err
     assert ended.err.count("--columns") == 2
     assert ", and " in ended.err
     assert ended.err.rstrip().endswith(" more")
+
+
+@pytest.mark.parametrize("column", ["tick", "raw_counts"])
+def test_what_is_hardly_a_reference_is_none(column: str, tmp_path: Path) -> None:
+    """A counter of rows, and the sensor's own counts: the sensor stands alone, and the option is told."""
+    at = np.arange(500) * 360.0 / 500.0
+    angle = np.round((at + 41.0 + error_deg(at)) % 360.0, 3)
+    beside = np.arange(500.0) if column == "tick" else np.round(angle * 4096.0 / 360.0) % 4096
+    answer = answer_of(tmp_path, csv_text({column: beside, "angle_deg": angle}))
+    assert answer["log"]["columns"] == ["measured_deg"]
+    (found,) = (one for one in answer["setup"] if one["kind"] == "no_reference")
+    assert column in found["what"]
+    assert found["columns"].startswith(f"reference_deg={column}*360/")

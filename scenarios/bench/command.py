@@ -19,13 +19,14 @@ if TYPE_CHECKING:
     from scenarios.bench.closed_loop import Loop
     from scenarios.bench.faults import Fault, Opener
     from scenarios.bench.measure import Measured, Measurement
+    from scenarios.bench.readings import Reading
     from scenarios.commands.outputs import OutputFiles
     from twin.chain import Chain
 
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """The options of the command, as given."""
+    """The options of the command, as given; ``heard`` is called with the sweep's name and all readings after each."""
 
     output: Path
     twin: str | None = None
@@ -57,6 +58,7 @@ class Options:
     seed: int = 0
     fail_on: Sequence[str] = ()
     command: str | None = None
+    heard: Callable[[str, list[Reading]], None] | None = None
 
 
 def run(options: Options) -> None:
@@ -116,6 +118,7 @@ def _measurement(options: Options, encoder: Chain | None, faults: Sequence[Fault
         patience=Patience(timeout_s=options.timeout_s, attempts=options.attempts),
         record=options.record,
         manifest_deg=options.manifest_deg,
+        heard=options.heard,
     )
 
 

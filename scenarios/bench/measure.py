@@ -26,6 +26,7 @@ class Measurement:
     """What to measure and where to put it: ``files`` are all that the run may write, the output among them.
 
     ``twin`` is what is measured, in words, and ``settings`` are all besides the plan that the readings depend on.
+    ``heard`` is called with the output's name and all readings so far after each.
     """
 
     plan: Plan
@@ -38,6 +39,7 @@ class Measurement:
     patience: Patience = field(default_factory=Patience)
     record: Path | None = None
     manifest_deg: float = MANIFEST_DEG
+    heard: Callable[[str, list[Reading]], None] | None = None
 
 
 @dataclass(frozen=True)
@@ -123,6 +125,8 @@ def _take(
         def keep(reading: Reading) -> None:
             journal.keep(clock.going_on(reading))
             display.show(journal.readings)
+            if job.heard is not None:
+                job.heard(job.output.name, journal.readings)
 
         sequence.take(job.plan, stops, keep)
 

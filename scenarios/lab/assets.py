@@ -16,6 +16,7 @@ ASSETS = {
     "scene.js": ("scene.js", _SCRIPT),
     "design.js": ("design.js", _SCRIPT),
     "map.js": ("map.js", _SCRIPT),
+    "bench.js": ("bench.js", _SCRIPT),
     "explain.js": ("explain.js", _SCRIPT),
     "layers.js": ("layers.js", _SCRIPT),
     "save.js": ("save.js", _SCRIPT),

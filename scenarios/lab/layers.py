@@ -19,8 +19,9 @@ from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.marks.row_masks import raw_residual
 from diagnosis.report.data import Readings, binned, highest_order, noise_level, readings, spectrum, two_ways
 from diagnosis.report.pictures import angle_bins
+from diagnosis.report.wording import label
 from scenarios.lab.columns import drawn, highest_in_columns
-from twin.angles import Array
+from twin.angles import Array, wrap_deg
 from twin.baseline import FACTORS
 from twin.catalogue import find
 from twin.chain import Chain
@@ -110,23 +111,18 @@ class Layers:
 
     def told(self) -> dict[str, Any]:
         """What the page begins with: layers with what each leaves, factors with their intervals, axes."""
-        fit = self.explained.discovery.fit
-        whole = self._rms(self.residual_deg(fit.chain))
+        fixed: dict[str, str | None] = {
+            MODEL: None,
+            **{name: self._fixed(cause) for name, cause in self.causes.items()},
+        }
         layers = [
-            {
-                "name": MODEL,
-                "without_deg": self._rms(self.residual_deg(fit.chain.without(*_BEFORE))),
-                "fixed": None,
-            }
+            {"name": name, "without_deg": None if why else self._rms(*self._left(frozenset([name]))), "fixed": why}
+            for name, why in fixed.items()
         ]
-        for name, cause in self.causes.items():
-            fixed = self._fixed(cause)
-            without = None if fixed else self._rms(self.residual_deg(fit.chain.without(*cause.keys)))
-            layers.append({"name": name, "without_deg": without, "fixed": fixed})
         return {
             "layers": layers,
-            "all_deg": whole,
-            "measured_deg": self._rms(self.read.error_deg),
+            "all_deg": self._rms(*self._left(frozenset())),
+            "measured_deg": self._rms(self.read.error_deg, self.read.plain),
             "sliders": self._sliders(),
             "across": {key: name for key, (_, name) in self.across.items()},
             "readings": len(self.read.error_deg),
@@ -136,12 +132,10 @@ class Layers:
     def _fixed(self, cause: Finding) -> str | None:
         """Why a cause cannot be taken off the mean of the readings; None where it can."""
         effect = find(cause.keys[0], self.explained.discovery.fit.chain.effects)
-        if cause.rows:
-            return "it touches single readings, which no picture of the mean holds"
-        if effect.footprint == "spread":
-            return "it makes the readings scatter and leaves their mean"
-        if not set(cause.keys) & set(self.explained.discovery.fit.chain.values):
+        if set(cause.keys) <= set(self.explained.discovery.words):
             return "it acts on the words as sent; the readings shown are decoded"
+        if effect.footprint == "spread" and not cause.rows:
+            return "it makes the readings scatter and leaves their mean"
         return None
 
     def _sliders(self) -> list[dict[str, Any]]:
@@ -158,12 +152,16 @@ class Layers:
                 continue
             half = 0.5 * (high - low) if np.isfinite(high - low) else 0.0
             # A zero has no value of no effect: it goes as far as the error does.
-            away = self._rms(self.read.error_deg) if effect is ZERO else _PAST_NULL * abs(float(value) - param.null)
+            away = (
+                self._rms(self.read.error_deg, self.read.plain)
+                if effect is ZERO
+                else _PAST_NULL * abs(float(value) - param.null)
+            )
             reach = max(_REACH * half, away, 1e-6)
             sliders.append(
                 {
                     "name": f"{key}.{name}",
-                    "label": labels.get((key, name), name.rpartition("_")[0].replace("_", " ") or name),
+                    "label": labels.get((key, name), label(name)),
                     "of": owners.get(key, MODEL),
                     "unit": "" if param.unit == "1" else param.unit,
                     "value": float(value),
@@ -181,55 +179,69 @@ class Layers:
         """
         if look.over not in self.across:
             raise UserError(f"over is {shown(look.over)}; expected one of {', '.join(self.across)}")
-        left = self.residual_deg(self._chain(look))
+        left, among = self._left(look.off, look.values)
         x, name = self.across[look.over]
-        plain = self.read.plain
         span = (0.0, 360.0) if look.over == "angle" else (float(x.min()), float(x.max()))
-        told: dict[str, Any] = {"x": name, "span": span, "rms_deg": self._rms(left), "ways": {}}
-        for way, mask in self._ways(plain):
+        told: dict[str, Any] = {"x": name, "span": span, "rms_deg": self._rms(left, among), "ways": {}}
+        for way, mask in self._ways(among):
             told["ways"][way] = drawn(x[mask], left[mask], span, look.width)
             if look.over == "angle":
                 at, mean = binned(x[mask], left[mask], angle_bins(int(np.count_nonzero(mask)), each=5))
                 kept = np.isfinite(mean)
                 told["ways"][way]["mean"] = {"x": at[kept].round(3).tolist(), "y": mean[kept].round(6).tolist()}
+        touched = among & ~self.read.plain
+        if touched.any():
+            told["touched"] = drawn(x[touched], left[touched], span, look.width)
         if look.with_spectrum:
-            told["spectrum"] = self._spectrum(left, look.width)
+            told["spectrum"] = self._spectrum(left, among, look.width)
         return told
 
     def residual_deg(self, chain: Chain) -> Array:
         """What another chain in the place of the fitted one leaves of each reading [deg] (n,)."""
         found = self.explained.discovery
         fit = found.fit
-        if chain is fit.chain:
+        if chain is fit.chain or chain.values == fit.chain.values:
             return self.read.after_deg
         linear = Linear(chain, fit.observations.motion, blur=fit.weighting.blur, observables=1)
         return np.asarray(np.degrees(raw_residual(replace(fit, chain=chain, linear=linear), found.sweep)))
 
-    def _chain(self, look: Look) -> Chain:
-        """The extended twin with what was moved, less what is off. Raises UserError."""
+    def _left(self, off: frozenset[str], values: Mapping[str, float] | None = None) -> tuple[Array, BoolArray]:
+        """What is left [deg] (n,) with these layers off and these values moved, and which readings (n,) count.
+
+        Single readings that a cause has touched count where that is off. Without its factors a twin has no zero either:
+        the mean is taken off then, as it is of the error as measured. Raises UserError.
+        """
+        unknown = off - {MODEL, *self.causes}
+        if unknown:
+            raise UserError(f"off has {shown(min(unknown))}; expected some of {', '.join((MODEL, *self.causes))}")
+        causes = [cause for name, cause in self.causes.items() if name in off and not self._fixed(cause)]
+        chain = self._moved(values or {}).without(*(key for cause in causes for key in cause.keys))
+        left, among = self.residual_deg(chain.without(*_BEFORE) if MODEL in off else chain), self.read.plain.copy()
+        for cause in causes:
+            among[list(cause.rows)] = True
+        if MODEL in off:
+            left = wrap_deg(left - np.degrees(np.angle(np.mean(np.exp(1j * np.radians(left[among]))))))
+        return left, among
+
+    def _moved(self, values: Mapping[str, float]) -> Chain:
+        """The extended twin with some values moved. Raises UserError."""
         chain = self.explained.discovery.fit.chain
-        known = {one["name"] for one in self._sliders()} if look.values else set()
-        for name, value in look.values.items():
+        known = {one["name"] for one in self._sliders()} if values else set()
+        for name, value in values.items():
             if name not in known:
                 raise UserError(f"values has {shown(name)}; expected some of {', '.join(sorted(known))}")
             key, _, param = name.rpartition(".")
             chain = chain.with_effect(key, **{param: value})
-        unknown = look.off - {MODEL, *self.causes}
-        if unknown:
-            raise UserError(f"off has {shown(min(unknown))}; expected some of {', '.join((MODEL, *self.causes))}")
-        off = [
-            key for name in look.off - {MODEL} if not self._fixed(self.causes[name]) for key in self.causes[name].keys
-        ]
-        return chain.without(*off, *(_BEFORE if MODEL in look.off else ()))
+        return chain
 
-    def _ways(self, plain: BoolArray) -> list[tuple[str, BoolArray]]:
+    def _ways(self, among: BoolArray) -> list[tuple[str, BoolArray]]:
         direction = self.read.motion.direction
-        found = [("forward", plain & (direction >= 0.0)), ("backward", plain & (direction < 0.0))]
+        found = [("forward", among & (direction >= 0.0)), ("backward", among & (direction < 0.0))]
         return [(name, mask) for name, mask in found if mask.any()]
 
-    def _spectrum(self, left: Array, width: int) -> dict[str, Any]:
+    def _spectrum(self, left: Array, among: BoolArray, width: int) -> dict[str, Any]:
         motion = self.read.motion
-        order, amplitude = spectrum(motion, left, self.read.plain, highest_order(motion, ()))
+        order, amplitude = spectrum(motion, left, among, highest_order(motion, ()))
         level = noise_level(order, amplitude, both=two_ways(motion))
         at, high, noise = highest_in_columns(order, amplitude, level, max(width // 2, 10))
         return {
@@ -238,5 +250,5 @@ class Layers:
             "noise_deg": noise.round(7).tolist(),
         }
 
-    def _rms(self, values: Array) -> float:
-        return float(np.sqrt(np.mean(values[self.read.plain] ** 2)))
+    def _rms(self, values: Array, among: BoolArray) -> float:
+        return float(np.sqrt(np.mean(values[among] ** 2)))

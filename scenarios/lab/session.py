@@ -12,6 +12,7 @@ import numpy as np
 
 from diagnosis.report.provenance import version
 from scenarios.lab import sweeps, twins
+from scenarios.lab.bench_run import BenchRun, loop_of
 from scenarios.lab.design import (
     Asked,
     alone,
@@ -54,11 +55,12 @@ class Session:
         self._folder = folder
         self._lock = threading.Lock()
         self._sensor, self._sweep, self._held = sensor, sweep, held
-        self._explaining = Explaining()
+        self._explaining, self._bench = Explaining(), BenchRun()
 
     def close(self) -> None:
         """End whatever still runs."""
         self._explaining.close()
+        self._bench.close()
 
     def routes(self) -> Routes:
         """What the server answers."""
@@ -66,6 +68,7 @@ class Session:
             gets={
                 "start": lambda: Reply.of(self.start()),
                 "explain": lambda: Reply.of(self._explaining.stand()),
+                "bench": lambda: Reply.of(self._bench.stand()),
                 **{f"explain/{name}": partial(self._file, name) for name in _KINDS},
             },
             asks={
@@ -75,6 +78,8 @@ class Session:
                 "design/map": self._map,
                 "twin/preset": self._preset,
                 "twin/save": self._save,
+                "bench/begin": self._begin_bench,
+                "bench/stop": self._stop_bench,
                 "explain/begin": self._begin,
                 "explain/stop": self._stop,
                 "explain/look": lambda content: Reply.of(self._explaining.look(content)),
@@ -168,6 +173,22 @@ class Session:
     def _stop(self, content: Any) -> Reply:
         self._explaining.stop()
         return Reply.of(self._explaining.stand())
+
+    # ---- the bench -----------------------------------------------------------------------------------------------
+
+    def _begin_bench(self, content: Any) -> Reply:
+        """Close the loop on the virtual bench, with the sensor's twin as the encoder. Raises UserError."""
+        with self._lock:
+            sensor = self._sensor
+            # What runs there writes into the folder that is emptied.
+            self._bench.close()
+            loop = loop_of(content, twin=(sensor.source, sensor.name), folder=emptied(self._folder / "bench"))
+            self._bench.begin(loop)
+        return Reply.of({**self._bench.stand(), "command": loop.command})
+
+    def _stop_bench(self, content: Any) -> Reply:
+        self._bench.stop()
+        return Reply.of(self._bench.stand())
 
     def _file(self, name: str) -> Reply:
         content, download = self._explaining.file(name)

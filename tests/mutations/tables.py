@@ -9,6 +9,7 @@ from tests.mutations.files import FILES
 from tests.mutations.fleet import FLEET
 from tests.mutations.forms import FORMS
 from tests.mutations.gaps import GAPS
+from tests.mutations.lab import LAB
 from tests.mutations.logs import LOGS
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
@@ -44,6 +45,7 @@ def mutations() -> tuple[Mutation, ...]:
         *EXPORT,
         *LOGS,
         *STUDIES,
+        *LAB,
         *FLEET,
         *SCRIPTS,
         *THERMAL,

@@ -33,7 +33,7 @@ export class DesignView {
       const told = await ask("design/map", design);
       this.map.draw(told, this.design);
     });
-    for (const button of document.querySelectorAll("button.picture")) {
+    for (const button of document.querySelectorAll("#design button.picture")) {
       const name = button.dataset.of;
       button.title = "Save this picture as SVG";
       button.setAttribute("aria-label", `Save the picture of ${name} as SVG`);

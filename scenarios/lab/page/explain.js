@@ -100,13 +100,14 @@ export class ExplainView {
     this.answer = answer;
     const names = answer.causes.filter((one) => one.name !== "unnamed").map((one) => one.name.replaceAll("_", " "));
     by("answer-verdict").textContent = `${answer.verdict[0].toUpperCase()}${answer.verdict.slice(1)}${names.length ? `: ${names.join(", ")}` : ""}`;
-    by("answer-words").textContent = `${answer.verdict_words.replaceAll("->", "→")} ${answer.name}: ${answer.sweep_words}.`;
+    by("answer-words").textContent = `${signed(answer.verdict_words)} ${answer.name}: ${answer.sweep_words}.`;
     become(by("answer-figures"), figures(answer));
     this.layers = new Layers(by("layers"), answer, () => this.changed());
     this.numbers = new Numbers(by("factors"), answer, () => this.changed());
     const names_ = { angle: "shaft angle", clock: answer.across.clock.split(" / ")[0], temperature: "temperature", speed: "speed" };
     by("over").replaceChildren(...Object.keys(answer.across).map((key) => node("option", { value: key, textContent: names_[key] })));
     by("cause-list").replaceChildren(...causes(answer));
+    by("factor-table").replaceChildren(factors(answer));
     by("next").replaceChildren(...(answer.next.length ? answer.next : [{ do: "nothing: all that can be searched for was", why: "" }]).map((one) => node("li", {}, capital(one.do), node("small", { textContent: one.why.replaceAll("_", " ") }))));
     showCommand(by("explain-command"), answer.command);
     by("answer").hidden = false;
@@ -142,6 +143,7 @@ export class ExplainView {
       (part.y ? dots : columns).push({ name, style: COLOURS[way], ...part });
       if (part.mean) lines.push({ name: "", style: COLOURS[way], values: part.mean.y, x: part.mean.x });
     }
+    if (told.touched?.y) dots.push({ name: "touched by it", style: "fourth large", ...told.touched });
     const marks = told.x.startsWith("shaft angle") ? [0, 90, 180, 270, 360] : undefined;
     this.residual.draw({ dots, columns, lines, x: told.x, span: told.span, marks, include: [0] });
     const few = columns.length ? "Of the readings in each column of the picture the lowest and the highest. " : "";
@@ -154,6 +156,8 @@ export class ExplainView {
   }
 }
 
+/** Words with arrows and minus signs that are such. */
+const signed = (words) => words.replaceAll("->", "→").replace(/(^|[^\w])-(?=\d)/g, "$1−");
 const capital = (words) => words.charAt(0).toUpperCase() + words.slice(1);
 
 function figures(answer) {
@@ -171,14 +175,21 @@ function figures(answer) {
 
 function causes(answer) {
   const parts = answer.setup.map((words) => node("p", { className: "error", textContent: words }));
-  for (const words of answer.changed) parts.push(node("p", { textContent: capital(words.replaceAll("->", "→")) }));
+  for (const words of answer.changed) parts.push(node("p", { textContent: capital(signed(words)) }));
   for (const cause of answer.causes) {
     parts.push(node("h4", { textContent: `${cause.name.replaceAll("_", " ")} (${cause.stage})` }));
-    for (const words of [...cause.parameters, `held-out RMS ${cause.held_out} deg, false alarm ${cause.false_alarm}`, ...cause.said]) parts.push(node("p", { textContent: words.replaceAll("->", "→") }));
+    for (const words of [...cause.parameters, `held-out RMS ${cause.held_out} deg, false alarm ${cause.false_alarm}`, ...cause.said]) parts.push(node("p", { textContent: signed(words) }));
   }
   if (!answer.causes.length) parts.push(node("p", { textContent: "No cause stands out of the noise." }));
-  const rows = answer.factors.map((row) => node("tr", {}, node("th", { scope: "row", textContent: row.label }), node("td", { className: "number", textContent: row.before }), node("td", { className: "number", textContent: row.after }), node("td", { textContent: row.flag })));
-  const head = node("thead", {}, node("tr", {}, ...["factor", "before", "with the causes", ""].map((words, k) => node("th", { scope: "col", textContent: words, className: k && k < 3 ? "number" : "" }))));
-  parts.push(node("h4", { textContent: "Factors of the error model" }), node("div", { className: "scroll" }, node("table", {}, head, node("tbody", {}, ...rows))));
   return parts;
+}
+
+/** The paper's factors before and with the causes. */
+function factors(answer) {
+  const moved = answer.factors.some((row) => row.after);
+  const cells = (row) => [row.before, ...(moved ? [row.after] : [])].map((words) => node("td", { className: "number", textContent: signed(words) }));
+  const rows = answer.factors.map((row) => node("tr", {}, node("th", { scope: "row", textContent: row.label }), ...cells(row), node("td", { textContent: row.flag })));
+  const heads = ["Factor", "before", ...(moved ? ["with the causes"] : []), ""];
+  const head = node("tr", {}, ...heads.map((words, k) => node("th", { scope: "col", textContent: words, className: k && k < heads.length - 1 ? "number" : "" })));
+  return node("table", {}, node("thead", {}, head), node("tbody", {}, ...rows));
 }

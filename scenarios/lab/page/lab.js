@@ -1,5 +1,6 @@
 // Where the page begins: what the program tells at the start, the twin that is chosen, files that are dropped.
 import { ask, complain, got, handOver, say } from "./ask.js";
+import { BenchView } from "./bench.js";
 import { DesignView } from "./design.js";
 import { ExplainView } from "./explain.js";
 
@@ -22,7 +23,7 @@ function showTwin(twin) {
   select.value = twin.name;
 }
 
-const VIEWS = ["design", "explain"];
+const VIEWS = ["design", "explain", "bench"];
 
 /** Show one of the views; its name stands behind the address, so that a reload comes back to it. */
 function show(name) {
@@ -53,12 +54,13 @@ await trying(async () => {
   const design = new DesignView(start);
   const take = (twin) => {
     showTwin(twin);
-    by("held-name").textContent = twin.name;
+    for (const place of ["held-name", "loop-twin"]) by(place).textContent = twin.name;
     design.begin(twin);
   };
   take(start.twin);
   show(start.sweep ? "explain" : location.hash.slice(1));
   const explain = new ExplainView(start);
+  new BenchView();
   select.addEventListener("change", () => trying(async () => take(await ask("twin/preset", { name: select.value }))));
   const open = (file) => (file.name.toLowerCase().endsWith(".toml") ? openTwin(file) : openSweep(file));
   const openSweep = (file) => {

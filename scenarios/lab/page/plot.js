@@ -109,7 +109,7 @@ export class Plot {
     const { width } = this;
     const largest = Math.max(0, ...(data.limits ? (data.lines ?? []).flatMap((line) => line.values.map(Math.abs)) : []));
     // A limit far beyond the curves would press them flat: it is left out, and its name with it.
-    const limits = (data.limits ?? []).filter((limit) => limit.value <= 2.5 * largest);
+    const limits = (data.limits ?? []).filter((limit) => limit.always || limit.value <= 2.5 * largest);
     const entries = [...(data.dots ?? []).filter((one) => one.name), ...(data.columns ?? []).filter((one) => one.name), ...(data.lines ?? []).filter((one) => one.name), ...(data.bands ?? []), ...limits];
     const legend = legendOf(entries, width);
     const top = legend.height + 22;

@@ -99,6 +99,16 @@ def test_what_follows_the_pointer_is_the_chains_own_error(client: Client, begun:
     assert told["orders"]["amplitude_deg"][2] == pytest.approx(second, rel=0.05)
 
 
+def test_an_offset_in_volts_counts_more_in_a_weaker_field(client: Client, begun: dict[str, Any]) -> None:
+    """What order 1 gains by the field's fall is what the offset does: all else of that order is far smaller here."""
+    near, far = (client.ask("design/at-once", changed(begun, placement__air_gap_mm=gap)).json for gap in (2.5, 4.5))
+    weaker = near["figures"]["field_mT"] / far["figures"]["field_mT"]
+    assert weaker > 2.0
+    # 0.1 % of offset in each channel, and what the plates leave.
+    first = [told["orders"]["amplitude_deg"][1] for told in (near, far)]
+    assert first[1] / first[0] == pytest.approx(weaker, rel=0.15)
+
+
 def test_temperature_and_speed_are_followed(client: Client, begun: dict[str, Any]) -> None:
     at_rest = client.ask("design/at-once", begun).json
     warm = client.ask("design/at-once", changed(begun, temperature_c=125.0)).json

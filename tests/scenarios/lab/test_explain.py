@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from diagnosis import explain
 from scenarios.cli.sweeps import explain as command
 from scenarios.lab.columns import MOST_POINTS, drawn, extremes, highest_in_columns
 from scenarios.lab.explaining import BUDGET_S, SEED, Explaining, Question
-from scenarios.lab.layers import MODEL
+from scenarios.lab.layers import MODEL, Layers, Look
 from tests.command_line import csv_text, halltwin, sweep_angles
 from tests.scenarios.lab.serving import Client
 from twin.files import write_twin
@@ -291,6 +292,36 @@ def test_a_twin_that_was_dropped_is_what_the_sweep_is_held_against(
     assert told["held_against"] == "given twin"
     assert "--twin old.toml" in told["command"]
     assert any("offset" in words for words in told["changed"])
+
+
+def answer_layers(effects: str, *options: str, folder: Path) -> Layers:
+    """The layers of a simulated sweep of a sensor with these effects."""
+    (folder / "twin.toml").write_text(TWIN.partition("[effects.hysteresis]")[0] + effects)
+    assert halltwin("simulate", folder / "twin.toml", "-o", folder / "s.csv", "--seed", "3", *options).code == 0
+    return Layers(explain(folder / "s.csv"))
+
+
+def test_single_readings_come_back_where_their_cause_is_off(tmp_path: Path) -> None:
+    effects = "[effects.bus_glitch]\ncount = 5.0\n[effects.noise]\nrms_deg = 0.02\n"
+    layers = answer_layers(effects, "--points", "120", "--turns", "2", folder=tmp_path)
+    assert "bus_glitch" in layers.causes
+    shown = {"values": {}, "over": "angle", "width": 300, "with_spectrum": False}
+    on, off = (layers.look(Look(off=frozenset(names), **shown)) for names in ((), ("bus_glitch",)))
+    assert on["rms_deg"] < 0.03
+    assert "touched" not in on
+    assert len(off["touched"]["y"]) == len(layers.causes["bus_glitch"].rows) >= 3
+    assert off["rms_deg"] > 1.0
+
+
+def test_all_off_is_the_error_as_measured_whatever_a_cause_does_to_the_zero(tmp_path: Path) -> None:
+    """A slip of the reference moves the mean of all that follow."""
+    effects = "[effects.index_slip]\nstep_deg = 0.9\ntime_s = 40.0\n[effects.noise]\nrms_deg = 0.02\n"
+    layers = answer_layers(effects, "--points", "120", "--turns", "2", folder=tmp_path)
+    told = layers.told()
+    assert len(told["layers"]) > 1
+    off = frozenset(one["name"] for one in told["layers"])
+    look_ = Look(off=off, values={}, over="angle", width=300, with_spectrum=False)
+    assert layers.look(look_)["rms_deg"] == pytest.approx(told["measured_deg"], rel=1e-3)
 
 
 # ---- many readings -----------------------------------------------------------------------------------------------

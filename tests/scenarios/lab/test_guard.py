@@ -147,7 +147,8 @@ HOSTILE = (
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_a_hostile_name_of_a_file_is_refused(client: Client, name: str) -> None:
-    got = client.ask("twin/open", body=b"schema = 1", X_File_Name=quote(name, safe=""))
+    body = b'schema = "halltwin.twin/1"\n[magnet]\n'
+    got = client.ask("twin/open", body=body, X_File_Name=quote(name, safe=""))
     assert got.status == 400
     assert got.error.isprintable()
     assert client.ask("start").json["twin"]["name"] == "imc-14bit"

@@ -1,0 +1,98 @@
+"""Mutations of the page's server: whom it answers, what it reads, and that its figures are the command line's."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation
+
+_GUARD, _SERVER, _DROPPED = (f"scenarios/lab/{name}.py" for name in ("guard", "server", "dropped"))
+_LAYERS, _COLUMNS, _DESIGN = (f"scenarios/lab/{name}.py" for name in ("layers", "columns", "design"))
+_GUARD_TESTS = "tests/scenarios/lab/test_guard.py"
+_DESIGN_TESTS = "tests/scenarios/lab/test_design.py"
+_EXPLAIN_TESTS = "tests/scenarios/lab/test_explain.py"
+
+LAB: tuple[Mutation, ...] = (
+    Mutation(
+        "lab.host",
+        _GUARD,
+        'if headers.get("Host") != f"{ADDRESS}:{self.port}":',
+        "if False:",
+        (f"{_GUARD_TESTS}::test_another_name_of_this_address_is_refused",),
+    ),
+    Mutation(
+        "lab.origin",
+        _GUARD,
+        'if headers.get("Origin", self.origin) != self.origin:',
+        "if False:",
+        (f"{_GUARD_TESTS}::test_another_site_is_refused",),
+    ),
+    Mutation(
+        "lab.fetch_site",
+        _GUARD,
+        'not in ("same-origin", "none"):',
+        'in ("nowhere",):',
+        (f"{_GUARD_TESTS}::test_another_site_is_refused",),
+    ),
+    Mutation(
+        "lab.secret",
+        _GUARD,
+        "or not secrets.compare_digest(token.encode(), self.token.encode()):",
+        "or False:",
+        (f"{_GUARD_TESTS}::test_nothing_is_had_without_the_secret",),
+    ),
+    Mutation(
+        "lab.own_header",
+        _GUARD,
+        'if method == "POST" and OWN_HEADER not in headers:',
+        "if False:",
+        (f"{_GUARD_TESTS}::test_a_question_without_the_pages_own_header_is_refused",),
+    ),
+    Mutation(
+        "lab.length",
+        _SERVER,
+        "if len(told) > len(str(most)) or int(told) > most:",
+        "if False:",
+        (f"{_GUARD_TESTS}::test_a_file_that_is_too_large_is_refused_before_it_is_read",),
+    ),
+    Mutation(
+        "lab.hostile_name",
+        _DROPPED,
+        "not given.isprintable() or set(given) & set(",
+        "False or set() & set(",
+        (f"{_GUARD_TESTS}::test_a_hostile_name_of_a_file_is_refused",),
+    ),
+    Mutation(
+        "lab.called_by_its_name",
+        _DROPPED,
+        "return UserError(str(error).replace(str(path), name).replace(path.name, name))",
+        "return error",
+        (f"{_EXPLAIN_TESTS}::test_a_hostile_sweep_is_one_line_that_names_it",),
+    ),
+    Mutation(
+        "lab.scaled_to_the_field",
+        _DESIGN,
+        "own = in_designs(chain, designs)",
+        "own = replace(chain, magnet=designs)",
+        (f"{_DESIGN_TESTS}::test_an_offset_in_volts_counts_more_in_a_weaker_field",),
+    ),
+    Mutation(
+        "lab.single_readings",
+        _LAYERS,
+        "among[list(cause.rows)] = True",
+        "pass",
+        (f"{_EXPLAIN_TESTS}::test_single_readings_come_back_where_their_cause_is_off",),
+    ),
+    Mutation(
+        "lab.mean_without_factors",
+        _LAYERS,
+        "if MODEL in off:\n            left",
+        "if False:\n            left",
+        (f"{_EXPLAIN_TESTS}::test_all_off_is_the_error_as_measured_whatever_a_cause_does_to_the_zero",),
+    ),
+    Mutation(
+        "lab.extremes",
+        _COLUMNS,
+        "np.maximum.reduceat(values, first)",
+        "values[first]",
+        (f"{_EXPLAIN_TESTS}::test_of_many_readings_each_column_keeps_its_extremes",),
+    ),
+)

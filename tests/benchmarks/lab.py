@@ -3,7 +3,8 @@
     python -m tests.benchmarks.lab [moves]
 
 A headless Chromium drags the magnet of the page; the page itself notes when the pointer moved and when everything that
-follows from it was drawn. Beside it, the time that the program alone takes for an answer.
+follows from it was drawn. Beside it, the time that the program alone takes for an answer, and for the picture of a
+sweep of 100,080 readings with one of its causes off, spectrum included.
 """
 
 from __future__ import annotations
@@ -17,10 +18,15 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnosis import explain
+from scenarios.commands.protocol import Protocol
+from scenarios.lab.layers import Layers, Look
 from tests.scenarios.lab.browser import BROWSER, WHY_SKIPPED, browsing, opened
 from tests.scenarios.lab.dragging import DRAG_TIMES
 from tests.scenarios.lab.serving import Client, serving
+from twin.files import read_twin
 
+DATA = Path(__file__).parents[2] / "scenarios" / "data"
 _FRAME_S = 1.0 / 60.0
 
 
@@ -54,6 +60,22 @@ def answered(client: Client, times: int) -> list[float]:
     return taken
 
 
+def looked(times: int) -> list[float]:
+    """Milliseconds for the picture of a long sweep, whose search is stopped once it holds its cause."""
+    twin = read_twin(DATA / "bench_twin.toml")
+    motion = Protocol(turns=139, points=360, both_directions=True, channels=False).motion()
+    layers = Layers(explain(twin.simulate(motion, seed=1), budget_s=60.0))
+    print(f"of 100,080 readings {len(layers.read.error_deg):,} are drawn")
+    taken = []
+    for step in range(times):
+        off = frozenset(list(layers.causes)[: step % 2])
+        look = Look(off=off, values={}, over="angle", width=800, with_spectrum=True)
+        start = time.perf_counter()
+        json.dumps(layers.look(look))
+        taken.append(1e3 * (time.perf_counter() - start))
+    return taken
+
+
 def main() -> None:
     """Measure and tell."""
     moves = int(sys.argv[1]) if len(sys.argv) > 1 else 300
@@ -66,6 +88,7 @@ def main() -> None:
                 print(WHY_SKIPPED)
             else:
                 rows["drag to redraw"] = dragged(client, folder, moves)
+    rows["a look at 100,080 readings"] = looked(40)
     for what, taken in rows.items():
         median, high = np.quantile(taken, [0.5, 0.95])
         print(f"{what}: median {median:.1f} ms, 95 % within {high:.1f} ms, {len(taken)} times")

@@ -1,5 +1,7 @@
 // The design in numbers: for each a slider and a field, with its name and unit. They are the way for the keyboard.
 
+import { given } from "./plot.js";
+
 const MAGNET = [
   ["magnet.diameter_mm", "Diameter", "mm", 2, 16, 0.05],
   ["magnet.length_mm", "Length, magnetised", "mm", 2, 16, 0.05],
@@ -152,8 +154,8 @@ export class Controls {
     for (const [name, shownHere] of Object.entries(used)) this.rows.get(`magnet.${name}`).row.hidden = !shownHere;
     const stated = this.grades[grade];
     this.remanence.textContent = own
-      ? `${own} T at 20 °C, as the twin states it; grade ${grade}: ${stated.percent_per_K} %/K`
-      : `${stated.remanence_T} T at 20 °C, ${stated.percent_per_K} %/K`;
+      ? `${own} T at 20 °C, as the twin states it; grade ${grade}: ${given(stated.percent_per_K)} %/K`
+      : `${stated.remanence_T} T at 20 °C, ${given(stated.percent_per_K)} %/K`;
     this.remanence.title = stated.source;
   }
 }

@@ -6,6 +6,7 @@ import { become, element, given, Plot, shown } from "./plot.js";
 import { picture, save, showCommand } from "./save.js";
 import { Side, Top } from "./scene.js";
 
+const AT_PAUSE_MS = 60;
 const AT_REST_MS = 180;
 const TURN = { span: [0, 360], marks: [0, 90, 180, 270, 360], x: "shaft angle / deg" };
 const by = (id) => document.getElementById(id);
@@ -72,6 +73,9 @@ export class DesignView {
     this.show();
     by("figures").classList.add("waiting");
     this.atOnce(this.design, when);
+    // The hand comes first: the causes follow where it pauses, the study and the map where it rests.
+    clearTimeout(this.pause);
+    this.pause = setTimeout(() => this.causes(this.design), AT_PAUSE_MS);
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.rest(), AT_REST_MS);
   }
@@ -92,8 +96,6 @@ export class DesignView {
     this.told = await ask("design/at-once", design);
     complain(null);
     this.drawTold(design);
-    // The hand comes first: the causes follow where it pauses.
-    if (design === this.design) this.causes(design);
     if (when !== undefined) performance.measure("drag to redraw", { start: when, end: performance.now() });
   }
 
@@ -151,7 +153,7 @@ export class DesignView {
       );
     }
     cards.push(
-      { name: "Error by 1 mT of stray field", value: here.stray_error_deg, unit: "deg", beside: `at most; field ${shown(here.field_low_mT)} mT` },
+      { name: "By 1 mT of stray field", value: here.stray_error_deg, unit: "deg", beside: `at most; field ${shown(here.field_low_mT)} mT` },
       { name: "Noise in the angle", value: here.noise_deg, unit: "deg RMS", beside: here.resolution_bits === null ? "the twin has none" : `as a grid of ${shown(here.resolution_bits)} bits` },
     );
     become(by("figures"), cards.map(card));

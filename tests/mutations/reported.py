@@ -169,6 +169,12 @@ REPORTED = (
             "::test_a_counter_of_rows_is_asked_about",
         ),
         (
+            "logs.a_zero_makes_another_sensor",
+            "copied = any(is_one_sensors(a, b, one.units) for one in fitting)",
+            "copied = any(is_copy(a, b, one.units) for one in fitting)",
+            "::test_one_sensor_that_stands_twice_is_asked_about[another zero]",
+        ),
+        (
             "logs.a_sensors_own_counts_are_its_reference",
             "    if copied and one.weight < _NAMED_BOTH:",
             "    if False:",
@@ -179,10 +185,10 @@ REPORTED = (
         "twin/logs/angles.py",
         "tests/untidy/test_doubtful.py",
         (
-            "logs.a_zero_makes_another_sensor",
-            "    away = (wrap_deg(error - error[:1]) for error in (b - a, b + a))",
-            "    away = (wrap_deg(error) for error in (b - a, b + a))",
-            "::test_one_sensor_that_stands_twice_is_asked_about",
+            "logs.what_counts_the_other_way_is_another_sensor",
+            "for error in (b - a, b + a))",
+            "for error in (b - a,))",
+            "::test_one_sensor_that_stands_twice_is_asked_about[the other way]",
         ),
         (
             "logs.a_short_span_beside_degrees_is_radians",

@@ -26,12 +26,14 @@ def diagnose(
     output_sense: int | None = None,
     mounting: Mounting | None = None,
     columns: str | None = None,
+    swarm: bool = False,
 ) -> Diagnosis:
     """Quantify the paper's error factors of a sweep, and say what each figure is worth.
 
-    What ``halltwin diagnose`` does for one sweep: a particle swarm finds the valley, least squares its floor; then
-    intervals, what these readings cannot tell, and the mechanical cause that would make the same curve. Causes beyond
-    the error model are what :func:`diagnosis.explain` looks for.
+    What ``halltwin diagnose`` does for one sweep: descents from several starts find the valley, the paper's particle
+    swarm where they do not agree or where it is asked for, and least squares its floor; then intervals, what these
+    readings cannot tell, and the mechanical cause that would make the same curve. Causes beyond the error model are
+    what :func:`diagnosis.explain` looks for.
 
     Parameters
     ----------
@@ -54,6 +56,9 @@ def diagnose(
         The magnet and its air gap, in place of the twin's.
     columns : str, optional
         Which columns of a file are those of a sweep, as :func:`diagnosis.explain` takes it.
+    swarm : bool, optional
+        Search by the paper's modified particle swarm even where descents from all starts agree; ``band_deg`` asks for
+        it, too.
 
     Returns
     -------
@@ -96,6 +101,7 @@ def diagnose(
         twin=twin,
         output_sense=output_sense,
         mounting=mounting,
+        swarm=swarm,
     )[0]
 
 
@@ -109,8 +115,9 @@ def diagnose_many(
     output_sense: int | None = None,
     mounting: Mounting | None = None,
     progress: Listener | None = None,
+    swarm: bool = False,
 ) -> Diagnoses:
-    """Quantify the paper's error factors of many sweeps; those of equal length in one swarm.
+    """Quantify the paper's error factors of many sweeps; those of equal length together.
 
     Parameters
     ----------
@@ -130,6 +137,8 @@ def diagnose_many(
         As in :func:`diagnose`; one air gap, that of the first sweep, or one for each.
     progress : callable, optional
         Called with a :class:`diagnosis.Progress` as the sweeps are read, fitted and judged.
+    swarm : bool, optional
+        As in :func:`diagnose`.
 
     Returns
     -------
@@ -159,6 +168,7 @@ def diagnose_many(
     import numpy as np
 
     from diagnosis.blas_threads import one_blas_thread
+    from diagnosis.error_model.global_search import QUICK
     from diagnosis.factors.findings import placed, quantify_many
     from diagnosis.report.provenance import Provenance
     from twin.catalogue import CATALOGUE
@@ -184,7 +194,8 @@ def diagnose_many(
     with one_blas_thread():
         band_rad = None if band_deg is None else float(np.radians(band_deg))
         place.for_sweeps(len(read))
-        found = quantify_many(read, rng=rng, robust=robust, band_rad=band_rad, count=count, told=told)
+        search = QUICK if swarm else None
+        found = quantify_many(read, rng=rng, robust=robust, band_rad=band_rad, count=count, told=told, swarm=search)
         found = [replace(one, words=told.lines) for one, told in zip(placed(found, place), each, strict=True)]
     return Diagnoses(tuple(Diagnosis(one, made) for one in found), made)
 

@@ -1,4 +1,4 @@
-"""The fit of the paper's error model: the swarm finds the neighbourhood of the minimum, least squares the minimum.
+"""The fit of the paper's error model: near the minimum on the quadratic form, to the minimum on the readings.
 
     from diagnosis.error_model.fit import fit_baseline
 
@@ -13,8 +13,10 @@ Angles (n,) in rad, any range, wrapped or not, in any order; 8 rows to millions.
 in which sensor and output count; otherwise both pairs that agree with the slope are tried. ``weights`` (n,) are
 inverse variances up to a factor; a row of weight 0 is not used. ``robust=True`` leaves isolated gross errors (jumps of
 up to 180 deg in up to a few per cent of the rows) out of the fit; smooth structure, however large, is never left out.
-``band_rad`` is Delta E of Eq. 7 (:func:`diagnosis.error_model.error_band.delta_e_rad`) and turns on the discard rule of
-Eq. 11.
+The neighbourhood is found by descents from several starts, and by the paper's modified particle swarm where these do
+not agree, or where it is asked for by its ``settings``.
+``band_rad`` is Delta E of Eq. 7 (:func:`diagnosis.error_model.error_band.delta_e_rad`) and asks for the
+swarm with the discard rule of Eq. 11.
 
 :func:`fit_equal` does many sweeps of equal length at once, (batch, n) each, :func:`fit_many` a list of any lengths.
 """
@@ -27,14 +29,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.error_model import least_squares, model, swarm
-from diagnosis.error_model.global_search import first_look, search
+from diagnosis.error_model.first_look import first_look
+from diagnosis.error_model.global_search import search
 from diagnosis.error_model.model import Readings
 from diagnosis.error_model.outcome import Outcome, results
 from diagnosis.error_model.result import BaselineFit
 from twin.angles import Array
-
-QUICK = swarm.SwarmSettings(particles=32, iterations=64, stop_settled=True)
-"""Enough to come near the minimum; least squares does the rest. The paper's own setting is ``SwarmSettings()``."""
 
 _CLEAR_SIGMA2 = 100.0
 """Swapped senses whose first fit is worse by this many squared standard errors are not fitted to the readings."""
@@ -50,7 +50,7 @@ def fit_baseline(
     weights: Array | None = None,
     senses: tuple[int, int] | None = None,
     robust: bool = False,
-    settings: swarm.SwarmSettings = QUICK,
+    settings: swarm.SwarmSettings | None = None,
     band_rad: float | None = None,
 ) -> BaselineFit:
     """Fit one sweep, all arrays (n,); see the module's text."""
@@ -72,7 +72,7 @@ def fit_many(
     rng: np.random.Generator,
     senses: tuple[int, int] | None = None,
     robust: bool = False,
-    settings: swarm.SwarmSettings = QUICK,
+    settings: swarm.SwarmSettings | None = None,
     band_rad: float | None = None,
 ) -> list[BaselineFit]:
     """Fit sweeps (reference, measured) of any lengths; those of equal length together."""
@@ -102,7 +102,7 @@ def fit_equal(
     weights: Array | None = None,
     senses: tuple[int, int] | None = None,
     robust: bool = False,
-    settings: swarm.SwarmSettings = QUICK,
+    settings: swarm.SwarmSettings | None = None,
     band_rad: float | None = None,
 ) -> list[BaselineFit]:
     """Fit sweeps of equal length, all arrays (batch, n), with one batched swarm; see the module's text."""
@@ -130,27 +130,29 @@ def _fit_batch(
     weights: Array | None,
     senses: tuple[int, int] | None,
     robust: bool,
-    settings: swarm.SwarmSettings,
+    settings: swarm.SwarmSettings | None,
     band_rad: float | None,
 ) -> list[BaselineFit]:
     n = reference.shape[1]
-    sensor, output = _first_senses(reference, measured, weights, senses)
-    plain = Readings.of(
-        reference, measured, sensor_sense=sensor[:, None], output_sense=output[:, None], weights=weights
-    )
+    plain = Readings.of(reference, measured, weights=weights)
+    sensor, output = _first_senses(plain, senses)
+    plain = plain.in_senses(sensor[:, None], output[:, None])
     both = senses is None
-    used, swap = first_look(plain, reference, both=both, robust=robust)
-    used = used.oriented(swap)
-    found = search(used, settings=settings, rng=rng, band_rad=band_rad)
+    look = first_look(plain, reference, both=both, robust=robust)
+    used, swap = look.readings, look.swap
+    found = search(look, settings=settings, rng=rng, band_rad=band_rad)
 
-    coarse = least_squares.descend(least_squares.on_gram(found.gram), found.best, count=n)
-    exact = least_squares.descend(least_squares.on_readings(used), coarse.points, count=n)
+    coarse, swapped = (found.best, found.cost), look.other
+    if found.rounds.any() or found.box.widened.any():
+        # The swarm stops near the minimum, and of large errors the form is another one.
+        coarse = least_squares.descend_on_gram(found.gram, found.best, count=n)[:2]
+        if look.other is not None:
+            near = np.where(look.agreed[:, None], look.other[0], model.mirrored(coarse[0]))
+            swapped = least_squares.descend_on_gram(model.swapped_gram(found.gram), near, count=n)[:2]
+    exact = least_squares.descend(least_squares.on_readings(used), coarse[0], count=n)
     other: tuple[Array, Array] | None = None
-    if both:
-        swapped = least_squares.descend(
-            least_squares.on_gram(model.swapped_gram(found.gram)), model.mirrored(coarse.points), count=n
-        )
-        exact, other, turned = _both_senses(used, exact, coarse, swapped)
+    if swapped is not None:
+        exact, other, turned = _both_senses(used, exact, coarse[1], swapped)
         swap = swap ^ turned
     sign = np.where(swap, -1.0, 1.0)
     outcome = Outcome(
@@ -166,15 +168,17 @@ def _fit_batch(
 
 
 def _both_senses(
-    used: Readings, exact: least_squares.Minimum, coarse: least_squares.Minimum, swapped: least_squares.Minimum
+    used: Readings, exact: least_squares.Minimum, coarse_cost: Array, swapped: tuple[Array, Array]
 ) -> tuple[least_squares.Minimum, tuple[Array, Array], NDArray[np.bool_]]:
     """Fit the swapped senses to the readings too, where they are not clearly worse; keep the better pair of each sweep.
 
-    Returns the better one, points (batch, 6) and costs (batch,) of the other, and where the swapped one is the better.
+    ``swapped`` are points (batch, 6) and costs (batch,) of the swapped senses on the form, ``coarse_cost`` (batch,) of
+    the others. Returns the better one, points (batch, 6) and costs (batch,) of the other, and where the swapped one is
+    the better.
     """
-    noise = np.maximum(np.minimum(coarse.cost, swapped.cost) / max(used.count - 6, 1), 1e-300)
-    close = (swapped.cost - coarse.cost) / noise < _CLEAR_SIGMA2
-    points, cost = swapped.points.copy(), swapped.cost.copy()
+    points, cost = (one.copy() for one in swapped)
+    noise = np.maximum(np.minimum(coarse_cost, cost) / max(used.count - 6, 1), 1e-300)
+    close = (cost - coarse_cost) / noise < _CLEAR_SIGMA2
     turned = np.zeros(cost.size, dtype=np.bool_)
     if close.any():
         rest = used.sweeps(close).oriented(np.ones(int(close.sum()), dtype=np.bool_))
@@ -195,13 +199,10 @@ def _both_senses(
     return exact, (points, cost), turned
 
 
-def _first_senses(
-    reference: Array, measured: Array, weights: Array | None, senses: tuple[int, int] | None
-) -> tuple[Array, Array]:
+def _first_senses(readings: Readings, senses: tuple[int, int] | None) -> tuple[Array, Array]:
     """s and h (batch,) of the pair that is tried first: h = +1 where the senses are free."""
-    batch = reference.shape[0]
+    batch = readings.cos_shaft.shape[0]
     if senses is not None:
         return np.full(batch, float(senses[0])), np.full(batch, float(senses[1]))
-    w = 1.0 if weights is None else weights
-    follows = [np.abs(np.sum(w * np.exp(1j * (measured - sense * reference)), axis=-1)) for sense in (1, -1)]
-    return np.where(follows[0] >= follows[1], 1.0, -1.0), np.ones(batch)
+    with_shaft, against = (np.hypot(*readings.resultant(sense)) for sense in (1.0, -1.0))
+    return np.where(with_shaft >= against, 1.0, -1.0), np.ones(batch)

@@ -69,10 +69,28 @@ def on_readings(readings: Readings) -> Normal:
     return sums
 
 
-def descend(normal: Normal, start: Array, *, count: int, fixed: NDArray[np.bool_] | None = None) -> Minimum:
+def descend_on_gram(gram: Array, start: Array, *, count: int) -> Minimum:
+    """Descend on quadratic forms (batch, 10, 10) as far as their digits go, see :func:`descend`."""
+    return descend(on_gram(gram), start, count=count, rounding=rounding_of(gram))
+
+
+def rounding_of(gram: Array) -> Array:
+    """By how much the sum of squares of a quadratic form (batch, 10, 10) is rounded, (batch,): a sum of such terms."""
+    return np.asarray(np.finfo(np.float64).eps * np.trace(gram, axis1=-2, axis2=-1))
+
+
+def descend(
+    normal: Normal,
+    start: Array,
+    *,
+    count: int,
+    fixed: NDArray[np.bool_] | None = None,
+    rounding: Array | float = 0.0,
+) -> Minimum:
     """Descend from ``start`` (batch, 6) within the twin's limits; ``count`` is the number of readings a sweep.
 
-    Parameters marked in ``fixed`` (6,) stay where they start.
+    Parameters marked in ``fixed`` (6,) stay where they start. A step that gains less than ``rounding``, one or
+    (batch,), is the last.
     """
     points = np.clip(start, LOWER_LIMIT, UPPER_LIMIT)
     curvature, descent, total = normal(points)
@@ -84,7 +102,7 @@ def descend(normal: Normal, start: Array, *, count: int, fixed: NDArray[np.bool_
         step = _solve(curvature, descent, damping, held if fixed is None else held | fixed)
         trial = np.clip(points + step, LOWER_LIMIT, UPPER_LIMIT)
         expected = np.einsum("bi,bij,bj->b", step, curvature, step)
-        settled |= expected <= _SETTLED * total / max(count - 6, 1)
+        settled |= expected <= np.maximum(_SETTLED * total / max(count - 6, 1), rounding)
         if settled.all():
             # The last step is taken unseen: it is shorter than any error bar, and costs no pass.
             points = np.where(settled[:, None], trial, points)

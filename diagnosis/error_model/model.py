@@ -155,6 +155,26 @@ class Readings:
             weights,
         )
 
+    def in_senses(self, sensor: Array, output: Array) -> Readings:
+        """The readings with these senses, +1 or -1, broadcast against them, in place of +1 and +1."""
+        return replace(self, sin_shaft=sensor * self.sin_shaft, sin_read=output * self.sin_read)
+
+    def resultant(self, sense: float = 1.0) -> tuple[Array, Array]:
+        """Sums (...,) of cosine and sine of h m - sense s theta, by the weights."""
+        c, s = self.cos_read, self.sin_read
+        if self.weights is not None:
+            c, s = c * self.weights, s * self.weights
+        cc, ss, sc, cs = (
+            np.einsum("...n,...n->...", read, shaft)
+            for read, shaft in (
+                (c, self.cos_shaft),
+                (s, self.sin_shaft),
+                (s, self.cos_shaft),
+                (c, self.sin_shaft),
+            )
+        )
+        return cc + sense * ss, sc - sense * cs
+
     @property
     def count(self) -> int:
         """Readings a sweep."""

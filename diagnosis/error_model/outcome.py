@@ -100,9 +100,11 @@ def _contributions(outcome: Outcome, k: int, counted: NDArray[np.bool_], rms_rad
     found, given = outcome.search, outcome.plain.weights
     total = float(np.count_nonzero(counted) if given is None else given[k].sum())
     best, own = found.histories[k]
+    searched, by_swarm = float(np.sqrt(found.cost[k] / total)), bool(found.rounds[k])
     return Contributions(
         zero_only_rms_rad=float(np.sqrt(found.zero_only[k] / total)),
-        swarm_rms_rad=float(np.sqrt(found.cost[k] / total)),
+        swarm_rms_rad=searched if by_swarm else None,
+        descents_rms_rad=None if by_swarm else searched,
         polished_rms_rad=rms_rad,
         particles_evaluated=int(found.evaluations[k]),
         particles_discarded=int(found.discarded[k]),

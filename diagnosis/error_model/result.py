@@ -41,13 +41,16 @@ class SearchRange:
 
 @dataclass(frozen=True)
 class Contributions:
-    """What each step of the fit gave: the RMS error [rad] with the zero alone, after the swarm, after least squares.
+    """What each step of the fit gave: the RMS error [rad] with the zero alone, after the search, after least squares.
 
-    The first two come from the swarm's objective, sines of the angle error weighted by r^2: the RMS to a few per cent.
+    The first two come from the quadratic form, sines of the angle error weighted by r^2: the RMS to a few per cent.
     """
 
     zero_only_rms_rad: float
-    swarm_rms_rad: float
+    swarm_rms_rad: float | None
+    """None where the swarm did not run."""
+    descents_rms_rad: float | None
+    """Where descents from all starts end in one minimum; None where they do not, or the swarm was asked for."""
     polished_rms_rad: float
     particles_evaluated: int
     particles_discarded: int

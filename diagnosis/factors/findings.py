@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from diagnosis.error_model.fit import BATCH, fit_equal
 from diagnosis.error_model.model import Readings
 from diagnosis.error_model.result import BaselineFit
+from diagnosis.error_model.swarm import SwarmSettings
 from diagnosis.factors import channels
 from diagnosis.factors.air_gaps import AirGaps, air_gaps, start_gaps
 from diagnosis.factors.band_check import BandCheck, band_check
@@ -91,8 +92,9 @@ def quantify_many(
     band_rad: float | None = None,
     count: Count | None = None,
     told: KnownSense | None = None,
+    swarm: SwarmSettings | None = None,
 ) -> list[Findings]:
-    """Fit and judge many sweeps; those of equal length and senses in one batched swarm.
+    """Fit and judge many sweeps; those of equal length and senses together, by the swarm where it is asked for.
 
     ``band_rad`` is the Delta E that the swarm discards particles by (Eq. 11); None: none is discarded. ``count`` tells
     how many are fitted, and then how many are judged; ``told`` in which sense the output counts.
@@ -101,13 +103,14 @@ def quantify_many(
     rng = rng or np.random.default_rng(DEFAULT_SEED)
     angles = [(radians(sweep.reference_deg), radians(sweep.measured_deg)) for sweep in sweeps]
     known = [known_senses(sweep, *pair, told) for sweep, pair in zip(sweeps, angles, strict=True)]
-    fits = _fitted(angles, [senses for senses, _ in known], rng=rng, robust=robust, band_rad=band_rad, count=count)
+    fit = partial(_fitted, rng=rng, robust=robust, band_rad=band_rad, swarm=swarm)
+    fits = fit(angles, [senses for senses, _ in known], count=count)
     found = [
         count.of("judging", i + 1, _judged(sweep, fits[i], known[i][1], band_rad)) for i, sweep in enumerate(sweeps)
     ]
     undecided = [i for i, one in enumerate(found) if not one.mirror.decided]
     swapped: list[Senses | None] = [(-fits[i].senses.sensor, -fits[i].senses.output) for i in undecided]
-    others = _fitted([angles[i] for i in undecided], swapped, rng=rng, robust=robust, band_rad=band_rad)
+    others = fit([angles[i] for i in undecided], swapped)
     for i, other in zip(undecided, others, strict=True):
         found[i] = _both(found[i], fits[i], other, band_rad)
     return found
@@ -128,6 +131,7 @@ def _fitted(
     rng: np.random.Generator,
     robust: bool,
     band_rad: float | None,
+    swarm: SwarmSettings | None,
     count: Count | None = None,
 ) -> list[BaselineFit]:
     """The fits of sweeps (reference, measured) with these senses, None: both tried; in their order."""
@@ -139,7 +143,9 @@ def _fitted(
         for start in range(0, len(indices), BATCH):
             batch = indices[start : start + BATCH]
             reference, measured = (np.stack([angles[i][side] for i in batch]) for side in (0, 1))
-            fitted = fit_equal(reference, measured, rng=rng, senses=given, robust=robust, band_rad=band_rad)
+            fitted = fit_equal(
+                reference, measured, rng=rng, senses=given, robust=robust, settings=swarm, band_rad=band_rad
+            )
             fits.update(zip(batch, fitted, strict=True))
             if count is not None:
                 count.of("error_model", len(fits), None)

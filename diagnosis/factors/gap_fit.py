@@ -72,7 +72,8 @@ class GapFit:
         x, y = self.numbers[rows]
         size = float(np.hypot(x, y))
         along = np.array([x, y]) / size if size > 0.0 else np.array([1.0, 0.0])
-        return complex(x, y), float(np.sqrt(along @ self.covariance[rows, rows] @ along))
+        # What the gaps do not tell has a variance that is all rounding, of either sign.
+        return complex(x, y), float(np.sqrt(max(float(along @ self.covariance[rows, rows] @ along), 0.0)))
 
 
 @dataclass(frozen=True, eq=False)

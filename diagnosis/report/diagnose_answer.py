@@ -59,7 +59,11 @@ def one_sweep(found: Findings) -> dict[str, Any]:
         "mirror_solution": _mirror_solution(found),
         "rms_deg": _degrees(fit.rms_rad),
         "steps": _steps(found),
-        "search": {"rounds": fit.search.rounds, "widened": [FACTORS[NAMES.index(n)].name for n in fit.search.widened]},
+        "search": {
+            "by": "swarm" if fit.search.rounds else "descents",
+            "rounds": fit.search.rounds,
+            "widened": [FACTORS[NAMES.index(n)].name for n in fit.search.widened],
+        },
         "correlations": [[_finite(v) for v in row] for row in found.identifiability.correlations],
         "covered_deg": found.identifiability.covered_deg,
         "mechanical": dict(vars(found.mechanical)),
@@ -119,7 +123,8 @@ def _steps(found: Findings) -> dict[str, Any]:
     steps = found.fit.contributions
     return {
         "zero_only_rms_deg": _degrees(steps.zero_only_rms_rad),
-        "swarm_rms_deg": _degrees(steps.swarm_rms_rad),
+        "swarm_rms_deg": None if steps.swarm_rms_rad is None else _degrees(steps.swarm_rms_rad),
+        "descents_rms_deg": None if steps.descents_rms_rad is None else _degrees(steps.descents_rms_rad),
         "polished_rms_deg": _degrees(steps.polished_rms_rad),
         "particles_evaluated": steps.particles_evaluated,
         "passes": steps.passes,

@@ -89,8 +89,11 @@ def _panel(axis: Any, item: Findings) -> None:
 def convergence_figure(found: Sequence[Findings]) -> Figure:
     """RMS of the swarm's best and of the particles' own bests over the iterations; the polished RMS as a line.
 
-    Raises UserError without matplotlib.
+    Raises UserError without matplotlib, and where no swarm has run.
     """
+    found = [one for one in found if one.fit.search.rounds]
+    if not found:
+        raise UserError("no swarm has run, whose convergence could be drawn; ask for it: diagnose(sweep, swarm=True)")
     with drawing() as new_figure:
         figure = new_figure(figsize=(6.5, 4.0), layout="constrained")
         axis = figure.subplots()

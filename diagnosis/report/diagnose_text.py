@@ -9,6 +9,7 @@ import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from diagnosis.error_model.descents import STARTS
 from diagnosis.report import temperature_text
 from diagnosis.report.factor_names import LABELS, SCALES, UNITS
 from diagnosis.report.row_counts import diagnosed_rows, left_out_words
@@ -36,11 +37,10 @@ def text(answer: Mapping[str, Any], *, width: int) -> str:
 def one_sweep(sweep: Mapping[str, Any], *, width: int) -> list[str]:
     """The answer for one sweep, line by line."""
     steps, senses, mirror = sweep["steps"], sweep["senses"], sweep["mirror_solution"]
-    alone, swarm, polished = (_deg(v) for v in (steps["zero_only_rms_deg"], steps["swarm_rms_deg"], sweep["rms_deg"]))
+    alone, polished = (_deg(rms) for rms in (steps["zero_only_rms_deg"], sweep["rms_deg"]))
     particles = steps["particles_evaluated"]
     facts = {
-        "error RMS": f"{alone} with the zero alone, {swarm} after the swarm ({particles} particles), "
-        f"{polished} after the polish",
+        "error RMS": f"{alone} with the zero alone, {_searched(steps)}, {polished} after the polish",
         "senses": _pair(senses)
         if mirror is None
         else f"{_pair(senses)} or {_pair(mirror)}: these readings do not tell",
@@ -219,11 +219,18 @@ def _between(equivalent: Mapping[str, Any], name: str, unit: str) -> str:
     return f"{equivalent[f'{name}_{unit}']:.{digits}f} {unit} ({ends})"
 
 
+def _searched(steps: Mapping[str, Any]) -> str:
+    if steps["swarm_rms_deg"] is None:
+        return f"{_deg(steps['descents_rms_deg'])} where the descents from {STARTS} starts end alike"
+    return f"{_deg(steps['swarm_rms_deg'])} after the swarm ({steps['particles_evaluated']} particles)"
+
+
 def _range_words(search: Mapping[str, Any]) -> str:
     if not search["widened"]:
         return "Table 2's"
     wide = ", ".join(LABELS[key] for key in search["widened"])
-    return f"wider than Table 2's in {wide} ({search['rounds']} rounds)"
+    rounds = f" ({search['rounds']} rounds)" if search["rounds"] else ""
+    return f"wider than Table 2's in {wide}{rounds}"
 
 
 def _wrapped(words: str, width: int, indent: int) -> list[str]:

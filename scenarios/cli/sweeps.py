@@ -125,6 +125,12 @@ def diagnose(
             "computed from (Eq. 7).",
         ),
     ] = None,
+    swarm: Annotated[
+        bool,
+        typer.Option(
+            "--swarm", help="Search by the paper's particle swarm, also where descents from several starts agree."
+        ),
+    ] = False,
     twin: Annotated[
         str | None,
         typer.Option(
@@ -164,6 +170,7 @@ def diagnose(
         outputs=Outputs(json=json, plot=plot, convergence=convergence, force=force),
         seed=seed,
         band=band,
+        swarm=swarm,
         known=Known(
             twin=twin, output_sense=output_sense, magnet=magnet, air_gap=air_gap, air_gap_error_mm=air_gap_error
         ),

@@ -33,10 +33,14 @@ def run(
     known: Known | None = None,
     seed: int = 0,
     band: str | None = None,
+    swarm: bool = False,
     fail_on: Sequence[str] = (),
     command: str | None = None,
 ) -> None:
-    """Diagnose what the names stand for; print the answer; write JSON and pictures where asked."""
+    """Diagnose what the names stand for; print the answer; write JSON and pictures where asked.
+
+    A picture of the swarm asks for it.
+    """
     words = asked(fail_on, DIAGNOSE)
     delta_e_deg = None if band is None else band_deg(band)
     arguments = (known or Known()).arguments()
@@ -47,7 +51,10 @@ def run(
     read = given.read(paths)
     check_panels(to.plot, len(read.sweeps))
     with progress_line() as listener:
-        found = diagnose_many(read.sweeps, seed=seed, band_deg=delta_e_deg, progress=listener, **arguments)
+        asked_for = swarm or to.convergence is not None
+        found = diagnose_many(
+            read.sweeps, seed=seed, band_deg=delta_e_deg, progress=listener, swarm=asked_for, **arguments
+        )
     found = replace(found, made=replace(found.made, command=command))
     answer = {**found.to_dict(), "unusable": read.listed()}
     try:

@@ -1,4 +1,4 @@
-"""Our swarm against the ordinary tools, on the same data in one process: ``python -m tests.benchmarks.swarm``.
+"""Our fit and swarm against the ordinary tools, on the same data in one process: ``python -m tests.benchmarks.swarm``.
 
 Every method searches the same six parameters in the same box (Table 2's, zero within 2 deg of the mean error), from
 one sweep with 0.02 deg of noise. Ours work on the quadratic form, the others evaluate all readings. What would take
@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.error_model import model, swarm
-from diagnosis.error_model.fit import QUICK, fit_baseline
+from diagnosis.error_model.fit import fit_baseline
+from diagnosis.error_model.global_search import QUICK
 from diagnosis.error_model.grid_search import full_grid_count, grid_search
 from diagnosis.error_model.model import NOMINAL, ZERO, Readings
 from diagnosis.error_model.search_range import first_box
@@ -131,7 +132,7 @@ def our_swarm(task: Problem, seed: int) -> Outcome:
 
 
 def our_quick_swarm(task: Problem, seed: int) -> Outcome:
-    """The swarm as the diagnoser runs it: 40 particles, stopped where it has settled."""
+    """The swarm as the diagnoser runs it where descents disagree: 32 particles, stopped where it has settled."""
     start = time.perf_counter()
     root = model.factor(Readings.of(task.reference, task.measured).gram())
     result = swarm.run(
@@ -146,7 +147,7 @@ def our_quick_swarm(task: Problem, seed: int) -> Outcome:
 
 
 def our_fit(task: Problem, seed: int) -> Outcome:
-    """Swarm, least squares, covariance and residuals: everything that fit_baseline does."""
+    """Descents, least squares, covariance and residuals: everything that fit_baseline does."""
     start = time.perf_counter()
     fit = fit_baseline(task.reference, task.measured, rng=np.random.default_rng(seed), senses=(1, 1))
     seconds = time.perf_counter() - start
@@ -286,10 +287,10 @@ def compare(task: Problem, seed: int, patience: float, evolved: int) -> int:
     readings = task.reference.size
     repeats = 5 if readings <= 20000 else 2
     print(f"{readings} readings{'':18}        time           RMS reached      evaluations   time over ours")
-    ours = _line("our swarm + least squares + intervals", lambda: our_fit(task, seed), repeats=repeats)
+    ours = _line("our fit: descents, least squares, intervals", lambda: our_fit(task, seed), repeats=repeats)
     assert ours is not None
     base = ours.seconds
-    _line("our swarm as the diagnoser runs it", lambda: our_quick_swarm(task, seed), base, repeats)
+    _line("our swarm as the diagnoser asks for it", lambda: our_quick_swarm(task, seed), base, repeats)
     _line("our swarm, 100 x 200", lambda: our_swarm(task, seed), base, repeats)
     _line("our moves on all readings", lambda: numpy_swarm(task, seed, patience), base)
     _line("pyswarms, Eq. 4 as written", lambda: pyswarms(task, seed, patience, Written(task)), base)

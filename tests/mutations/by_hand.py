@@ -15,6 +15,20 @@ _GAP_TESTS = "tests/diagnosis/factors/test_air_gaps.py"
 
 ERROR_MODEL: tuple[Mutation, ...] = (
     Mutation(
+        "descents.all_agree",
+        "diagnosis/error_model/descents.py",
+        "np.all(cost - least <= apart, axis=1) & np.all(",
+        "np.all(cost < np.inf, axis=1) | np.all(",
+        ("tests/diagnosis/error_model/test_fit.py::test_the_swarm_searches_where_descents_do_not_agree",),
+    ),
+    Mutation(
+        "descents.a_step_below_rounding_goes_on",
+        "diagnosis/error_model/least_squares.py",
+        "np.maximum(_SETTLED * total / max(count - 6, 1), rounding)",
+        "_SETTLED * total / max(count - 6, 1)",
+        ("tests/diagnosis/error_model/test_fit.py::test_a_descent_ends_where_the_forms_digits_end",),
+    ),
+    Mutation(
         "swarm.discard",
         _SWARM,
         "            now[out] = np.inf\n",
@@ -93,8 +107,8 @@ FACTORS: tuple[Mutation, ...] = (
     Mutation(
         "findings.no_band_reaches_the_swarm",
         "diagnosis/factors/findings.py",
-        "senses=given, robust=robust, band_rad=band_rad)",
-        "senses=given, robust=robust)",
+        "senses=given, robust=robust, settings=swarm, band_rad=band_rad",
+        "senses=given, robust=robust, settings=swarm",
         ("tests/diagnosis/factors/test_band_check.py::test_a_device_keeps_its_own_band_and_particles_are_discarded",),
     ),
     Mutation(

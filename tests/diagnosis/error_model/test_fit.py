@@ -8,8 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diagnosis import fit_baseline
+from diagnosis.error_model.descents import starts
 from diagnosis.error_model.fit import fit_equal, fit_many
-from diagnosis.error_model.model import NAMES, ZERO
+from diagnosis.error_model.global_search import QUICK
+from diagnosis.error_model.least_squares import descend_on_gram
+from diagnosis.error_model.model import NAMES, ZERO, Readings
+from diagnosis.error_model.swarm import SwarmSettings
 from scenarios.commands.paper.table_2 import draw
 from tests.diagnosis.cases import NOISE_RAD, measured, points, senses, turn
 from tests.diagnosis.error_model.study import ratio_and_coverage
@@ -94,14 +98,51 @@ def test_smooth_structure_is_no_gross_error() -> None:
     assert not fit.outliers.any()
 
 
-def test_widens_and_says_so() -> None:
+@pytest.mark.parametrize("swarm", [None, QUICK], ids=["descents", "swarm"])
+def test_widens_and_says_so(swarm: SwarmSettings | None) -> None:
     point = np.array([0.001, 0.002, 1.19, 0.001, 0.001, 0.5])
-    fit = fit_baseline(turn(360), measured(point, turn(360)), rng=np.random.default_rng(0), senses=(1, 1))
+    rng = np.random.default_rng(0)
+    fit = fit_baseline(turn(360), measured(point, turn(360)), rng=rng, senses=(1, 1), settings=swarm)
     assert fit.search.widened == ("gain_ratio",)
     assert fit.search.lower[2] < 1.19 < fit.search.upper[2]
-    assert fit.contributions.polished_rms_rad < 1e-9 < fit.contributions.swarm_rms_rad
+    assert fit.contributions.polished_rms_rad < 1e-9
+    assert (fit.search.rounds > 1) == (swarm is not None)
     np.testing.assert_allclose(fit.point, point, atol=1e-10)
     assert not fit.at_bound.any()
+
+
+def test_the_swarm_searches_where_descents_do_not_agree() -> None:
+    """Of a third of the turn with much noise some of them end in other minima; of a whole turn none does."""
+    point, rng = np.array([0.005, 0.002, 1.01, 0.01, 0.003, 0.5]), np.random.default_rng(3)
+    by = []
+    for share in (1.0, 0.1):
+        shaft = turn(360) * share
+        read = measured(point, shaft, noise=NOISE_RAD * rng.standard_normal(360))
+        found = fit_baseline(shaft, read, rng=np.random.default_rng(0), senses=(1, 1)).contributions
+        by.append((found.descents_rms_rad is not None, found.swarm_rms_rad is not None, found.particles_evaluated > 0))
+    assert by == [(True, False, False), (False, True, True)]
+
+
+def test_the_swarm_and_the_descents_end_in_one_minimum() -> None:
+    """Least squares polishes both on the readings, to 1e-5 standard errors."""
+    point, rng = np.array([0.005, -0.007, 1.015, 0.01, 0.002, 1.5]), np.random.default_rng(5)
+    read = measured(point, turn(360), noise=NOISE_RAD * rng.standard_normal(360))
+    one, other = (
+        fit_baseline(turn(360), read, rng=np.random.default_rng(0), settings=swarm) for swarm in (None, QUICK)
+    )
+    np.testing.assert_allclose(one.point, other.point, atol=1e-4 * np.sqrt(np.diag(one.covariance)).min())
+
+
+def test_a_descent_ends_where_the_forms_digits_end() -> None:
+    """Four or five passes from anywhere in the paper's range; on and on where rounding is taken for a gain."""
+    point, shaft = np.array([0.005, -0.007, 1.015, 0.01, 0.002, 0.02]), turn(10_000)
+    begun = starts(np.array([0.02]))[0]
+    for seed in range(6):
+        noise = 0.1 * NOISE_RAD * np.random.default_rng(seed).standard_normal(shaft.size)
+        form = Readings.of(shaft[None], measured(point, shaft, noise=noise)[None]).gram()
+        ended = descend_on_gram(np.repeat(form, len(begun), axis=0), begun, count=shaft.size)
+        assert ended.settled.all()
+        assert ended.passes <= 6
 
 
 def test_senses_are_decided_where_q_shows() -> None:

@@ -12,6 +12,7 @@ from diagnosis.error_model.model import QUAD
 from diagnosis.factors.air_gaps import AirGaps, quadratic_law
 from diagnosis.factors.displacement import MEASURED, upright_product
 from diagnosis.factors.gap_model import ROWS, GapSweep, causes_of, expected
+from diagnosis.factors.gap_sets import joined
 from diagnosis.factors.gap_words import sentences
 from diagnosis.report.gap_answer import gap_answer
 from tests.diagnosis.factors.gap_study import asked, of_twin
@@ -135,7 +136,7 @@ def test_more_causes_never_fit_worse_than_some_of_them(name: str, seed: int, cha
     if "reference" in causes_there:
         assert set(found.named) == causes_there
         # The magnet's displacement beside what is named: by the reference's share it would be 0.033 mm.
-        held = found.fits[("reference", "electronics", "sensor", "magnet")]
+        held = found.fits[joined(("reference", "sensor", "magnet"), found.full_2)]
         bound, by_hand = found.magnet_bound("magnet"), MEASURED["magnet"](held)
         assert held.p > 1e-3
         assert by_hand is not None

@@ -27,7 +27,9 @@ def run(sweep: str | None, *, twin: str | None, port: int, browser: bool) -> Non
         with contextlib.closing(session), _listening(session, port) as server:
             print(f"the page is at {server.guard.url}\nonly this machine can open it; Ctrl-C ends it", flush=True)
             if browser and _has_screen():
-                threading.Thread(target=webbrowser.open, args=(server.guard.url,), daemon=True).start()
+                # Not the secret itself: what a command is given, all users of the machine can list.
+                address = f"{server.guard.origin}{server.door.path}"
+                threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
             try:
                 server.serve_forever(poll_interval=0.2)
             except KeyboardInterrupt:

@@ -10,8 +10,9 @@ can add without asking first, which the server never allows. There is no cookie:
 from __future__ import annotations
 
 import secrets
-from collections.abc import Mapping
+import threading
 from dataclasses import dataclass
+from email.message import Message
 from http import HTTPStatus
 
 ADDRESS = "127.0.0.1"
@@ -46,6 +47,28 @@ def new_token() -> str:
     return secrets.token_urlsafe(_TOKEN_BYTES)
 
 
+class Door:
+    """A way to the page that works once: what a browser is started with, all users of the machine can list."""
+
+    PREFIX = "/open/"
+
+    def __init__(self) -> None:
+        self._lock, self._code = threading.Lock(), new_token()
+
+    @property
+    def path(self) -> str:
+        """The path that leads there."""
+        return f"{self.PREFIX}{self._code}"
+
+    def passed(self, path: str) -> bool:
+        """Whether this is the path, for the first time."""
+        with self._lock:
+            right = bool(self._code) and secrets.compare_digest(path.encode(), self.path.encode())
+            if right:
+                self._code = ""
+            return right
+
+
 @dataclass(frozen=True)
 class Guard:
     """The address that the server listens at, and its secret."""
@@ -63,16 +86,22 @@ class Guard:
         """The page, with the secret in its path: all that it loads and asks lies below it."""
         return f"{self.origin}/{self.token}/"
 
-    def admitted(self, method: str, path: str, headers: Mapping[str, str]) -> str:
-        """The path below the secret. Raises Refusal."""
-        if headers.get("Host") != f"{ADDRESS}:{self.port}":
+    def check_host(self, headers: Message) -> None:
+        """Refuse what was sent to another name of this address. Raises Refusal."""
+        if headers.get_all("Host") != [f"{ADDRESS}:{self.port}"]:
             raise Refusal(HTTPStatus.FORBIDDEN, "this server answers to its own address alone")
-        if headers.get("Origin", self.origin) != self.origin:
-            raise Refusal(HTTPStatus.FORBIDDEN, "the request comes from another site")
-        if headers.get("Sec-Fetch-Site", "same-origin") not in ("same-origin", "none"):
-            raise Refusal(HTTPStatus.FORBIDDEN, "the request comes from another site")
+
+    def admitted(self, method: str, path: str, headers: Message) -> str:
+        """The path below the secret. Raises Refusal."""
+        self.check_host(headers)
         _, _, rest = path.partition("/")
         token, slash, below = rest.partition("/")
+        if headers.get_all("Origin", [self.origin]) != [self.origin]:
+            raise Refusal(HTTPStatus.FORBIDDEN, "the request comes from another site")
+        # A person may come to the page itself from anywhere, as from a terminal that is a page of another site.
+        comes = method == "GET" and not below and headers.get("Sec-Fetch-Dest") == "document"
+        if not comes and headers.get("Sec-Fetch-Site", "same-origin") not in ("same-origin", "none"):
+            raise Refusal(HTTPStatus.FORBIDDEN, "the request comes from another site")
         if len(path) > _LONGEST_PATH or not slash or not secrets.compare_digest(token.encode(), self.token.encode()):
             raise Refusal(HTTPStatus.FORBIDDEN, "the address lacks its secret: open the one that halltwin lab printed")
         if method == "POST" and OWN_HEADER not in headers:

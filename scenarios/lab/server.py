@@ -13,7 +13,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from scenarios.lab.assets import asset
-from scenarios.lab.guard import ADDRESS, HEADERS, Guard, Refusal, new_token
+from scenarios.lab.guard import ADDRESS, HEADERS, Door, Guard, Refusal, new_token
 from twin.errors import UserError
 from twin.log import LOG
 
@@ -37,11 +37,12 @@ class Upload:
 
 @dataclass(frozen=True)
 class Reply:
-    """What is answered; ``download`` names the file that the browser saves it as."""
+    """What is answered; ``download`` names the file that a browser saves it as, ``to`` the page that it goes on to."""
 
     content: bytes
     kind: str = _JSON
     download: str | None = None
+    to: str | None = None
     status: HTTPStatus = HTTPStatus.OK
 
     @classmethod
@@ -68,7 +69,7 @@ class Server(ThreadingHTTPServer):
     def __init__(self, routes: Routes, *, port: int = 0) -> None:
         super().__init__((ADDRESS, port), _Handler)
         self.routes = routes
-        self.guard = Guard(self.server_address[1], new_token())
+        self.guard, self.door = Guard(self.server_address[1], new_token()), Door()
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -89,8 +90,11 @@ class _Handler(BaseHTTPRequestHandler):
     def _answer(self, method: str) -> None:
         """Reply to one request. One that was refused, or not read to its end, closes the connection."""
         try:
-            below = self.server.guard.admitted(method, self.path, dict(self.headers.items()))
-            reply = self._got(below) if method == "GET" else self._posted(below)
+            if method == "GET" and self.path.startswith(Door.PREFIX):
+                reply = self._led()
+            else:
+                below = self.server.guard.admitted(method, self.path, self.headers)
+                reply = self._got(below) if method == "GET" else self._posted(below)
         except Refusal as refused:
             self.close_connection = True
             reply = Reply.of({"error": refused.why}, refused.status)
@@ -105,6 +109,13 @@ class _Handler(BaseHTTPRequestHandler):
             words = "this is a fault of the program, not of the input; the terminal says more"
             reply = Reply.of({"error": words}, HTTPStatus.INTERNAL_SERVER_ERROR)
         self._send(reply)
+
+    def _led(self) -> Reply:
+        """From the door to the page. Raises Refusal."""
+        self.server.guard.check_host(self.headers)
+        if not self.server.door.passed(self.path):
+            raise Refusal(HTTPStatus.FORBIDDEN, "this address works once; open the one that halltwin lab printed")
+        return Reply(b"", to=f"/{self.server.guard.token}/", status=HTTPStatus.SEE_OTHER)
 
     def _got(self, below: str) -> Reply:
         found = asset(below)
@@ -147,6 +158,8 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_header("Content-Length", str(len(reply.content)))
             if reply.download is not None:
                 self.send_header("Content-Disposition", f'attachment; filename="{reply.download}"')
+            if reply.to is not None:
+                self.send_header("Location", reply.to)
             if self.close_connection:
                 self.send_header("Connection", "close")
             self.end_headers()

@@ -14,14 +14,14 @@ LAB: tuple[Mutation, ...] = (
     Mutation(
         "lab.host",
         _GUARD,
-        'if headers.get("Host") != f"{ADDRESS}:{self.port}":',
+        'if headers.get_all("Host") != [f"{ADDRESS}:{self.port}"]:',
         "if False:",
         (f"{_GUARD_TESTS}::test_another_name_of_this_address_is_refused",),
     ),
     Mutation(
         "lab.origin",
         _GUARD,
-        'if headers.get("Origin", self.origin) != self.origin:',
+        'if headers.get_all("Origin", [self.origin]) != [self.origin]:',
         "if False:",
         (f"{_GUARD_TESTS}::test_another_site_is_refused",),
     ),
@@ -31,6 +31,20 @@ LAB: tuple[Mutation, ...] = (
         'not in ("same-origin", "none"):',
         'in ("nowhere",):',
         (f"{_GUARD_TESTS}::test_another_site_is_refused",),
+    ),
+    Mutation(
+        "lab.page_alone",
+        _GUARD,
+        'comes = method == "GET" and not below and headers.get("Sec-Fetch-Dest") == "document"',
+        'comes = method == "GET"',
+        (f"{_GUARD_TESTS}::test_a_person_comes_to_the_page_from_anywhere_but_nothing_else_does",),
+    ),
+    Mutation(
+        "lab.door_once",
+        _GUARD,
+        'self._code = ""',
+        "pass",
+        (f"{_GUARD_TESTS}::test_the_door_leads_to_the_page_once",),
     ),
     Mutation(
         "lab.secret",

@@ -65,6 +65,42 @@ def test_another_site_is_refused(client: Client, headers: dict[str, str], conten
     assert "another site" in got.error
 
 
+@pytest.mark.parametrize(("name", "value"), [("oRiGin", "http://evil.example"), ("sec-fetch-site", "cross-site")])
+def test_headers_are_known_by_any_letters(client: Client, name: str, value: str) -> None:
+    assert client.ask("start", **{name: value}).status == 403
+    assert client.ask("twin/preset", {"name": "imc-14bit"}, X_Halltwin_Lab="", **{"x-halltwin-lab": "1"}).status == 200
+
+
+def test_two_hosts_are_none(client: Client) -> None:
+    assert client.ask("start", host="evil.example").status == 403
+
+
+def test_a_person_comes_to_the_page_from_anywhere_but_nothing_else_does(client: Client) -> None:
+    """By a terminal that is a page of another site; a frame of one gets nothing."""
+    comes = {"Sec_Fetch_Site": "cross-site", "Sec_Fetch_Dest": "document"}
+    assert client.ask("", **comes).status == 200
+    assert client.ask("start", **comes).status == 403
+    assert client.ask("", **{**comes, "Sec_Fetch_Dest": "iframe"}).status == 403
+    assert client.ask("", **comes, Origin="http://evil.example").status == 403
+
+
+def test_the_door_leads_to_the_page_once(tmp_path: Path) -> None:
+    """A browser is started with it, and all users of the machine can list what commands are given."""
+    with serving(tmp_path) as one:
+        door, token = one.server.door.path, one.server.guard.token
+        assert token not in door
+        assert one.raw(f"{door}x").status == 403
+        assert one.raw(door, Host="evil.example").status == 403
+        led = one.raw(door)
+        assert led.status == 303
+        assert led.headers["Location"] == f"/{token}/"
+        for path in (door, "/open/"):
+            again = one.raw(path)
+            assert again.status == 403
+            assert "works once" in again.error
+            assert "Location" not in again.headers
+
+
 def test_a_question_without_the_pages_own_header_is_refused(client: Client) -> None:
     """A form of another site can send anything but a header."""
     got = client.ask("twin/preset", {"name": "hall-12bit"}, X_Halltwin_Lab="")

@@ -166,6 +166,15 @@ def test_nothing_is_wider_than_the_screen(page: Page, width: int, dark: bool, tm
     assert len(content) > 60_000
 
 
+def test_the_door_opens_the_page(page: Page, client: Client) -> None:
+    guard = client.server.guard
+    page.of("document.documentElement.dataset.ready = 'before'")
+    page.call("Page.navigate", url=f"{guard.origin}{client.server.door.path}")
+    page.until("document.documentElement?.dataset.ready === 'yes'")
+    assert page.of("location.href").startswith(guard.url)
+    page.until(AT_REST)
+
+
 def test_it_asks_nobody_but_the_program(page: Page, client: Client) -> None:
     asked: list[str] = page.of("performance.getEntriesByType('resource').map((one) => one.name)")
     assert len(asked) > 8

@@ -50,8 +50,8 @@ export class DesignView {
   /** Begin anew with a twin as the program tells of it. */
   begin(twin) {
     this.twin = twin;
-    by("design").hidden = !twin.design;
-    complain(twin.design ? null : twin.no_design);
+    by("design").classList.toggle("empty", !twin.design);
+    put(by("no-design"), twin.no_design ?? "");
     if (!twin.design) return;
     this.design = twin.design;
     this.asked = null;

@@ -100,7 +100,10 @@ export class Plot {
     }, { rootMargin: "200px" }).observe(host);
   }
 
-  /** Draw `lines` ({name, style, values, at?}), `bars`, `bands` ([low, high, name]) and `limits` (numbers) of y. */
+  /**
+   * Draw lines ({name, style, values, x?}: without x they are spread evenly over the turn), dots, columns (lowest and
+   * highest), bars, bands (low, high, name) and limits (value, name) of y.
+   */
   draw(data) {
     this.data = data;
     this.stale = !this.seen;
@@ -169,7 +172,7 @@ export class Plot {
     }
     for (const line of data.lines ?? []) {
       const count = line.values.length;
-      const at = line.x ? (k) => line.x[k] : ((k) => span[0] + ((span[1] - span[0]) * k) / (count - (line.open ? 0 : 1)));
+      const at = line.x ? (k) => line.x[k] : ((k) => span[0] + ((span[1] - span[0]) * k) / count);
       let path = "";
       for (let k = 0; k < count; k += 1) path += `${k ? "L" : "M"}${px(at(k)).toFixed(1)} ${py(line.values[k]).toFixed(1)}`;
       parts.push(element("path", { class: `line ${line.style}`, d: path }));

@@ -166,6 +166,16 @@ def test_nothing_is_wider_than_the_screen(page: Page, width: int, dark: bool, tm
     assert len(content) > 60_000
 
 
+def test_a_twin_without_a_magnet_shows_why_there_is_no_design(page: Page) -> None:
+    page.of(CHOOSE.format("paper-encoder"))
+    page.until("document.getElementById('no-design').textContent.includes('no [magnet]')")
+    assert page.of("getComputedStyle(document.querySelector('#design .bench')).display") == "none"
+    assert page.of("document.getElementById('error').hidden")
+    page.of(CHOOSE.format("imc-14bit"))
+    page.until("getComputedStyle(document.querySelector('#design .bench')).display === 'grid'")
+    page.until(AT_REST)
+
+
 def test_the_door_opens_the_page(page: Page, client: Client) -> None:
     guard = client.server.guard
     page.of("document.documentElement.dataset.ready = 'before'")

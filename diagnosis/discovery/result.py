@@ -112,7 +112,12 @@ class Discovery:
                 if not unnamed(effect.name) and not effect.visible_in(provides)
             },
             in_factors=tuple(
-                sorted(everywhere(e.name) for e in state.effects if not e.visible_in(provides) and e.acts_in(provides))
+                sorted(
+                    everywhere(e.name)
+                    for e in state.effects
+                    # No factor of the error model is a wave in time.
+                    if not e.visible_in(provides) and e.acts_in(provides) and (e.line is None or e.line.clock != "time")
+                )
             ),
             likeness=state.likeness,
             lack=state.lack,

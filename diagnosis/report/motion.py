@@ -21,6 +21,10 @@ TORQUE = "torque_ripple"
 """What a torque locked to the angle is called where a cause may as well be one."""
 SECOND_SPEED = "a log at a second speed, or coasting down: what a torque does falls as 1/speed^2"
 IN_TIME = "a log at another speed: a wave that the motor's supply or its drive makes in the torque keeps its frequency"
+STAMPS = "time_stamps"
+"""What the times of the readings are called where these, told wrong, would make a wave in time."""
+USB_FRAMES_HZ = 1000.0
+"""At which a full-speed USB asks a device."""
 WITHOUT_CURRENT = "a log in which the shaft coasts, the motor's current off: the current makes a torque as well"
 _BEYOND_CHANCE = 4.0
 """Standard deviations from which on a torque is listed: one of sixteen orders, of two components each, passes it by
@@ -43,6 +47,9 @@ def motion_answer(found: Discovery) -> dict[str, Any]:
             "slowest_turns_per_s": _knee_turns_per_s(found),
             "torque_ripple": [_torque(one) for one in _listed(estimated)],
             "not_separable": not_separable(estimated),
+            "times_off": [
+                one for cause in found.causes if cause.name == "unnamed" for one in _times_off(found.fit, cause.keys)
+            ],
         }
     }
 
@@ -93,7 +100,7 @@ def may_be_torque(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     if any("two currents" in effect.needs for effect in effects.values()):
         return [(TORQUE, WITHOUT_CURRENT)]
     if _in_time(fit, cause):
-        return [(TORQUE, IN_TIME)]
+        return [(TORQUE, IN_TIME), *_may_be_stamps(fit, cause)]
     open_orders = not_separable(estimated)
     # What touches single readings, or makes them louder, is no movement of the shaft.
     if not open_orders or not any(effect.footprint in ("mean", "values") for effect in effects.values()):
@@ -107,8 +114,49 @@ def may_be_torque(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
 
 def _in_time(fit: Fit, cause: Finding) -> bool:
     """Whether a cause is a wave in time that is added to the angle, as a torque of that frequency adds it."""
-    lines = [find(key, fit.chain.effects).line for key in cause.keys]
-    return cause.name == "unnamed" and any(line is not None and line.clock == "time" for line in lines)
+    return cause.name == "unnamed" and any(_frequency_hz(fit, key) is not None for key in cause.keys)
+
+
+def _frequency_hz(fit: Fit, key: str) -> float | None:
+    """Of a wave in time; at one speed also of an order that is no whole one, which nothing on the shaft has."""
+    line, values = find(key, fit.chain.effects).line, fit.chain.values.get(key)
+    if line is None or values is None:
+        return None
+    if line.clock == "time":
+        return float(values[line.param])
+    order, motion = float(values[line.param]), fit.linear.motion
+    if "two speeds" in motion.provides or abs(order - round(order)) * motion.turns < 1.0:
+        return None
+    return order * float(np.mean(np.abs(motion.speed_rad_s))) / TAU
+
+
+def _may_be_stamps(fit: Fit, cause: Finding) -> list[tuple[str, str]]:
+    """The times of the readings, which told wrong make the strongest wave in time of a cause."""
+    waves = _times_off(fit, cause.keys)
+    if not waves:
+        return []
+    off = max(waves, key=lambda one: float(one["off_us"]))
+    words = (
+        f"times by the clock of what reads the sensor: a wave of {plain(off['off_us'], 2)} us in those told makes this "
+        f"one of {plain(1e3 / off['frequency_Hz'], 3)} ms; or a log at another speed, which it then follows"
+    )
+    return [(STAMPS, words)]
+
+
+def _times_off(fit: Fit, keys: Sequence[str]) -> list[dict[str, Any]]:
+    """Of each wave in time by how much the readings' times would be told wrong at the usual speed, were it theirs.
+
+    And whether it is as frequent as a USB asks for readings, as far as the log resolves frequencies.
+    """
+    motion, found = fit.linear.motion, []
+    usual, resolved = float(np.median(np.abs(motion.speed_rad_s))), 1.0 / float(np.ptp(motion.time_s))
+    for key in keys:
+        frequency = _frequency_hz(fit, key)
+        if frequency is not None:
+            amplitude = np.radians(abs(float(fit.chain.values[key]["amplitude_deg"])))
+            usb = abs(frequency - USB_FRAMES_HZ) < resolved
+            found.append({"frequency_Hz": frequency, "off_us": 1e6 * float(amplitude) / usual, "usb_frames": usb})
+    return found
 
 
 def _beyond(fit: Fit, keys: Sequence[str], orders: Sequence[int]) -> Array:
@@ -148,6 +196,13 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
             f"Not told from a torque locked to the angle: orders {_ranges(motion['not_separable'])}. Here all of that "
             f"counts as the sensor's; to part them: {SECOND_SPEED}"
         )
+    said += [
+        f"The wave of {plain(one['frequency_Hz'], 4)} Hz comes as often as the frames of a USB, every 1 ms: it is "
+        f"likely made by times of the readings that are told wrong, by up to {plain(one['off_us'], 2)} us, and not by "
+        "the sensor"
+        for one in motion["times_off"]
+        if one["usb_frames"]
+    ]
     said.append("Not seen without a reference: the zero, what drifts slower than a turn, and what a reversal leaves")
     return said
 

@@ -28,6 +28,7 @@ from diagnosis.report.wording import (
 
 _LACKS = {
     "a reference": ("no reference", "record a reference encoder beside it"),
+    "a reference|two speeds|vx": ("one speed, no reference", "measure at a second speed, or record vx and vy"),
     "both directions": ("one direction", "turn in both directions"),
     "moving shaft": ("at rest at each reading, or no speed_rpm", "record speed_rpm while the shaft moves, with time_s"),
     "one turn": ("less than a turn", "cover a whole turn"),

@@ -73,6 +73,28 @@ SPINS: tuple[Mutation, ...] = tuple(
             "tests/twin/test_magnet_harmonic.py::test_turns_at_other_angles_tell_finer_structure",
         ),
         (
+            "spins.no_ringing_without_a_reference",
+            "diagnosis/discovery/fitting/noise/ringing.py",
+            "if len(fit.observations.lengths) > 1 and fit.observations.motion.estimated is None:",
+            "if len(fit.observations.lengths) > 1 or fit.observations.motion.estimated is not None:",
+            "tests/diagnosis/discovery/stages/test_ringing.py"
+            "::test_without_a_reference_a_bearing_that_rings_is_no_cause",
+        ),
+        (
+            "spins.every_wave_is_of_a_usb",
+            "diagnosis/report/motion.py",
+            "usb = abs(frequency - USB_FRAMES_HZ) < resolved",
+            "usb = True",
+            f"{_EXPLAIN}::test_a_wave_in_time_may_be_times_that_are_told_wrong",
+        ),
+        (
+            "spins.a_wave_in_time_stands_in_the_factors",
+            "diagnosis/discovery/result.py",
+            ' and (e.line is None or e.line.clock != "time")',
+            "",
+            f"{_EXPLAIN}::test_at_one_speed_a_ripple_of_the_reference_is_two_waves_in_time",
+        ),
+        (
             "spins.lines_are_matched_to_torques",
             "diagnosis/discovery/search/screening.py",
             "weighted if observations.loose is None else observations.loose.whitened(weighted)",
@@ -159,16 +181,16 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.one_side_is_a_ripple",
             "diagnosis/discovery/search/screening.py",
-            "gains = np.where(one_sided(base, effect.line, shapes), 0.0, gains)",
+            "gains = np.where(one_sided(base, effect, effect.line, shapes), 0.0, gains)",
             "pass",
             f"{_SIDES}::test_a_wave_on_one_side_is_no_ripple",
         ),
         (
-            "spins.both_sides_weigh_alike",
+            "spins.a_side_that_nobody_sees_is_there",
             "diagnosis/discovery/search/screening.py",
-            "weight = gain / size**2",
-            "weight, size = np.full(gain.shape, 0.5), np.sqrt(2.0 * gain)",
-            f"{_SIDES}::test_a_side_that_the_shafts_own_motion_hides_is_not_missing",
+            "beside = np.maximum(together - np.max(gain, axis=0) ** 2, 0.0)",
+            "beside = together",
+            f"{_SIDES}::test_a_side_that_the_shafts_own_motion_hides_leaves_a_wave_without_a_name",
         ),
         (
             "spins.rows_out_of_use_keep_their_torque",

@@ -178,13 +178,13 @@ STAGES: tuple[Mutation, ...] = (
         ),
         (
             "ringing.lines_stay",
-            "np.all(within_band(noise, columns[np.any(columns, axis=1)]) > 0.5)",
+            "np.all(within_band(noise, columns[np.any(columns, axis=1)], fit.observations.lengths) > 0.5)",
             "False",
             "stages/test_ringing.py::test_several_lines_of_one_band_make_way_for_it",
         ),
         (
             "ringing.every_cause_goes",
-            "np.all(within_band(noise, columns[np.any(columns, axis=1)]) > 0.5)",
+            "np.all(within_band(noise, columns[np.any(columns, axis=1)], fit.observations.lengths) > 0.5)",
             "True",
             "stages/test_ringing.py::test_several_lines_of_one_band_make_way_for_it",
         ),

@@ -91,7 +91,8 @@ REFERENCE_RIPPLE = Effect(
     channel_shapes=("delay_us",),
     begin=begin,
     angle_only=angle_only,
-    needs=frozenset({"time_s", "moving shaft"}),
+    # At one speed an angle without a reference has two waves in time, as torques make them too.
+    needs=frozenset({"time_s", "moving shaft", "a reference|two speeds|vx"}),
     line=Line(param="frequency_Hz", clock="time", limits=limits, within=within, multiples=(2, 3, 4, 5), sidebands=2),
     repeatable=True,
     record_wide=True,

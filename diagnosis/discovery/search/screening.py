@@ -144,13 +144,17 @@ def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, floa
     gains, coefficients = gains_of(base, effect, shapes)
     # Where the speed changes the sides are told by how they follow it; at one speed each is a line like any other.
     lines_alone = fit.observations.observables == 1 and "two speeds" not in fit.observations.motion.provides
-    if effect.line is not None and effect.line.sidebands and lines_alone:
-        gains = np.where(one_sided(base, effect.line, shapes), 0.0, gains)
+    sides_alone = effect.line is not None and bool(effect.line.sidebands) and lines_alone
+    if effect.line is not None and sides_alone:
+        gains = np.where(one_sided(base, effect, effect.line, shapes), 0.0, gains)
     if effect.comb is not None and effect.comb.parts:
         gains = np.where(borne_out(base, effect, shapes, gains, looks=looks), gains, 0.0)
     if not np.any(gains > 0.0):
         return None
     (point,) = sharpened(base, effect, shapes, gains, coefficients)
+    # Between the places that are looked at a line goes to the one wave that gains most.
+    if effect.line is not None and sides_alone and one_sided(base, effect, effect.line, [point.shape]).all():
+        return None
     return candidate_at(base, effect, point.shape, point.gain, point.coefficient, looks=looks)
 
 
@@ -167,24 +171,24 @@ def borne_out(
     return found
 
 
-def one_sided(base: Base, line: Line, shapes: Sequence[Mapping[str, float]]) -> BoolArray:
-    """At which shapes (batch, G) of a line with two sidebands one of them alone explains the readings better.
+def one_sided(base: Base, effect: Effect, line: Line, shapes: Sequence[Mapping[str, float]]) -> BoolArray:
+    """At which shapes (batch, G) of a line with two sidebands one of them alone explains the readings as well.
 
-    That wave has no name, and what has one is taken before it by as much as anywhere. The sidebands' phases are free.
+    That wave has no name: the other sideband has to stand out of the noise beside it, of the same size. The sidebands'
+    phases are free.
     """
     fit, motion = base.fit, base.fit.linear.motion
     frequency = np.array([shape[line.param] for shape in shapes])[:, None]
-    gains, sizes = [], []
+    gains = []
     for order in (line.sidebands, -line.sidebands):
         phase = TAU * frequency * motion.time_s + order * motion.shaft_rad
-        gain, coefficient = _gains_of_columns(base, None, np.stack([np.cos(phase), np.sin(phase)], axis=1)[:, :, None])
-        gains.append(np.maximum(gain, 0.0))
-        sizes.append(np.maximum(np.linalg.norm(coefficient, axis=-1), 1e-300))
-    gain, size = np.stack(gains), np.stack(sizes)
-    # A wave gains its squared size times what the readings weigh there: one size for both is the mean by these.
-    weight = gain / size**2
-    together = np.sum(weight * size, axis=0) ** 2 / np.maximum(np.sum(weight, axis=0), 1e-300)
-    return np.asarray(0.5 * (np.max(gain, axis=0) - together) > fit.settings.unnamed_log_odds)
+        gain, _ = _gains_of_columns(base, None, np.stack([np.cos(phase), np.sin(phase)], axis=1)[:, :, None])
+        gains.append(np.sqrt(np.maximum(gain, 0.0)))
+    # A wave gains the square of its size: one size for both is their mean.
+    gain = np.stack(gains)
+    together = 0.5 * np.sum(gain, axis=0) ** 2
+    beside = np.maximum(together - np.max(gain, axis=0) ** 2, 0.0)
+    return np.asarray(by_chance(base, effect, beside, 2, 1.0) > fit.settings.footprint_log_p)
 
 
 def candidate_at(

@@ -56,4 +56,6 @@ def _lies_in(fit: Fit, key: str, noise: Noise) -> bool:
     """Whether most of what a cause does to the angle lies in the band of a resonance."""
     own = [number for number, free in enumerate(fit.free) if free.key == key]
     columns = fit.cosine_jacobian[own, 0]
-    return bool(own) and bool(np.all(within_band(noise, columns[np.any(columns, axis=1)]) > 0.5))
+    return bool(own) and bool(
+        np.all(within_band(noise, columns[np.any(columns, axis=1)], fit.observations.lengths) > 0.5)
+    )

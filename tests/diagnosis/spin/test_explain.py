@@ -60,6 +60,13 @@ def test_at_one_speed_a_cause_may_be_a_torque() -> None:
     assert "orders 1 to 32" in text(answer, width=400)
 
 
+def test_at_one_speed_a_ripple_of_the_reference_is_two_waves_in_time() -> None:
+    answer = at_one_speed().to_dict()
+    assert answer["not_visible"]["reference_ripple"] == ["a reference|two speeds|vx"]
+    assert "reference_ripple" not in answer["in_factors"]
+    assert "reference_ripple (one speed, no reference)" in text(answer, width=400)
+
+
 def test_behind_a_rounding_too_a_cause_may_be_a_torque() -> None:
     """Its wave is one no longer, and has orders that no torque is looked for at."""
     rows = even(9.0, order=5)
@@ -198,3 +205,20 @@ def test_between_two_speeds_a_shaft_shows_what_of_a_torque_grows() -> None:
     speed = float(np.median(np.radians(6.0 * np.abs(sweep.speed_rpm))))
     assert cogging.scatter_rad_s2 > 100.0
     assert cogging.growing_rad_s * speed < 0.1 * cogging.scatter_rad_s2
+
+
+@pytest.mark.parametrize(("frequency", "usb"), [(1000.0, True), (870.0, False)])
+def test_a_wave_in_time_may_be_times_that_are_told_wrong(frequency: float, usb: bool) -> None:
+    """Readings that are fetched every 0.25 ms, and taken up to 20 us from when they are said to be."""
+    time = np.arange(2400) / 4000.0
+    taken = time + 20e-6 * np.sin(2.0 * np.pi * frequency * time)
+    noise = 0.03 * np.random.default_rng(3).standard_normal(time.size)
+    found = explain({"time_s": time, "measured_deg": np.mod(360.0 * 41.3 * taken + noise, 360.0)})
+    answer = found.to_dict()
+    (told,) = answer["motion"]["times_off"]
+    assert told["frequency_Hz"] == pytest.approx(frequency, abs=0.5)
+    assert told["off_us"] == pytest.approx(20.0, rel=0.05)
+    assert told["usb_frames"] is usb
+    assert ("frames of a USB" in text(answer, width=400)) is usb
+    assert answer["causes"][0]["indistinguishable_from"] == ["torque_ripple", "time_stamps"]
+    assert "a wave of 20 us" in answer["causes"][0]["to_tell_apart"]

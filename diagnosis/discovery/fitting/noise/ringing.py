@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +18,8 @@ _WHITE_SHARES = (0.1, 0.3, 0.5, 0.7, 0.85)
 _LEAST_WIDTH = 4.0
 """Of a band in units of what the record resolves: one that is narrower is no wider than a line."""
 _HALVINGS = 4
+_STILL = 0.1
+"""Of the motion's variance against the noise's: less of it changes no mean square by more than its own scatter."""
 _MOST_BINS = 1500
 """Of longer records neighbouring coefficients are averaged: no band is as narrow as these are then wide."""
 
@@ -28,17 +30,18 @@ def ringing(fit: Fit) -> Noise | None:
     By the likelihood of the cosine coefficients, each of which has the variance that the spectrum says (P. Whittle,
     Ark. Mat. 2 (1953) 423): first on a grid as fine as the bands are wide, then about its best point.
     """
-    rows = len(fit.observations)
-    if len(fit.observations.lengths) > 1 or np.any(fit.observations.motion_spectrum):
+    if len(fit.observations.lengths) > 1 and fit.observations.motion.estimated is None:
         return None
-    each = -(-rows // _MOST_BINS)
-    bins = rows // each
-    squares = np.mean(fit.cosine_residual[0][: bins * each].reshape(bins, each) ** 2, axis=1)
-    if not squares.any():
+    squares, rows = _mean_squares(fit)
+    if not np.nansum(squares):
         return None
+    bins = squares.size
+    told = np.isfinite(squares)
+    squares = squares[told]
 
     def cost(spectrum: Array) -> float:
-        return float(np.log(np.mean(squares / spectrum)) + np.mean(np.log(spectrum)))
+        here = spectrum[told]
+        return float(np.log(np.mean(squares / here)) + np.mean(np.log(here)))
 
     tried = (
         (cost(white + (1.0 - white) * spectrum), replace(noise, white_share=white))
@@ -55,6 +58,28 @@ def ringing(fit: Fit) -> Noise | None:
             if (here := cost(near.spectrum(bins))) < lowest:
                 best, lowest = near, here
     return best
+
+
+def _mean_squares(fit: Fit) -> tuple[Array, int]:
+    """Mean squares (bins,) of what the fit leaves over frequency, and the rows of a sequence that resolve it.
+
+    The noise of a record in several sequences is alike in all. NaN where the shaft may have moved as much as that.
+    """
+    observations = fit.observations
+    rows = int(np.median(observations.lengths))
+    bins = -(-rows // -(-rows // _MOST_BINS))
+    frequency = _frequencies(observations.lengths)
+    still = np.broadcast_to(np.asarray(observations.motion_spectrum) < _STILL, frequency.shape)
+    number = np.minimum((2.0 * frequency[still] * bins).astype(np.int64), bins - 1)
+    squares = fit.cosine_residual[0][still] ** 2
+    count = np.bincount(number, minlength=bins)
+    with np.errstate(invalid="ignore"):
+        return np.bincount(number, squares, minlength=bins) / count, rows
+
+
+def _frequencies(lengths: Sequence[int]) -> Array:
+    """Frequency (n,) [1/reading] of each cosine coefficient of sequences one behind the other."""
+    return np.concatenate([(np.arange(length) + 0.5) / (2.0 * length) for length in lengths])
 
 
 def _tried(rows: int) -> Iterator[Noise]:
@@ -77,13 +102,12 @@ def _moved(noise: Noise, by: Array) -> Noise:
     )
 
 
-def within_band(noise: Noise, columns: Array) -> Array:
-    """The share (q,) of the squares of cosine coefficients (q, n) that lies in the band of a resonance.
+def within_band(noise: Noise, columns: Array, lengths: Sequence[int]) -> Array:
+    """The share (q,) of the squares of cosine coefficients (q, n), sequence by sequence, in the band of a resonance.
 
     Twice as far to both sides as it is wide at half of its height: there stand five sixths of its own.
     """
     place, width = noise.ringing_per_reading, noise.ringing_per_reading / noise.ringing_quality
-    frequency = (np.arange(columns.shape[-1]) + 0.5) / (2.0 * columns.shape[-1])
-    inside = np.abs(frequency - place) < 2.0 * width
+    inside = np.abs(_frequencies(lengths) - place) < 2.0 * width
     squares = columns**2
     return np.asarray(squares[..., inside].sum(axis=-1) / np.maximum(squares.sum(axis=-1), 1e-300))

@@ -77,3 +77,14 @@ def test_several_lines_of_one_band_make_way_for_it() -> None:
     fit = state.fit
     fitted = solve(evaluate(line, (*fit.free, *free), fit.observations, fit.weighting))
     assert ringing(state.with_(fitted, keys=keys)).keys == ("magnet_harmonic",)
+
+
+def test_without_a_reference_a_bearing_that_rings_is_no_cause() -> None:
+    """In several stretches: the noise is alike in all, and the shaft's own motion is no part of it."""
+    time = np.delete(np.arange(4100) / 1000.0, np.arange(2000, 2100))
+    rung = 0.02 * draw(np.random.default_rng(1), (4000,), RINGING.spectrum(4000))
+    found = explain({"time_s": time, "measured_deg": np.mod(360.0 * 9.3 * time + rung, 360.0)})
+    assert found.to_dict()["motion"]["stretches"] > 1
+    assert found.causes == ()
+    told = found.extended.values["noise"]
+    assert told["ringing_per_reading"] == pytest.approx(0.13, abs=0.3 * 0.13 / 9.0)

@@ -27,6 +27,8 @@ HIGHEST_ORDER = 32
 """Of the sensor's error and of the torques: the second harmonic of a cogging by sixteen teeth."""
 HIGHEST_OF_FRICTION = 4
 """Of what friction makes: what rubs is modulated by what runs out or is bent, not by teeth."""
+_OF_RUN_OUT = 2
+"""Orders of a part that runs out or is bent: what it rubs has harmonics, none of them stronger."""
 _OF_ERROR, _OF_TORQUE = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
 _OF_GROWING = _OF_TORQUE + 2 * HIGHEST_OF_FRICTION
 _OF_FRICTION = _OF_GROWING + 2 * HIGHEST_OF_FRICTION
@@ -253,9 +255,10 @@ def _drawn(
 
     A torque that grows with the speed, as a modulated viscous friction does, is told from a constant one by three
     speeds or more. Where it is not, it is taken to be there, half as large, but no larger than it is known to be at
-    most. One that reverses with the speed, as a modulated dry friction does, is told by a log of ``both_ways``. An
-    error of order 2 that grows with the speed, as of a channel that is read late, is told by three speeds; where it is
-    not, none is taken to be there.
+    most, nor than those of the orders 1 and 2: a torque of a higher order is a cogging, which does not grow. One that
+    reverses with the speed, as a modulated dry friction does, is told by a log of ``both_ways``. An error of order 2
+    that grows with the speed, as of a channel that is read late, is told by three speeds; where it is not, none is
+    taken to be there.
     """
     if len(sd) <= _OF_ERROR:
         return solved(reduced.normal, reduced.gradient, variance, sd), _ANY
@@ -272,8 +275,12 @@ def _drawn(
         groups.append(pairs[-1])
     found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
     sd = found.sd.copy()
-    for group, beside, most in zip(growing, pairs, most_growing, strict=False):
-        sd[group] = np.minimum(0.5 * sd[beside] / usual_rad_s, most)
+    half = 0.5 * sd[[pair[0] for pair in pairs[: len(growing)]]] / usual_rad_s
+    if separable[:_OF_RUN_OUT].any():
+        beyond = half[_OF_RUN_OUT:]
+        half[_OF_RUN_OUT:] = np.clip(np.max(half[:_OF_RUN_OUT]), np.minimum(1e-9, beyond), beyond)
+    for group, size in zip(growing, np.minimum(half, most_growing), strict=True):
+        sd[group] = size
     found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
     told = np.array([bool(np.mean(found.told[group]) > _TOLD) for group in growing])
     more = [group for group, is_told in zip(growing, told, strict=True) if is_told]

@@ -51,7 +51,12 @@ def drawn(normal: Array, gradient: Array, variance: float, *, groups: Sequence[I
 
 def solved(normal: Array, gradient: Array, variance: float, sd: Array) -> Drawn:
     """The same with standard deviations that stay as they are."""
+    from scipy.linalg import eigh
+
     system = normal + np.diag(variance / sd**2)
     scale = 1.0 / np.sqrt(np.maximum(np.diag(system), 1e-300))
-    inverse = np.linalg.pinv(system * np.outer(scale, scale), rcond=1e-13, hermitian=True) * np.outer(scale, scale)
+    # By relatively robust representations: divide and conquer does not always end on matrices as near a diagonal one.
+    size, turned = eigh(system * np.outer(scale, scale), driver="evr")
+    kept = size > 1e-13 * size[-1]
+    inverse = (turned[:, kept] / size[kept]) @ turned[:, kept].T * np.outer(scale, scale)
     return Drawn(inverse @ gradient, variance * inverse, sd)

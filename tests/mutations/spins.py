@@ -63,7 +63,14 @@ SPINS: tuple[Mutation, ...] = tuple(
             "diagnosis/spin/of_log.py",
             "fit = _fitted(logs, most_growing=fit.growing)",
             "fit = _fitted(logs)",
-            f"{_EXPLAIN}::test_between_two_speeds_a_shaft_shows_what_of_a_torque_grows",
+            f"{_EXPLAIN}::test_at_two_speeds_a_cogging_does_not_grow[seen on the way]",
+        ),
+        (
+            "spins.a_cogging_grows_with_the_speed",
+            "diagnosis/spin/smoother.py",
+            "np.clip(np.max(half[:_OF_RUN_OUT]), np.minimum(1e-9, beyond), beyond)",
+            "beyond",
+            f"{_EXPLAIN}::test_at_two_speeds_a_cogging_does_not_grow[not seen]",
         ),
         (
             "spins.turns_tell_no_more_than_one",

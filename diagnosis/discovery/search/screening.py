@@ -144,17 +144,13 @@ def screen_one(base: Base, effect: Effect, *, shapes: Sequence[Mapping[str, floa
     gains, coefficients = gains_of(base, effect, shapes)
     # Where the speed changes the sides are told by how they follow it; at one speed each is a line like any other.
     lines_alone = fit.observations.observables == 1 and "two speeds" not in fit.observations.motion.provides
-    sides_alone = effect.line is not None and bool(effect.line.sidebands) and lines_alone
-    if effect.line is not None and sides_alone:
+    if effect.line is not None and effect.line.sidebands and lines_alone:
         gains = np.where(one_sided(base, effect, effect.line, shapes), 0.0, gains)
     if effect.comb is not None and effect.comb.parts:
         gains = np.where(borne_out(base, effect, shapes, gains, looks=looks), gains, 0.0)
     if not np.any(gains > 0.0):
         return None
     (point,) = sharpened(base, effect, shapes, gains, coefficients)
-    # Between the places that are looked at a line goes to the one wave that gains most.
-    if effect.line is not None and sides_alone and one_sided(base, effect, effect.line, [point.shape]).all():
-        return None
     return candidate_at(base, effect, point.shape, point.gain, point.coefficient, looks=looks)
 
 

@@ -195,11 +195,15 @@ def test_what_a_torque_may_have_done_is_in_the_intervals() -> None:
     assert amplitude["as_named"] == pytest.approx([0.5, 0.5], abs=0.01)
 
 
-def test_between_two_speeds_a_shaft_shows_what_of_a_torque_grows() -> None:
-    """Cogging of order 3 that does not grow, and a jerk from one speed to the other that the motion is not told in."""
-    columns = draw("two_speeds", seed=440220981).logs[0].columns
+@pytest.mark.parametrize("seed", [440220981, 128465933], ids=["seen on the way", "not seen"])
+def test_at_two_speeds_a_cogging_does_not_grow(seed: int) -> None:
+    """Of order 3, with a jerk from one speed to the other in which the motion is not told.
+
+    On the way it is seen or not; what grows, friction that runs out, has no third harmonic that is stronger.
+    """
+    columns = draw("two_speeds", seed=seed).logs[0].columns
     (sweep,) = sweeps_of([Spin.from_columns({name: columns[name] for name in ("time_s", "measured_deg")})])
-    assert sweep.set_aside > 400
+    assert sweep.set_aside > 200
     assert sweep.estimated is not None
     cogging = sweep.estimated.torques[2]
     speed = float(np.median(np.radians(6.0 * np.abs(sweep.speed_rpm))))

@@ -49,6 +49,11 @@ def test_a_ripple_whose_lower_side_is_weaker_by_chance_is_one() -> None:
     assert near(candidate(wave), 137.0)
 
 
+def test_a_ripple_is_found_beside_a_stronger_wave_on_one_side() -> None:
+    other = np.cos(TAU * 61.0 * TIME + 2.0 * SHAFT)
+    assert near(candidate(SIZE * (np.cos(PHASE) * np.sin(2.0 * SHAFT) + other)), 137.0)
+
+
 def test_a_side_that_the_shafts_own_motion_hides_leaves_a_wave_without_a_name() -> None:
     """Without a reference: a tenth of a Hz above two orders of the speed the lower side is as slow as the shaft."""
     shaft = TAU * 8.0 * TIME

@@ -59,11 +59,11 @@ SPINS: tuple[Mutation, ...] = tuple(
             f"{_EXPLAIN}::test_what_a_torque_may_have_done_is_in_the_intervals",
         ),
         (
-            "spins.the_way_between_two_speeds_is_forgotten",
-            "diagnosis/spin/of_log.py",
-            "fit = _fitted(logs, most_growing=fit.growing)",
-            "fit = _fitted(logs)",
-            f"{_EXPLAIN}::test_at_two_speeds_a_cogging_does_not_grow[seen on the way]",
+            "spins.what_grows_at_most_is_forgotten",
+            "diagnosis/spin/smoother.py",
+            "np.minimum(half, most_growing)",
+            "half",
+            f"{_SMOOTHER}::test_what_is_known_to_grow_no_more_leaves_an_error_better_known",
         ),
         (
             "spins.a_cogging_grows_with_the_speed",

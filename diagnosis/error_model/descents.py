@@ -24,7 +24,7 @@ CORNERS: Array = np.column_stack(
 )
 """Signs (8, 6) of a two-level design of resolution III: the last three parameters follow products of the first."""
 STARTS = 1 + len(CORNERS)
-"""Of each descent, with the ideal sensor."""
+"""Of the descents for one sweep and one pair of senses."""
 _ALIKE_SIGMA2 = 1e-4
 """Two ends are one minimum where their sums of squares differ by less than a hundredth of a standard error does."""
 

@@ -22,8 +22,8 @@ class Look:
     ``readings`` have these senses, and weight 0 where they are isolated gross errors that were left out; ``gram`` is
     their quadratic form (batch, 10, 10). ``swap`` (batch,) says where the senses are not those that were tried first.
     ``points`` (batch, 6) and ``cost`` (batch,) are the end of the descent from an ideal sensor, ``agreed`` (batch,)
-    whether those from all starts end alike; ``other`` are points and costs of the end in the other senses, None where
-    none are tried.
+    whether those from all starts end alike, before any gross error is left out; ``other`` are points and costs of the
+    end in the other senses, None where none are tried.
     """
 
     readings: Readings

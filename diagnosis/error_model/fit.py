@@ -105,7 +105,7 @@ def fit_equal(
     settings: swarm.SwarmSettings | None = None,
     band_rad: float | None = None,
 ) -> list[BaselineFit]:
-    """Fit sweeps of equal length, all arrays (batch, n), with one batched swarm; see the module's text."""
+    """Fit sweeps of equal length, all arrays (batch, n), together; see the module's text."""
     fits: list[BaselineFit] = []
     for start in range(0, reference_rad.shape[0], BATCH):
         rows = slice(start, start + BATCH)

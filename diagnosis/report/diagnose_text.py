@@ -221,7 +221,7 @@ def _between(equivalent: Mapping[str, Any], name: str, unit: str) -> str:
 
 def _searched(steps: Mapping[str, Any]) -> str:
     if steps["swarm_rms_deg"] is None:
-        return f"{_deg(steps['descents_rms_deg'])} where the descents from {STARTS} starts end alike"
+        return f"{_deg(steps['descents_rms_deg'])} after descents from {STARTS} starts, which agree"
     return f"{_deg(steps['swarm_rms_deg'])} after the swarm ({steps['particles_evaluated']} particles)"
 
 

@@ -160,6 +160,32 @@ REPORTED = (
         ),
     ),
     *of_one_file(
+        "twin/logs/guess.py",
+        "tests/untidy/test_doubtful.py",
+        (
+            "logs.an_electrical_angle_of_the_shafts_is_a_sensor",
+            "if len(found) == 1 and found[0][2].is_one_sensors(",
+            "if len(found) > 9 and found[0][2].is_one_sensors(",
+            "::test_an_electrical_angle_made_of_the_shafts_is_asked_about",
+        ),
+    ),
+    *of_one_file(
+        "twin/logs/names.py",
+        "tests/untidy/test_doubtful.py",
+        (
+            "logs.millimetres_are_an_angle",
+            'if unit is not None and quantity not in ("angle", *_BY_QUANTITY) and len(unit.name) > 1:',
+            "if False:",
+            "::test_what_has_another_unit_is_no_angle",
+        ),
+        (
+            "logs.a_capital_t_is_a_time",
+            "return _OF_EITHER.get(name.strip()) or _of_words(name)",
+            "return _of_words(name)",
+            "::test_a_capital_t_is_no_time_beside_one_that_has_a_unit",
+        ),
+    ),
+    *of_one_file(
         "twin/logs/candidates.py",
         "tests/untidy/test_doubtful.py",
         (
@@ -173,6 +199,12 @@ REPORTED = (
             "copied = any(is_one_sensors(a, b, one.units) for one in fitting)",
             "copied = any(is_copy(a, b, one.units) for one in fitting)",
             "::test_one_sensor_that_stands_twice_is_asked_about[another zero]",
+        ),
+        (
+            "logs.no_name_of_a_reference_is_needed",
+            "    if not said[one.reference].reference and one.weight != swapped:",
+            "    if False:",
+            "::test_one_sensor_before_and_behind_its_filter_is_asked_about",
         ),
         (
             "logs.a_sensors_own_counts_are_its_reference",
@@ -189,6 +221,12 @@ REPORTED = (
             "for error in (b - a, b + a))",
             "for error in (b - a,))",
             "::test_one_sensor_that_stands_twice_is_asked_about[the other way]",
+        ),
+        (
+            "logs.a_few_degrees_are_radians",
+            "        return kept if whole else [_BOTH_RAD, _BOTH_DEG]",
+            "        return kept",
+            "::test_a_few_degrees_and_most_of_a_turn_in_radians_are_asked_about",
         ),
         (
             "logs.a_short_span_beside_degrees_is_radians",

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.untidy.generator import MEASURED_DEG, REFERENCE_DEG, ROWS, counts, table
+from twin.errors import SweepError
 from twin.logs.asked_back import OpenGuess
 from twin.logs.read import read_log
 
@@ -89,3 +90,75 @@ def test_a_short_span_beside_degrees_is_in_degrees(tmp_path: Path) -> None:
     near = np.linspace(10.0, 13.0, 40)
     columns = {"encoder_deg": near, "hall": near + 40.0 + 0.1 * np.sin(near)}
     assert read_log(written(tmp_path, columns)).guess.text == "reference_deg=encoder_deg, measured_deg=hall"
+
+
+def test_a_counter_with_lost_rows_and_a_clock_that_jitters_are_asked_about(tmp_path: Path) -> None:
+    """No name of theirs is that of a reference."""
+    rows = np.delete(np.arange(100.0), 50)
+    shaft = 3.6 * rows
+    beats = 10.0 * rows + np.random.default_rng(1).integers(-1, 2, rows.size)
+    for columns in ({"tick": rows}, {"stamp": beats}, {"rolling": (2.56 * shaft / 3.6) // 1.0 % 256.0}):
+        with pytest.raises(OpenGuess):
+            read_log(written(tmp_path, {**columns, "angle_deg": shaft + np.sin(np.radians(shaft))}))
+
+
+def test_one_sensor_before_and_behind_its_filter_is_asked_about(tmp_path: Path) -> None:
+    raw = counts(TURNED_DEG, 4096)
+    slow = np.convolve(np.concatenate([np.full(4, TURNED_DEG[0]), TURNED_DEG]), np.full(5, 0.2), "valid")
+    with pytest.raises(OpenGuess, match="neither name is that of a reference"):
+        read_log(written(tmp_path, {"raw_counts": raw, "angle_deg": slow % 360.0}))
+
+
+def test_an_electrical_angle_made_of_the_shafts_is_asked_about(tmp_path: Path) -> None:
+    """As a driver for motors logs both: they differ by their last digits, as no two sensors do."""
+    at = np.radians(TURNED_DEG)
+    columns = {"shaft_angle": np.round(at, 5), "electrical_angle": np.round(np.mod(7.0 * at, 2.0 * np.pi), 5)}
+    with pytest.raises(OpenGuess, match="7 times a turn, as those of one sensor"):
+        read_log(written(tmp_path, columns))
+    own = at + 0.01 * np.sin(at)
+    columns["electrical_angle"] = np.round(np.mod(7.0 * own, 2.0 * np.pi), 5)
+    assert "unwrap(electrical_angle:rad)/7" in read_log(written(tmp_path, columns)).guess.text
+
+
+def test_a_few_degrees_and_most_of_a_turn_in_radians_are_asked_about(tmp_path: Path) -> None:
+    few = np.linspace(-2.0, 2.0, 40)
+    with pytest.raises(OpenGuess) as asked:
+        read_log(written(tmp_path, {"ref": few, "sensor": few + 0.02 * np.sin(3.0 * few)}))
+    assert set(asked.value.options) == {
+        "reference_deg=ref, measured_deg=sensor",
+        "reference_deg=ref:rad, measured_deg=sensor:rad",
+    }
+
+
+@pytest.mark.parametrize("name", ["travel_mm", "coil_mA", "pos_um"])
+def test_what_has_another_unit_is_no_angle(name: str, tmp_path: Path) -> None:
+    """A belt's travel may go on as the angle does; no statement makes an angle of millimetres."""
+    columns = {name: REFERENCE_DEG, "sensor_deg": MEASURED_DEG}
+    with pytest.raises(SweepError, match="no two columns are angles"):
+        read_log(written(tmp_path, columns))
+
+
+def test_a_capital_t_is_no_time_beside_one_that_has_a_unit(tmp_path: Path) -> None:
+    warm = 24.0 + 0.003 * np.arange(ROWS)
+    columns = {"T": warm, "t_ms": 20.0 * np.arange(ROWS), "ref_deg": REFERENCE_DEG, "sensor_deg": MEASURED_DEG}
+    assert read_log(written(tmp_path, columns)).guess.text.startswith("time_s=t_ms:ms, ")
+    del columns["t_ms"]
+    assert "time_s" not in read_log(written(tmp_path, columns)).columns
+
+
+@pytest.mark.parametrize("names", [("desired_deg", "actual_deg"), ("wanted_deg", "encoder_deg")])
+def test_what_was_asked_for_and_what_came_are_not_swapped(names: tuple[str, str], tmp_path: Path) -> None:
+    with pytest.raises(OpenGuess) as asked:
+        read_log(written(tmp_path, dict(zip(names, (REFERENCE_DEG, MEASURED_DEG), strict=True))))
+    assert f"reference_deg={names[0]}, measured_deg={names[1]}" in asked.value.options
+
+
+def test_an_encoder_under_test_is_the_sensor_beside_a_goniometer(tmp_path: Path) -> None:
+    columns = {"encoder_deg": MEASURED_DEG, "goniometer_deg": REFERENCE_DEG}
+    assert read_log(written(tmp_path, columns)).guess.text == "reference_deg=goniometer_deg, measured_deg=encoder_deg"
+
+
+def test_the_unit_of_an_error_that_has_none_is_told_as_taken_for_granted(tmp_path: Path) -> None:
+    at = np.arange(0.0, 360.0, 15.0)
+    found = read_log(written(tmp_path, {"ref": at, "error": 3.0 * np.sin(np.radians(at))}))
+    assert any("without a unit" in note for note in found.guess.notes)

@@ -121,3 +121,10 @@ def test_a_spin_keeps_how_it_was_read(tmp_path: Path) -> None:
     ended = halltwin("explain", path, "--json", answer)
     assert OPTION.findall(ended.err) == ["time_s=time_s, measured_deg=sensor_deg"]
     assert json.loads(answer.read_text())["sweep"]["read_as"] == "time_s=time_s, measured_deg=sensor_deg"
+
+
+def test_why_nothing_fits_is_told_with_an_example(tmp_path: Path) -> None:
+    ended = halltwin("explain", written(tmp_path, {"travel_mm": REFERENCE_DEG, "sensor_deg": MEASURED_DEG}))
+    assert ended.code == 2
+    assert "no two columns are angles that follow each other" in ended.err
+    assert OPTION.findall(ended.err) == ["reference_deg=NAME*360/4096, measured_deg=NAME:rad"]

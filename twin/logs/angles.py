@@ -134,6 +134,10 @@ def _with_rivals(
     kept: list[Pair], fitting: list[Pair], reference: Array, measured: Array, *, said: tuple[Meaning, Meaning]
 ) -> list[Pair]:
     """Where both columns (n,) are degrees for want of a better word, also what else they may be."""
+    if kept == [_BOTH_RAD] and all(one.unit is None for one in said):
+        # A few degrees of a turn look like most of one in radians.
+        whole = max(float(np.ptp(reference)), float(np.ptp(measured))) >= _PARTED_TURNS * TURN["rad"]
+        return kept if whole else [_BOTH_RAD, _BOTH_DEG]
     if kept != [_BOTH_DEG]:
         return kept
     span = max(float(np.ptp(reference)), float(np.ptp(measured)))
@@ -174,11 +178,11 @@ def _as_compared(reference: Array, measured: Array, units: Pair) -> tuple[float,
     """What is rounded off two angles [deg], and they [deg] where both are known."""
     both = np.isfinite(reference) & np.isfinite(measured)
     a, b = reference[both], measured[both]
-    rounding = _rounding_deg(a, units[0]) + _rounding_deg(b, units[1])
+    rounding = rounding_deg(a, units[0]) + rounding_deg(b, units[1])
     return rounding, (units[0].degrees(a), units[1].degrees(b))
 
 
-def _rounding_deg(values: Array, unit: AngleUnit) -> float:
+def rounding_deg(values: Array, unit: AngleUnit) -> float:
     """By how much [deg] values (n,) in a unit are rounded: half a count, or half of the digit that most of them end in.
 
     Of numbers with so many digits in all, the large ones have fewer behind the point. Nothing is rounded off angles

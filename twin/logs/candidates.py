@@ -71,10 +71,13 @@ def _doubt(table: Table, said: tuple[Meaning, ...], one: Candidate, *, copied: b
     a, b = (table.names[k] or table.sources[k] for k in (one.reference, one.measured))
     for name, k, unit in zip((a, b), (one.reference, one.measured), one.units, strict=True):
         if unit.counts and counts_rows(table.values[k], said[k]):
-            step = float(table.values[k][1] - table.values[k][0])
+            step = float(np.median(np.diff(table.values[k])))
             return f"{name} goes on by {step:g} in each row, as a counter does, or a shaft that is stepped"
     if copied and one.weight < _NAMED_BOTH:
         return f"{a} and {b} hold one angle to the last digit, as those of one sensor do, or two that agree so well"
+    swapped = weight_of(said[one.measured], said[one.reference])
+    if not said[one.reference].reference and one.weight != swapped:
+        return f"{a} and {b} follow each other, and neither name is that of a reference: both may be of one sensor"
     return ""
 
 

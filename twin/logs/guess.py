@@ -30,6 +30,7 @@ from twin.sweep_columns import is_spin
 
 _SIDES = 2
 _ERROR_IS = "an error is the reading less the true angle, a correction the reverse"
+_UNIT_OF_ERROR = "one without a unit is in that of the angle beside it"
 _WHICH_IS_TRUE = "reference_deg is the angle that is taken as true, and neither names nor values say which is"
 _DIRECTIONS = 3
 _FEWEST = 4
@@ -70,7 +71,7 @@ def guessed(table: Table) -> Guess:
     pair = _pair(table, said, angles, usable, candidates)
     found = channels(table, said, usable, None if pair is None else pair[1].of(table))
     if pair is None and not found.columns and (listed := statements_of_errors(table, said, usable)):
-        return _one_of(listed, (_ERROR_IS,), table)
+        return _one_of(listed, (_ERROR_IS, _UNIT_OF_ERROR), table)
     if pair is None:
         pair = _by_channels(table, said, angles, found.columns)
         if pair is None and (single := alone(table, _without_counters(table, said), usable, found)) is not None:
@@ -190,12 +191,22 @@ def _turned(table: Table, said: tuple[Meaning, ...], angles: list[int]) -> tuple
     """A reference and a sensor of which one turns a whole number of times faster. Raises OpenGuess where two fit."""
     weighed = [(weight_of(said[a], said[b]), a, b) for a, b in itertools.permutations(angles, 2)]
     for weight in sorted({weight for weight, _, _ in weighed if weight >= 0}, reverse=True):
-        fitting = [
-            one.columns((table.sources[a], table.sources[b]))
+        found = [
+            (a, b, one)
             for own, a, b in weighed
             if own == weight
             for one in turned(table.values[a], table.values[b], said=(said[a], said[b]))
         ]
+        fitting = [one.columns((table.sources[a], table.sources[b])) for a, b, one in found]
+        if len(found) == 1 and found[0][2].is_one_sensors(table.values[found[0][0]], table.values[found[0][1]]):
+            a, b = (table.names[k] for k in found[0][:2])
+            raise_open(
+                table,
+                f"{a} and {b} hold one angle to the last digit, one of them {max(found[0][2].times):g} times a turn, "
+                "as those of one sensor do",
+                [text_of(fitting[0])],
+                alone=fitting[0][1:],
+            )
         if len(fitting) > 1:
             raise_several(table, fitting)
         if fitting:

@@ -14,8 +14,10 @@ _CHIP = re.compile(
 )
 _WORDS = {
     "reference": "ref reference true truth soll referenz nominal ideal expected heidenhain autocollimator "
+    "goniometer theodolite "
     "consigne theorique referencia riferimento nominale vero vera verdadero",
-    "driven": "enc encoder stage stepper step steps motor cmd commanded command target setpoint mech mechanical shaft "
+    "driven": "enc encoder stage stepper step steps motor cmd commanded command target setpoint desired demand "
+    "demanded wanted vorgabe mech mechanical shaft "
     "actual table rotary position_ref dividing index_table drehgeber welle moteur motore codeur codificador",
     "sensor": "meas measured measurement sensor dut hall magnetic magnet ist gemessen mess messung sensed tmr amr gmr "
     "capteur mesure mesuree sensore misura misurato medido medida",
@@ -53,6 +55,8 @@ _PARTED = (
 )
 """A unit in brackets, behind a slash, a comma or "in"."""
 _AXES = {"x": "cos", "y": "sin"}
+_BY_QUANTITY = {"time": "time", "temperature": "temperature", "speed": "speed"}
+"""What a unit says where no word does."""
 _SURE, _LIKELY = 2, 1
 _OF_SENSOR = ("current", "magnitude", "agc", "status", "frame", "error", "correction")
 _ORDER = (*_OF_SENSOR, "other", "temperature", "speed", "gap", "time", "direction", "sin", "cos", "mounting")
@@ -79,10 +83,15 @@ class Meaning:
 
 def meaning_of(name: str) -> Meaning:
     """What a column's name says."""
-    bare, unit, counts = _parted(name)
     own = name.strip().lower()
     if own in COLUMNS:
         return _own(own)
+    return _OF_EITHER.get(name.strip()) or _of_words(name)
+
+
+def _of_words(name: str) -> Meaning:
+    """What the words and the unit of a name say."""
+    bare, unit, counts = _parted(name)
     words = _words(bare)
     roles = {_MEANING[word] for word in words if word in _MEANING}
     if words and words[-1] in _AXES and unit is None and "read" not in roles:
@@ -99,12 +108,18 @@ def meaning_of(name: str) -> Meaning:
             return Meaning(role, unit=unit)
     if "turn" in roles and not roles & _ANGLES and unit is None:
         return Meaning("turn")
+    # A single letter behind a name may tell several of a kind apart: sensor_a.
+    if unit is not None and quantity not in ("angle", *_BY_QUANTITY) and len(unit.name) > 1:
+        return Meaning("other")
     if roles & _ANGLES or quantity == "angle" or counts:
         reference = _SURE if "reference" in roles else _LIKELY if "driven" in roles else 0
         sensor = _SURE if "sensor" in roles else _LIKELY if "read" in roles and not reference else 0
         return Meaning("angle", reference, sensor, unit if quantity == "angle" else None, counts)
-    by_quantity = {"time": "time", "temperature": "temperature", "speed": "speed"}
-    return Meaning(by_quantity.get(quantity or "", ""), unit=unit)
+    return Meaning(_BY_QUANTITY.get(quantity or "", ""), unit=unit)
+
+
+_OF_EITHER = {"T": Meaning("other")}
+"""Names of two quantities, of which none is guessed: a temperature as often as a time."""
 
 
 def _own(own: str) -> Meaning:

@@ -55,7 +55,7 @@ def others(table: Table, said: tuple[Meaning, ...], usable: list[int], reference
     columns: dict[str, Column] = {}
     notes: list[str] = []
     why: dict[int, str] = {}
-    for k in sorted(usable, key=lambda place: said[place].own is None):
+    for k in sorted(usable, key=lambda place: (said[place].own is None, said[place].unit is None)):
         target = _TARGETS.get(said[k].role)
         if target is None:
             continue

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.angles import Array, wrap_deg
-from twin.logs.angles import AngleUnit, drifts, options_of, preferred, same_angle
+from twin.logs.angles import AngleUnit, drifts, options_of, preferred, rounding_deg, same_angle
 from twin.logs.names import Meaning
 from twin.logs.statement import Column, unwrapped_deg
 
@@ -42,6 +42,16 @@ class Turned:
     times: tuple[float, float]
     off_deg: float
     step_deg: float
+
+    def is_one_sensors(self, reference: Array, measured: Array) -> bool:
+        """Whether what one angle (n,) differs by from the other, both as logged, is what is rounded off both."""
+        known = np.isfinite(reference) & np.isfinite(measured)
+        made = [
+            (unwrapped_deg(unit.degrees(values[known])) / times, rounding_deg(values[known], unit) / times)
+            for values, unit, times in zip((reference, measured), self.units, self.times, strict=True)
+        ]
+        (a, off_a), (b, off_b) = made
+        return bool(min(np.ptp(b - a), np.ptp(b + a)) <= 2.0 * (off_a + off_b))
 
     def columns(self, sources: tuple[str, str]) -> tuple[Column, Column]:
         """The statement, with the faster one followed over its turns and divided."""

@@ -45,8 +45,9 @@ class Unread:
             guess = guessed(table)
         except OpenGuess as several:
             raise SweepError(f"{advised} ({several.what}): {in_words(several.options)}") from None
-        except SweepError:
-            raise SweepError(said) from None
+        except SweepError as error:
+            unread = str(error).removeprefix(f"{table.file}: ")
+            raise SweepError(f"{said}; {unread}" if isinstance(self.why, ColumnMissing) else said) from None
         if all(str(column) == f"{column.target}={column.target}" for column in guess.columns):
             raise SweepError(said)
         if not self.spin and is_spin([column.target for column in guess.columns]):

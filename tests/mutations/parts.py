@@ -352,8 +352,8 @@ PARTS: tuple[Mutation, ...] = (
         _T,
         (
             "selection.narrow_shapes_are_held_out_as_a_whole",
-            "    if narrow and (fit",
-            "    if not narrow and (fit",
+            "    if narrow:",
+            "    if not narrow:",
             "proof/test_selection.py::test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost",
         ),
         (

@@ -132,6 +132,26 @@ REPORTED = (
         ("tests/twin/test_adc_inl.py::test_weights_that_are_off_do_what_a_successive_approximation_does[2-12.0]",),
     ),
     *of_one_file(
+        "diagnosis/discovery/proof/selection.py",
+        "tests/diagnosis/discovery/proof/test_conditional.py",
+        (
+            "selection.neighbours_foretell_nothing",
+            "told = [unforeseen(fit, residual) for residual in held] if narrow else held",
+            "told = held",
+            "::test_what_follows_its_neighbours_gains_nothing[True-False]",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/discovery/proof/conditional.py",
+        "tests/diagnosis/discovery/proof/test_conditional.py",
+        (
+            "conditional.a_row_foretells_itself",
+            "pulled / _diagonal(weight, observations.lengths) * observations.scale",
+            "pulled * observations.scale",
+            "::test_each_row_is_left_out_of_the_noise_that_foretells_it",
+        ),
+    ),
+    *of_one_file(
         "twin/logs/unasked.py",
         "tests/untidy/test_unasked.py",
         (

@@ -12,6 +12,7 @@ from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.projection import projected
 from diagnosis.discovery.proof.bootstrap import noise_of
+from diagnosis.discovery.proof.conditional import unforeseen
 from diagnosis.discovery.proof.cross_validation import folds, held_out_residuals, rms_deg, scattered
 from diagnosis.discovery.proof.family_wise import FamilyWise, family_wise
 from diagnosis.discovery.proof.order import by_turn, is_strength
@@ -29,7 +30,8 @@ class Proof:
 
     ``fold`` (n,) is that of each row, ``held`` the held-out residuals (n,) [rad] of the baseline and after each cause,
     ``weighed_deg`` their RMS with the rows weighed by their noise; ``family`` calibrates the probabilities, where any
-    of the causes leaves a doubt, and ``effects`` are those that were searched for. ``at_once`` as in :func:`select`.
+    of the causes leaves a doubt, and ``effects`` are those that were searched for. ``at_once`` as in :func:`select`;
+    ``narrow``: rows are held out one by one.
     """
 
     fit: Fit
@@ -40,6 +42,7 @@ class Proof:
     weighed_deg: tuple[float, ...]
     family: FamilyWise | None
     at_once: bool = False
+    narrow: bool = False
 
     @property
     def ordered(self) -> tuple[str, ...]:
@@ -155,15 +158,14 @@ def prove(
     causes = [judged[place] for place in by_turn(fit, [(cause.key,) for cause in judged])]
     ordered = [cause.key for cause in causes]
     fold = folds(fit, ordered)
-    narrow = [cause for cause in causes if least_seen(fit, [cause.key], fold) < fit.settings.heldout_seen]
-    if narrow and (fit.weighting.member == 0 or all(one.log_p < fit.settings.beyond_doubt_log_p for one in narrow)):
-        # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere. Single
-        # readings of coloured noise tell of their neighbours: there it has to stand beyond doubt already.
+    narrow = any(least_seen(fit, [cause.key], fold) < fit.settings.heldout_seen for cause in causes)
+    if narrow:
+        # Narrower than a block, in one turn: held out as a whole, it leaves its parameters free to go anywhere.
         fold = scattered(fit, ordered)
-    held, weighed = _held_out(fit, ordered, fold, at_once=at_once)
+    held, weighed = _held_out(fit, ordered, fold, at_once=at_once, narrow=narrow)
     visible = tuple(effect for effect in effects if effect.visible_in(fit.observations.motion.provides))
     family = None if at_once else _calibrated(fit, visible, causes, rng)
-    return Proof(fit, visible, tuple(causes), fold, tuple(held), tuple(weighed), family, at_once)
+    return Proof(fit, visible, tuple(causes), fold, tuple(held), tuple(weighed), family, at_once, narrow)
 
 
 def _proven(proof: Proof, place: int) -> bool:
@@ -176,16 +178,22 @@ def _proven(proof: Proof, place: int) -> bool:
         return True
     # Not the last step: its turn may come only with what was added after it.
     last = [*(key for key in proof.ordered if key != cause.key), cause.key]
-    _, weighed = _held_out(fit, last, proof.fold, at_once=proof.at_once)
+    _, weighed = _held_out(fit, last, proof.fold, at_once=proof.at_once, narrow=proof.narrow)
     # The RMS counts correlated noise in full: a strong cause that leaves it as it is shows elsewhere.
     slack = settings.heldout_slack if cause.log_p < settings.beyond_doubt_log_p else 1.0
     return weighed[-1] < slack * weighed[-2]
 
 
-def _held_out(fit: Fit, keys: Sequence[str], fold: IntArray, *, at_once: bool) -> tuple[list[Array], list[float]]:
-    """Held-out residuals (n,) [rad] as the causes are added one by one, and their RMS [deg] with weighed rows."""
+def _held_out(
+    fit: Fit, keys: Sequence[str], fold: IntArray, *, at_once: bool, narrow: bool
+) -> tuple[list[Array], list[float]]:
+    """Held-out residuals (n,) [rad] as the causes are added one by one, and their RMS [deg] with weighed rows.
+
+    ``narrow``: rows are held out one by one, whose neighbours foretell what the noise does there.
+    """
     held = held_out_residuals(fit, keys, fold, at_once=at_once)
-    return held, [rms_deg(residual / fit.observations.scale, fit.observations.usable) for residual in held]
+    told = [unforeseen(fit, residual) for residual in held] if narrow else held
+    return held, [rms_deg(residual / fit.observations.scale, fit.observations.usable) for residual in told]
 
 
 def least_seen(fit: Fit, keys: Sequence[str], fold: IntArray) -> float:

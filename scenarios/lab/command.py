@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import sys
 import tempfile
 import threading
 import webbrowser
+from collections.abc import Iterator
 from pathlib import Path
 
 from scenarios.lab import sweeps, twins
@@ -30,10 +32,25 @@ def run(sweep: str | None, *, twin: str | None, port: int, browser: bool) -> Non
                 # Not the secret itself: what a command is given, all users of the machine can list.
                 address = f"{server.guard.origin}{server.door.path}"
                 threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
-            try:
+            with contextlib.suppress(KeyboardInterrupt), _ended_by(signal.SIGTERM):
                 server.serve_forever(poll_interval=0.2)
-            except KeyboardInterrupt:
-                return
+
+
+@contextlib.contextmanager
+def _ended_by(number: int) -> Iterator[None]:
+    """A signal ends what is within as SystemExit does, with the exit code of a program that it ends."""
+
+    def end(*_: object) -> None:
+        raise SystemExit(128 + number)
+
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(number, end)
+    try:
+        yield
+    finally:
+        signal.signal(number, before)
 
 
 def _listening(session: Session, port: int) -> Server:

@@ -18,6 +18,7 @@ def told_of(answer: Mapping[str, Any]) -> dict[str, Any]:
         "verdict": answer["verdict"],
         "verdict_words": statements.verdict_words(answer),
         "sweep_words": ", ".join(sweep_words.sweep_facts(answer["sweep"])),
+        "read_words": _read_words(answer["sweep"]),
         "cut_short": answer["cut_short"],
         "figures": {
             "measured_deg": answer["baseline"]["fitted_error_rms_deg"],
@@ -38,6 +39,15 @@ def told_of(answer: Mapping[str, Any]) -> dict[str, Any]:
         ],
         "next": _next(answer),
     }
+
+
+def _read_words(sweep: Mapping[str, Any]) -> str:
+    """By which guess a log under names of its own was read; empty for a sweep's own columns."""
+    if sweep["read_as"] is None:
+        return ""
+    granted = f"; taken for granted: {'; '.join(sweep['notes'])}" if sweep["notes"] else ""
+    unused = f"; not used: {', '.join(sweep['not_used'])}" if sweep["not_used"] else ""
+    return f" Read as {sweep['read_as']}{granted}{unused}."
 
 
 def _cause(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> dict[str, Any]:

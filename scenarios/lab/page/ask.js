@@ -12,6 +12,8 @@ export function say(words) {
 export function complain(words) {
   errorLine.textContent = words ?? "";
   errorLine.hidden = !words;
+  // What stands on the page was computed before: it is no answer to what was refused.
+  document.body.classList.toggle("refused", Boolean(words));
 }
 
 async function answered(request) {

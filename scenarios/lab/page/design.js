@@ -153,8 +153,8 @@ export class DesignView {
       );
     }
     cards.push(
-      { name: "By 1 mT of stray field", value: here.stray_error_deg, unit: "deg", beside: `at most; field ${shown(here.field_low_mT)} mT` },
-      { name: "Noise in the angle", value: here.noise_deg, unit: "deg RMS", beside: here.resolution_bits === null ? "the twin has none" : `as a grid of ${shown(here.resolution_bits)} bits` },
+      { name: "By 1 mT of stray field", value: here.stray_error_deg, unit: "deg", beside: `at most, at ${given(design.temperature_c)} °C; field ${shown(here.field_low_mT)} mT` },
+      { name: "Noise in the angle", value: here.noise_deg, unit: "deg RMS", beside: here.resolution_bits === null ? "the twin has none" : `at ${given(design.temperature_c)} °C, as a grid of ${shown(here.resolution_bits)} bits` },
     );
     become(by("figures"), cards.map(card));
     if (study) put(by("verdict"), verdict(study, demand));

@@ -87,6 +87,8 @@ export class ExplainView {
     by("stop").hidden = !working;
     by("open-sweep").disabled = working;
     if (working) {
+      by("answer-verdict").textContent = `${this.sweep} is searched`;
+      by("answer-words").textContent = "";
       by("progress").textContent = `${Math.floor(stand.elapsed_s)} s: ${stand.words}`;
       this.timer = setTimeout(() => this.trying(async () => this.show(await got("explain"))), WATCHED_EVERY_MS);
       return;
@@ -100,7 +102,7 @@ export class ExplainView {
     this.answer = answer;
     const names = answer.causes.filter((one) => one.name !== "unnamed").map((one) => one.name.replaceAll("_", " "));
     by("answer-verdict").textContent = `${answer.verdict[0].toUpperCase()}${answer.verdict.slice(1)}${names.length ? `: ${names.join(", ")}` : ""}`;
-    by("answer-words").textContent = `${signed(answer.verdict_words)} ${answer.name}: ${answer.sweep_words}.`;
+    by("answer-words").textContent = `${signed(answer.verdict_words)} ${answer.name}: ${answer.sweep_words}.${answer.read_words}`;
     become(by("answer-figures"), figures(answer));
     this.layers = new Layers(by("layers"), answer, () => this.changed());
     this.numbers = new Numbers(by("factors"), answer, () => this.changed());

@@ -57,6 +57,18 @@ def test_it_serves_until_ctrl_c_and_leaves_nothing(tmp_path: Path, verbose: tupl
     assert list(tmp_path.iterdir()) == []
 
 
+def test_it_leaves_nothing_where_another_program_ends_it(tmp_path: Path) -> None:
+    """As a service manager does: with the exit code of a program that a signal ends."""
+    with running(folder=tmp_path) as (process, url):
+        with urllib.request.urlopen(f"{url}start", timeout=20):
+            pass
+        process.send_signal(signal.SIGTERM)
+        _, err = process.communicate(timeout=20)
+        assert process.returncode == 128 + signal.SIGTERM
+        assert "Traceback" not in err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_port_that_is_taken_is_one_line() -> None:
     with socket.create_server((ADDRESS, 0)) as taken:
         ended = halltwin("lab", "--no-browser", f"--port={taken.getsockname()[1]}")

@@ -18,6 +18,7 @@ from scenarios.cli.sweeps import explain as command
 from scenarios.lab.columns import MOST_POINTS, drawn, extremes, highest_in_columns
 from scenarios.lab.explaining import BUDGET_S, SEED, Explaining, Question
 from scenarios.lab.layers import MODEL, Layers, Look
+from scenarios.lab.told import told_of
 from tests.command_line import csv_text, halltwin, sweep_angles
 from tests.scenarios.lab.serving import Client
 from twin.files import write_twin
@@ -357,3 +358,22 @@ def test_a_spectrum_keeps_its_lines() -> None:
 
 def test_an_answer_is_plain_values(answer: dict[str, Any]) -> None:
     assert json.loads(json.dumps(answer, allow_nan=False)) == answer
+
+
+def test_how_a_log_was_read_is_told(tmp_path: Path) -> None:
+    """A guess of the reader is the user's to judge: the statement, what was taken for granted, what is not used."""
+    reference = np.arange(0.0, 360.0, 2.0)
+    measured = sweep_angles(reference)
+    log, answer = tmp_path / "log.csv", tmp_path / "answer.json"
+    columns = {"ref_deg": reference, "sensor_deg": measured, "temp": np.full(reference.size, 24.0), "junk": measured**2}
+    log.write_text(csv_text(columns))
+    assert halltwin("explain", log, "--json", answer).code == 0
+    told = told_of(json.loads(answer.read_text()))["read_words"]
+    assert told == (
+        " Read as reference_deg=ref_deg, measured_deg=sensor_deg, temperature_c=temp; taken for granted: temp is taken "
+        "in C; not used: junk."
+    )
+    own = csv_text({"reference_deg": reference, "measured_deg": measured})
+    (tmp_path / "own.csv").write_text(own)
+    assert halltwin("explain", tmp_path / "own.csv", "--json", answer, "--force").code == 0
+    assert told_of(json.loads(answer.read_text()))["read_words"] == ""

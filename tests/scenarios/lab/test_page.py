@@ -107,8 +107,11 @@ def test_a_wrong_number_is_one_line_and_the_next_right_one_takes_it_away(page: P
     page.of(SET_GAP.format("-1"))
     said = page.until("document.getElementById('error').textContent")
     assert said.startswith("air_gap_mm is -1 mm; expected")
+    # What was computed before is no answer to it.
+    page.until("getComputedStyle(document.querySelector('#design .summary')).opacity < 0.5")
     page.of(SET_GAP.format("2"))
     page.until("document.getElementById('error').hidden")
+    page.until("getComputedStyle(document.querySelector('#design .summary')).opacity === '1'")
     page.until(AT_REST)
 
 

@@ -43,10 +43,10 @@ def clean() -> Explanation:
 
 
 @functools.cache
-def turns() -> Diagnoses:
+def turns(*, swarm: bool = False) -> Diagnoses:
     """The factors of two short sweeps of one sensor."""
     sensor = Chain().with_effect("gain_mismatch", ratio=1.01).with_effect("noise", rms_deg=0.02)
-    return diagnose_many([sensor.simulate(Motion.from_angle(TURN), seed=seed) for seed in range(2)])
+    return diagnose_many([sensor.simulate(Motion.from_angle(TURN), seed=seed) for seed in range(2)], swarm=swarm)
 
 
 # ---- the same as the command line's ------------------------------------------------------------------------------
@@ -170,7 +170,7 @@ PICTURES: dict[str, tuple[Callable[[], Any], int]] = {
     "explained": (lambda: bench().plot(), 3),
     "factors": (lambda: turns()[0].plot(), 1),
     "factors of two": (lambda: turns().plot(), 2),
-    "convergence": (lambda: turns().plot_convergence(), 1),
+    "convergence": (lambda: turns(swarm=True).plot_convergence(), 1),
 }
 
 
@@ -185,6 +185,11 @@ def test_a_picture_leaves_matplotlib_as_it_was(draw: Callable[[], Any], panels: 
     assert dict(matplotlib.rcParams) == before
     assert matplotlib.get_backend() == backend
     assert plt.get_fignums() == open_figures
+
+
+def test_what_no_swarm_has_searched_has_no_convergence_to_draw() -> None:
+    with pytest.raises(UserError, match="swarm=True"):
+        turns().plot_convergence()
 
 
 @pytest.mark.parametrize(
@@ -271,7 +276,7 @@ def test_settings_decide_how_improbable_a_cause_must_be() -> None:
     )
     verdicts = [explain(weak, settings=settings).verdict for settings in (None, DiscoverySettings())]
     assert verdicts == ["explained", "explained"]
-    assert explain(weak, settings=DiscoverySettings(false_alarm_probability=1e-12)).verdict == "adequate"
+    assert explain(weak, settings=DiscoverySettings(false_alarm_probability=1e-12)).causes == ()
     with pytest.raises(UserError, match="settings is of the type float; expected DiscoverySettings"):
         explain(weak, settings=0.01)  # type: ignore[arg-type]
 

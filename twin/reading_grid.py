@@ -30,8 +30,12 @@ def step_of_grid_deg(measured_deg: Array, reference_deg: Array) -> float | None:
     """
     if measured_deg.size < _FEWEST:
         return None
-    step, angle = wrap_deg(np.diff(measured_deg)), wrap_deg(np.diff(reference_deg))
-    even = float(np.median(step))
-    if even == 0.0 or np.max(np.abs(step - even)) > _SAME_DEG or np.ptp(angle) <= 2.0 * _SAME_DEG:
-        return None
-    return abs(even)
+    even, angle = even_step_deg(measured_deg), wrap_deg(np.diff(reference_deg))
+    return None if even is None or np.ptp(angle) <= 2.0 * _SAME_DEG else abs(even)
+
+
+def even_step_deg(angle_deg: Array) -> float | None:
+    """The step [deg] by which an angle (n,) goes on from row to row, None where it is not one and the same, or none."""
+    step = wrap_deg(np.diff(angle_deg))
+    even = float(np.median(step)) if step.size else 0.0
+    return None if even == 0.0 or np.max(np.abs(step - even)) > _SAME_DEG else even

@@ -52,9 +52,10 @@ def first_look(readings: Readings, reference_rad: Array, *, both: bool, robust: 
     used, mask = readings, np.zeros(reference_rad.shape, dtype=np.bool_)
     order = np.argsort(np.remainder(reference_rad, 2.0 * np.pi), axis=-1, kind="stable") if robust else None
     base = np.ones(reference_rad.shape) if readings.weights is None else readings.weights
-    for _ in range(_ROBUST_ROUNDS if order is not None else 0):
+    for _ in range(_ROBUST_ROUNDS):
+        if order is None:
+            break
         best = np.where(swap[:, None], points[-batch:], points[:batch])
-        assert order is not None
         found = isolated(readings.oriented(swap).residual(best), order, mask, readings.weights)
         if np.array_equal(found, mask):
             break

@@ -52,7 +52,7 @@ def search(
     its best particle stands at the edge.
     """
     readings, start = look.readings, ideal(look.readings)
-    found = GlobalSearch(first_box(start[:, ZERO]), look.gram)
+    found = GlobalSearch(first_box(start[:, ZERO]), look.gram.copy())
     ideal_coefs = model.coefficients(start)
     found.zero_only = np.maximum(np.einsum("bi,bij,bj->b", ideal_coefs, found.gram, ideal_coefs), 0.0)
     active = np.arange(start.shape[0])
@@ -92,11 +92,9 @@ def _take(found: GlobalSearch, look: Look) -> None:
     """Take the ends of the descents that agree, in ranges that are wide enough for them."""
     settled = look.agreed
     found.best[settled], found.cost[settled] = look.points[settled], look.cost[settled]
-    first = walls = at_wall(look.points, found.box.lower, found.box.upper) & settled[:, None]
-    while walls.any():
+    while (walls := at_wall(look.points, found.box.lower, found.box.upper) & settled[:, None]).any():
         found.box = widened(found.box, walls)
-        walls = at_wall(look.points, found.box.lower, found.box.upper) & settled[:, None]
-    wide = np.flatnonzero(first.any(axis=1))
+    wide = np.flatnonzero(found.box.widened.any(axis=1))
     if wide.size:
         # The errors are large: the weights 1/r^2 count.
         found.gram[wide] = look.readings.sweeps(wide).gram(look.points[wide])

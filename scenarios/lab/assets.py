@@ -11,6 +11,7 @@ ASSETS = {
     "lab.css": ("lab.css", _STYLE),
     "lab.js": ("lab.js", _SCRIPT),
     "ask.js": ("ask.js", _SCRIPT),
+    "dom.js": ("dom.js", _SCRIPT),
     "plot.js": ("plot.js", _SCRIPT),
     "controls.js": ("controls.js", _SCRIPT),
     "scene.js": ("scene.js", _SCRIPT),

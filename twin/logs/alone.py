@@ -11,15 +11,12 @@ from twin.angles import Array
 from twin.logs.angles import COUNTS_PER_TURN, TURN, AngleUnit
 from twin.logs.asked_back import raise_open, raise_several, raise_untold
 from twin.logs.channels import angle_of
-from twin.logs.names import Meaning
+from twin.logs.names import SURE, Meaning
 from twin.logs.others import Found, others
 from twin.logs.statement import Column, Term, text_of
 from twin.logs.table import Table
 from twin.logs.turn_seen import Turn, is_turn, turns_seen
 from twin.sweep_columns import COLUMNS
-
-_SURE = 2
-"""What a name weighs that is said of a reference alone."""
 
 
 def alone(table: Table, said: tuple[Meaning, ...], usable: Sequence[int], of_channels: Found) -> Found | None:
@@ -29,7 +26,7 @@ def alone(table: Table, said: tuple[Meaning, ...], usable: Sequence[int], of_cha
     not tell the unit of the angle or of the time.
     """
     named = [place for place, one in enumerate(said) if one.role == "angle"]
-    if len(named) > 1 or any(place not in usable or said[place].reference >= _SURE for place in named):
+    if len(named) > 1 or any(place not in usable or said[place].reference >= SURE for place in named):
         return None
     if not named and len(of_channels.columns) != 2:
         return None

@@ -13,6 +13,7 @@ from twin.logs.names import Meaning
 from twin.logs.restarts import restarts
 from twin.logs.statement import Column, Term
 from twin.logs.units import UNITS
+from twin.reading_grid import even_step_deg
 
 _ROUND = (100, 120, 125, 144, 150, 160, 180, 200, 240, 250, 300, 360, 400, 500, 600, 720, 800, 900)
 COUNTS_PER_TURN = tuple(
@@ -42,8 +43,6 @@ _SMALL_STEP_DEG = 90.0
 """Rows that are typically closer than this follow one another round the turn."""
 _FULL_SHARE = 0.9
 """Share of a turn that wrapped counts fill at least."""
-_SAME_DEG = 1e-6
-"""Steps that differ by less are one: cells of a file have nine digits."""
 _DIGITS, _WHOLE = 6, 1e-9
 """Digits behind the point of which the last is looked for, and how far from it what a file holds may lie."""
 _EVEN = 0.8
@@ -188,8 +187,7 @@ def rounding_deg(values: Array, unit: AngleUnit) -> float:
     Of numbers with so many digits in all, the large ones have fewer behind the point. Nothing is rounded off angles
     that go on by one and the same step, as those do that were set.
     """
-    step = wrap_deg(np.diff(unit.degrees(values)))
-    if step.size and np.max(np.abs(wrap_deg(step - step[0]))) <= _SAME_DEG:
+    if even_step_deg(unit.degrees(values)) is not None:
         return 0.0
     if unit.counts:
         return 0.5 * 360.0 / unit.counts

@@ -10,11 +10,10 @@ from twin.angles import Array, wrap_deg
 from twin.logs.angles import AngleUnit, options_of
 from twin.logs.firmware import CORRECTION, ERROR
 from twin.logs.lookups import Statement, correction_fits, entries_a_turn
-from twin.logs.names import Meaning
+from twin.logs.names import SURE, Meaning
 from twin.logs.statement import Addend, Column
 from twin.logs.table import Table
 
-_SURE = 2
 _CLOSE_STEPS = 1.5
 """By how many steps the angles of a table may miss a turn: the last one may repeat the first."""
 _SIGN = {
@@ -64,7 +63,7 @@ def _sides(said: Meaning) -> tuple[str, ...]:
     """Which angle the axis is: of the sensor, of the reference, or of either where its name does not tell."""
     if said.reference:
         return ("reference_deg",)
-    return ("measured_deg",) if said.sensor == _SURE else ("measured_deg", "reference_deg")
+    return ("measured_deg",) if said.sensor == SURE else ("measured_deg", "reference_deg")
 
 
 def _statements(

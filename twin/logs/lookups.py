@@ -10,7 +10,7 @@ from twin.angles import Array
 from twin.errors import SweepError
 from twin.logs.angles import AngleUnit, units_of_pair
 from twin.logs.firmware import ANGLE, CORRECTION, ERROR, READING, TORQUES, Rule, is_known, rule_of
-from twin.logs.names import Meaning, meaning_of
+from twin.logs.names import SURE, Meaning, meaning_of
 from twin.logs.own_tables import is_own, own_statements
 from twin.logs.statement import Addend, Column, Term
 from twin.logs.table import LARGEST, Table
@@ -27,8 +27,6 @@ _ALIKE = 0.5
 """Correlation of an entry with the next from which a table without a name is taken for one of corrections."""
 _CLOSED_SHARE = 0.25
 """A last entry that differs from the first by less than this share of a typical step repeats it."""
-_SURE = 2
-"""How much a word must speak for a side: ``true`` and ``raw`` do, ``encoder`` may be either."""
 
 
 def statements_of(table: Table) -> tuple[list[Statement], tuple[str, ...]]:
@@ -105,7 +103,7 @@ def _by_values(table: Table, place: int) -> Iterator[Statement]:
     angle = Meaning("angle", unit=said.unit, counts=said.counts)
     units = [pair[1] for pair in units_of_pair(grid_deg, entries, said=(meaning_of("index_deg"), angle))]
     if units:
-        for holds in (READING,) if said.sensor == _SURE else (ANGLE,) if said.reference == _SURE else (ANGLE, READING):
+        for holds in (READING,) if said.sensor == SURE else (ANGLE,) if said.reference == SURE else (ANGLE, READING):
             yield from (statement(table, place, _rule(holds, unit)) for unit in units)
         return
     if not said.role and _unlike_next(entries):

@@ -57,7 +57,8 @@ _PARTED = (
 _AXES = {"x": "cos", "y": "sin"}
 _BY_QUANTITY = {"time": "time", "temperature": "temperature", "speed": "speed"}
 """What a unit says where no word does."""
-_SURE, _LIKELY = 2, 1
+SURE, _LIKELY = 2, 1
+"""What a word weighs that is said of one side alone, and one that is said of it more often."""
 _OF_SENSOR = ("current", "magnitude", "agc", "status", "frame", "error", "correction")
 _ORDER = (*_OF_SENSOR, "other", "temperature", "speed", "gap", "time", "direction", "sin", "cos", "mounting")
 """Roles that a name has before those of an angle: the speed of the encoder is a speed."""
@@ -112,8 +113,8 @@ def _of_words(name: str) -> Meaning:
     if unit is not None and quantity not in ("angle", *_BY_QUANTITY) and len(unit.name) > 1:
         return Meaning("other")
     if roles & _ANGLES or quantity == "angle" or counts:
-        reference = _SURE if "reference" in roles else _LIKELY if "driven" in roles else 0
-        sensor = _SURE if "sensor" in roles else _LIKELY if "read" in roles and not reference else 0
+        reference = SURE if "reference" in roles else _LIKELY if "driven" in roles else 0
+        sensor = SURE if "sensor" in roles else _LIKELY if "read" in roles and not reference else 0
         return Meaning("angle", reference, sensor, unit if quantity == "angle" else None, counts)
     return Meaning(_BY_QUANTITY.get(quantity or "", ""), unit=unit)
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from twin.angles import Array
-from twin.logs.names import Meaning
+from twin.logs.names import SURE, Meaning
 
 _FEWEST = 4
-_SENSOR = 2
-"""What a name weighs that is said of a sensor alone."""
 
 
 def counts_rows(values: Array, said: Meaning) -> bool:
@@ -25,4 +23,4 @@ def counts_rows(values: Array, said: Meaning) -> bool:
     steps = np.unique(np.diff(values))
     if steps.size != 1 or steps[0] == 0.0 or steps[0] % 1.0 != 0.0:
         return False
-    return not said.sensor or (said.sensor < _SENSOR and abs(steps[0]) == 1.0)
+    return not said.sensor or (said.sensor < SURE and abs(steps[0]) == 1.0)

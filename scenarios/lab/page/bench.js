@@ -1,15 +1,10 @@
 // The bench view: the closed loop on the virtual bus, its readings as they come, before and with the correction.
 import { ask, complain, got } from "./ask.js";
+import { by, node } from "./dom.js";
 import { become, given, Plot, shown } from "./plot.js";
 import { picture, save, showCommand } from "./save.js";
 
 const WATCHED_EVERY_MS = 150;
-const by = (id) => document.getElementById(id);
-const node = (name, properties = {}, ...children) => {
-  const made = Object.assign(document.createElement(name), properties);
-  made.append(...children);
-  return made;
-};
 
 export class BenchView {
   constructor() {

@@ -1,6 +1,7 @@
 // The design view: one magnet in one place, everything that follows from it, and what it has to keep.
 import { ask, complain, latest, posted, say } from "./ask.js";
 import { Controls, withValue } from "./controls.js";
+import { by } from "./dom.js";
 import { ErrorMap } from "./map.js";
 import { become, element, given, Plot, shown } from "./plot.js";
 import { picture, save, showCommand } from "./save.js";
@@ -9,7 +10,6 @@ import { Side, Top } from "./scene.js";
 const AT_PAUSE_MS = 60;
 const AT_REST_MS = 180;
 const TURN = { span: [0, 360], marks: [0, 90, 180, 270, 360], x: "shaft angle / deg" };
-const by = (id) => document.getElementById(id);
 
 export class DesignView {
   constructor(start) {

@@ -1,5 +1,6 @@
 // The explain view: a sweep goes in, the search is watched and stopped, and the answer is taken apart layer by layer.
 import { ask, complain, got, handOver, latest, say } from "./ask.js";
+import { by, node } from "./dom.js";
 import { layerName, Layers, Numbers } from "./layers.js";
 import { become, Plot, shown } from "./plot.js";
 import { picture, save, showCommand } from "./save.js";
@@ -7,12 +8,6 @@ import { picture, save, showCommand } from "./save.js";
 const WATCHED_EVERY_MS = 250;
 const AT_REST_MS = 160;
 const COLOURS = { forward: "first", backward: "second" };
-const by = (id) => document.getElementById(id);
-const node = (name, properties = {}, ...children) => {
-  const made = Object.assign(document.createElement(name), properties);
-  made.append(...children);
-  return made;
-};
 
 export class ExplainView {
   constructor(start) {

@@ -2,9 +2,8 @@
 import { ask, complain, got, handOver, say } from "./ask.js";
 import { BenchView } from "./bench.js";
 import { DesignView } from "./design.js";
+import { by } from "./dom.js";
 import { ExplainView } from "./explain.js";
-
-const by = (id) => document.getElementById(id);
 
 async function trying(work) {
   try {

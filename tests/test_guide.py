@@ -45,33 +45,11 @@ def test_own_effect_is_its_real_output(
         assert told == pytest.approx(found, rel=0.03, abs=3e-4)
 
 
-def test_over_temperature_is_its_real_output(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Words as they stand, figures to a few percent; half widths are not compared."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "80")
-    page = GUIDE / "temperature.md"
-    simulate = re.search(r"^halltwin (simulate .*)$", page.read_text(encoding="utf-8"), re.M)
-    assert simulate
-    halltwin(*(ROOT / word if word.startswith("scenarios/") else word for word in simulate[1].split()))
-    out, shown = halltwin("compensate", "warm.csv").out, block(page, "warm")
-    assert words(out) == words(shown)
-    for told, found in zip(figures(shown), figures(out), strict=True):
-        assert told == pytest.approx(found, rel=0.1, abs=3e-4)
-
-
-def test_a_table_for_a_drive_is_its_real_output(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Words as they stand, figures to a few percent; those of the read-back table to its rounding."""
-    (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
-    page = GUIDE / "drive_tables.md"
-    (command,) = re.findall(r"^halltwin (export .*)$", page.read_text(encoding="utf-8"), re.M)
-    out, shown = halltwin(*command.split()).out, block(page, "export")
-    assert words(out) == words(shown)
-    for told, found in zip(figures(shown), figures(out), strict=True):
-        assert told == pytest.approx(found, rel=0.1, abs=3e-4)
+def test_drives_of_the_page_are_those_of_the_command() -> None:
+    page = (GUIDE / "drive_tables.md").read_text(encoding="utf-8")
+    assert TARGETS
     for target in TARGETS:
-        assert f"| `{target.name}` |" in page.read_text(encoding="utf-8")
+        assert f"| `{target.name}` |" in page
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The README is short, and its example is what the program says."""
+"""The README is short, and its lines of Python run; its commands are run by ``tests/test_guide_commands.py``."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.command_line import halltwin
-from tests.pages import PAGES, ROOT, block, figures, words
+from tests.pages import PAGES, ROOT, block
 
 README = ROOT / "README.md"
 MOST_LINES = 200
@@ -19,29 +18,6 @@ MOST_LINES = 200
 
 def test_is_short() -> None:
     assert len(README.read_text(encoding="utf-8").splitlines()) <= MOST_LINES
-
-
-def test_example_is_its_real_output(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Word by word; its figures to a few percent, the rank of the predictive check to some of its 199 sweeps."""
-    shown = block(README, "example")
-    monkeypatch.setenv("COLUMNS", "100")
-    (command,) = re.findall(r"^halltwin (explain .* --report .*)$", README.read_text(encoding="utf-8"), re.MULTILINE)
-    (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")
-    monkeypatch.chdir(tmp_path)
-    out = halltwin(*command.split()).out
-    assert words(shown) == words(out)
-    assert "hysteresis" in shown
-    (told_p, *told), (found_p, *found) = (_rank_first(text) for text in (shown, out))
-    assert told_p == pytest.approx(found_p, abs=0.05)
-    for one, other in zip(told, found, strict=True):
-        assert one == pytest.approx(other, rel=0.03, abs=3e-4)
-
-
-def _rank_first(text: str) -> list[float]:
-    """The p-value of the predictive check, then all other figures."""
-    rank = re.search(r"\(p = ([\d.]+)\)", text)
-    assert rank
-    return [float(rank[1]), *figures(text.replace(rank[0], ""))]
 
 
 def test_python_lines_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+"""Numbers of any shape, in double precision."""
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 TAU = 2.0 * np.pi

@@ -44,6 +44,7 @@ OWNER_OF_STAGE: Mapping[str, Owner] = {
 """Whose a parameter is that does not say so itself, by its effect's stage."""
 
 Parameters = Mapping[str, Any]
+"""An effect's parameters by name: numbers, or arrays of a batch."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,6 +9,7 @@ from typer.core import TyperCommand
 
 from scenarios.cli.bench import bench
 from scenarios.cli.effects import causes, check_effect, new_effect
+from scenarios.cli.guide import guide
 from scenarios.cli.lab import lab
 from scenarios.cli.logs import doctor, import_log
 from scenarios.cli.simulation import hardware, paper, simulate, spinning
@@ -87,6 +88,7 @@ for command in (
     import_log,
     doctor,
     lab,
+    guide,
 ):
     # Python keeps the word import for itself.
     app.command("import" if command is import_log else None, cls=Command)(with_verbosity(command))

@@ -1,9 +1,9 @@
 """The mark by which the program knows a file that it wrote and that nobody has changed since.
 
-A mark is one sentence with the SHA-256 of all that the file holds besides: a comment in TOML, CFG, C, HTML, SVG and
-PDF, the entry ``written_by`` in JSON, a text chunk in PNG. CSV and Parquet stay plain, because many programs read them
-that know no comments: their mark is an extended attribute of the file, where the system has those. A file that was
-edited, or that someone else wrote in the same format, bears no mark that fits: it is the user's.
+A mark is one sentence with the SHA-256 of all that the file holds besides: a comment in TOML, CFG, C, CSS, HTML, SVG
+and PDF, the entry ``written_by`` in JSON, a text chunk in PNG. CSV and Parquet stay plain, because many programs read
+them that know no comments: their mark is an extended attribute of the file, where the system has those. A file that
+was edited, or that someone else wrote in the same format, bears no mark that fits: it is the user's.
 """
 
 from __future__ import annotations
@@ -53,6 +53,7 @@ _FORMS = {
     ".h": _C,
     ".hh": _C,
     ".hpp": _C,
+    ".css": _C,
     ".html": _XML,
     ".htm": _XML,
     ".svg": _XML,

@@ -42,6 +42,7 @@ TABLE = Format("tables", (".csv", ".csv.gz"))
 JSON = Format("answers", (".json",))
 TOML = Format("such files", (".toml",))
 HTML = Format("reports", (".html", ".htm"))
+PAGES = Format("files of the guide", (".html", ".css", ".png"))
 HEADER = Format("C headers", (".h", ".hh", ".hpp"))
 PICTURE = Format("pictures", (".png", ".svg", ".pdf"))
 CONFIGURATION = Format("such tables", (".cfg",))
@@ -50,7 +51,9 @@ PYTHON = Format("effects", (".py",), marked=False)
 """A file to write one's own physics into."""
 
 _FILES = {
-    end for form in (TABLE, JSON, TOML, HTML, HEADER, PICTURE, CONFIGURATION, PARQUET, PYTHON) for end in form.endings
+    end
+    for form in (TABLE, JSON, TOML, HTML, PAGES, HEADER, PICTURE, CONFIGURATION, PARQUET, PYTHON)
+    for end in form.endings
 }
 
 Given = tuple[Path | None, Format]

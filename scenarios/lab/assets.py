@@ -1,4 +1,4 @@
-"""The files of the page: a fixed table, so that no name from outside ever becomes a path."""
+"""The files of the page and of its help: fixed tables, so that no name from outside ever becomes a path."""
 
 from __future__ import annotations
 
@@ -33,3 +33,18 @@ def asset(name: str) -> tuple[bytes, str] | None:
         return None
     file, kind = ASSETS[name]
     return resources.files(__package__).joinpath("page", file).read_bytes(), kind
+
+
+GUIDE = "guide/"
+_KINDS = {"html": _PAGE, "css": _STYLE, "png": "image/png"}
+
+
+def guide_file(name: str) -> tuple[bytes, str] | None:
+    """Content and type of a file of the guide, whose pages are made when the first one is asked for."""
+    if not name.startswith(GUIDE):
+        return None
+    from scenarios.commands.guide.site import site
+
+    file = name.removeprefix(GUIDE)
+    content = site().get(file)
+    return None if content is None else (content, _KINDS[file.rpartition(".")[2]])

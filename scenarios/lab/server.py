@@ -12,7 +12,7 @@ from io import BufferedIOBase
 from typing import Any
 from urllib.parse import unquote
 
-from scenarios.lab.assets import asset
+from scenarios.lab.assets import asset, guide_file
 from scenarios.lab.guard import ADDRESS, HEADERS, Door, Guard, Refusal, new_token
 from twin.errors import UserError
 from twin.log import LOG
@@ -118,7 +118,7 @@ class _Handler(BaseHTTPRequestHandler):
         return Reply(b"", to=f"/{self.server.guard.token}/", status=HTTPStatus.SEE_OTHER)
 
     def _got(self, below: str) -> Reply:
-        found = asset(below)
+        found = asset(below) or guide_file(below)
         if found is not None:
             return Reply(*found)
         if below not in self.server.routes.gets:

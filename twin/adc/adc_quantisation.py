@@ -66,6 +66,7 @@ ADC_QUANTISATION = Effect(
             doc="word length; 0: continuous",
             role="random",
             counts=True,
+            typical=10.0,
         ),
         "full_scale_percent": full_scale(),
     },

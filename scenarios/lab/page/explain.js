@@ -174,11 +174,18 @@ function causes(answer) {
   const parts = answer.setup.map((words) => node("p", { className: "error", textContent: words }));
   for (const words of answer.changed) parts.push(node("p", { textContent: capital(signed(words)) }));
   for (const cause of answer.causes) {
-    parts.push(node("h4", { textContent: `${cause.name.replaceAll("_", " ")} (${cause.stage})` }));
+    parts.push(node("h4", {}, inCatalogue(cause.name), ` (${cause.stage})`));
     for (const words of [...cause.parameters, `held-out RMS ${cause.held_out} deg, false alarm ${cause.false_alarm}`, ...cause.said]) parts.push(node("p", { textContent: signed(words) }));
   }
   if (!answer.causes.length) parts.push(node("p", { textContent: "No cause stands out of the noise." }));
   return parts;
+}
+
+/** A cause's name, as a link to what the guide says of it. */
+function inCatalogue(name) {
+  const words = name.replaceAll("_", " ");
+  if (name === "unnamed") return node("a", { href: "guide/own_effects.html", target: "_blank", rel: "noopener", textContent: words });
+  return node("a", { href: `guide/catalogue.html#${name}`, target: "_blank", rel: "noopener", textContent: words });
 }
 
 /** The paper's factors before and with the causes. */

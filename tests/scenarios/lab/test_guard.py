@@ -8,9 +8,10 @@ from urllib.parse import quote
 
 import pytest
 
+from scenarios.commands.guide.site import site
 from scenarios.lab import server as served
 from scenarios.lab.assets import ASSETS
-from scenarios.lab.guard import ADDRESS
+from scenarios.lab.guard import ADDRESS, HEADERS
 from tests.scenarios.lab.serving import Client, serving
 
 
@@ -20,6 +21,27 @@ def test_the_page_gets_what_it_is_made_of(client: Client) -> None:
         assert got.status == 200
         assert got.headers["Content-Type"] == kind
         assert got.content
+
+
+def test_the_guide_is_had_below_the_secret_and_nothing_else_of_its_folder(client: Client) -> None:
+    for name, content in site().items():
+        got = client.ask(f"guide/{name}")
+        assert (got.status, got.content) == (200, content)
+        assert got.headers["Content-Security-Policy"] == HEADERS["Content-Security-Policy"]
+    assert client.ask("guide/index.html").headers["Content-Type"] == "text/html; charset=utf-8"
+    for name in (
+        "",
+        "index.md",
+        "../lab.html",
+        "..%2flab.html",
+        "index.html/",
+        "index.html?x",
+        "./index.html",
+        "/etc/passwd",
+    ):
+        assert client.ask(f"guide/{name}").status == 404
+    assert client.raw("/guide/index.html").status == 403
+    assert client.ask("guide/index.html", Sec_Fetch_Site="cross-site", Sec_Fetch_Dest="document").status == 403
 
 
 @pytest.mark.parametrize(

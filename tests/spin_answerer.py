@@ -14,9 +14,11 @@ from diagnosis.correction.compensation import correction_of
 Array = npt.NDArray[np.float64]
 
 
-def explained(paths: Sequence[str]) -> tuple[Mapping[str, Any], Callable[[Array], Array], frozenset[int]]:
+def explained(
+    paths: Sequence[str], *, budget_s: float = float("inf")
+) -> tuple[Mapping[str, Any], Callable[[Array], Array], frozenset[int]]:
     """The JSON answer to the logs of a device, what its extended twin makes of a reading [deg], orders left open."""
-    found = explain(paths[0] if len(paths) == 1 else list(paths))
+    found = explain(paths[0] if len(paths) == 1 else list(paths), budget_s=budget_s)
     correction = correction_of(found.extended)
     answer = found.to_dict()
     return answer, lambda reading_deg: np.degrees(correction.shaft(np.radians(reading_deg))), open_orders(answer)

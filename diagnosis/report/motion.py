@@ -16,6 +16,7 @@ from twin.angles import TAU, Array
 from twin.catalogue import find
 from twin.confidence import Z95
 from twin.estimated_motion import EstimatedMotion, Torque
+from twin.pace import LEAST_SPEEDS, STOP_AND_MEASURE_S
 
 TORQUE = "torque_ripple"
 """What a torque locked to the angle is called where a cause may as well be one."""
@@ -26,6 +27,7 @@ STAMPS = "time_stamps"
 USB_FRAMES_HZ = 1000.0
 """At which a full-speed USB asks a device."""
 WITHOUT_CURRENT = "a log in which the shaft coasts, the motor's current off: the current makes a torque as well"
+THIRD_SPEED = "a log at a third speed, or coasting down: a rotor of one piece answers to a torque by 1/speed^2 at all"
 _BEYOND_CHANCE = 4.0
 """Standard deviations from which on a torque is listed: one of sixteen orders, of two components each, passes it by
 chance in one log of 200 (16 exp(-8))."""
@@ -41,12 +43,14 @@ def motion_answer(found: Discovery) -> dict[str, Any]:
         "motion": {
             "estimated_from": "readings",
             "turns_per_s": [float(speed.min()), float(speed.max())],
+            "reading_every_s": _every_s(found),
             "stretches": len(estimated.lengths),
             "rows_aside": estimated.rows_aside,
             "even_clock": estimated.even_clock,
             "slowest_turns_per_s": _knee_turns_per_s(found),
             "torque_ripple": [_torque(one) for one in _listed(estimated)],
             "not_separable": not_separable(estimated),
+            "of_one_piece": _of_one_piece(estimated, speed),
             "times_off": [
                 one for cause in found.causes if cause.name == "unnamed" for one in _times_off(found.fit, cause.keys)
             ],
@@ -54,18 +58,35 @@ def motion_answer(found: Discovery) -> dict[str, Any]:
     }
 
 
+def _every_s(found: Discovery) -> float:
+    """Usual time from one reading to the next [s]."""
+    time = found.sweep.time_s
+    assert time is not None
+    return float(np.median(np.diff(time)))
+
+
 def _knee_turns_per_s(found: Discovery) -> float:
     """Frequency below which the motion is freer than the readings are noisy [1/s]."""
-    estimated, time = found.sweep.estimated, found.sweep.time_s
+    estimated = found.sweep.estimated
     assert estimated is not None
-    assert time is not None
-    return float(np.median(estimated.knee_rad) / np.median(np.diff(time)) / TAU)
+    return float(np.median(estimated.knee_rad)) / _every_s(found) / TAU
 
 
 def not_separable(estimated: EstimatedMotion) -> list[int]:
     """Orders whose error is the sensor's or a torque's: the log's speeds do not tell."""
     told = {one.order for one in estimated.torques if one.separable}
     return sorted({one.order for one in estimated.torques} - told)
+
+
+def _of_one_piece(estimated: EstimatedMotion, speed: Array) -> list[int]:
+    """Orders whose torque two speeds tell from the sensor, and no third one checks that it falls as 1/speed^2.
+
+    Where a belt or a coupling resonates at the order's frequency, the rotor answers by more, by less, or the other way.
+    """
+    rising = np.sort(speed)
+    between = 1 + int(np.argmax(rising[1:] / rising[:-1]))
+    two = all(group[-1] - group[0] < LEAST_SPEEDS * group[-1] for group in (rising[:between], rising[between:]))
+    return [one.order for one in _listed(estimated)] if two else []
 
 
 def _listed(estimated: EstimatedMotion) -> list[Torque]:
@@ -184,6 +205,12 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
         + (f" in {motion['stretches']} stretches" if motion["stretches"] > 1 else "")
         + (f"; {motion['rows_aside']} rows without an even turning are left out" if motion["rows_aside"] else "")
     ]
+    if motion["reading_every_s"] > STOP_AND_MEASURE_S:
+        said.append(
+            f"By their stamps readings are {plain(motion['reading_every_s'], 3)} s apart, which is long for a shaft "
+            "that spins: if these are milliseconds, its speeds and frequencies are a thousand times as high; "
+            "--columns with time_s='...':ms reads them so"
+        )
     if motion["even_clock"]:
         said.append("The readings are taken to be evenly spaced in time: their stamps are coarser than their spacing")
     if motion["torque_ripple"]:
@@ -195,6 +222,12 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
         said.append(
             f"Not told from a torque locked to the angle: orders {_ranges(motion['not_separable'])}. Here all of that "
             f"counts as the sensor's; to part them: {SECOND_SPEED}"
+        )
+    if motion["of_one_piece"]:
+        said.append(
+            f"Two speeds tell torques of orders {_ranges(motion['of_one_piece'])} from the sensor if the rotor turns "
+            "as one piece: where a belt or a coupling resonates with one of them, what it does is taken for an error "
+            f"of the sensor; to see it: {THIRD_SPEED}"
         )
     said += [
         f"The wave of {plain(one['frequency_Hz'], 4)} Hz comes as often as the frames of a USB, every 1 ms: it is "

@@ -91,9 +91,14 @@ class Reduced:
         return left, float(log_det) - 2.0 * float(np.sum(np.log(scale)))
 
     def cost(self, sd: Array, variance: float, rows: float) -> float:
-        """Minus twice the restricted log likelihood, the noise's variance at its best."""
+        """Minus twice the restricted log likelihood of a penalty, the noise's variance at its best."""
         left, log_det = self.left(sd, variance)
         return rows * float(np.log(max(left, 1e-300))) + self.log_det + log_det
+
+    def deviance(self, sd: Array, variance: float, rows: float) -> float:
+        """The same where ``sd`` (p,) is what differs: with how far the columns may have scattered."""
+        held = sd[np.isfinite(sd)]
+        return self.cost(sd, variance, rows) + float(np.sum(np.log(held**2 / variance)))
 
 
 def degrees_of_freedom(problem: Problem, sd: Array) -> float:

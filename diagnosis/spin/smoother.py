@@ -36,6 +36,8 @@ _OF_FRICTION = _OF_GROWING + 2 * HIGHEST_OF_FRICTION
 it end; those of a late channel follow."""
 _TOLD = 0.5
 """Share of a coefficient that the readings tell, from which on its scatter is told by them too."""
+_SURELY = 2.0 * float(np.log(1000.0))
+"""Twice the logarithm of a thousand to one: by so much a channel that is read late has to be likelier than none."""
 _ROUNDS = 5
 _FAR_OUT = 6.0
 _WINDOW = 15
@@ -111,7 +113,14 @@ class _Estimate:
         separable = _separable(reduced, variance, usual)
         both_ways = bool(np.ptp(np.sign(self.rates[0])) > 0.0)
         terms, growing = _drawn(
-            reduced, made.sd, variance, usual, separable, both_ways=both_ways, most_growing=self.most_growing
+            reduced,
+            made.sd,
+            variance,
+            usual,
+            separable,
+            both_ways=both_ways,
+            most_growing=self.most_growing,
+            rows=degrees_of_freedom(made.problem, made.sd),
         )
         torques = slice(_OF_ERROR, _OF_FRICTION)
         start = made.problem.start + reduced.step - reduced.pulled @ terms.values
@@ -250,6 +259,7 @@ def _drawn(
     *,
     both_ways: bool,
     most_growing: Array,
+    rows: float,
 ) -> tuple[Drawn, Array]:
     """The coefficients, each order's torque by a scatter of its own; none where it would not be told.
 
@@ -257,8 +267,8 @@ def _drawn(
     speeds or more. Where it is not, it is taken to be there, half as large, but no larger than it is known to be at
     most, nor than those of the orders 1 and 2: a torque of a higher order is a cogging, which does not grow. One that
     reverses with the speed, as a modulated dry friction does, is told by a log of ``both_ways``. An error of order 2
-    that grows with the speed, as of a channel that is read late, is told by three speeds; where it is not, none is
-    taken to be there.
+    that grows with the speed, as of a channel that is read late, is told by three speeds; where it is not, or where
+    torques alone are about as likely, none is taken to be there.
     """
     if len(sd) <= _OF_ERROR:
         return solved(reduced.normal, reduced.gradient, variance, sd), _ANY
@@ -270,10 +280,14 @@ def _drawn(
     sd[_OF_ERROR:_OF_FRICTION] = 1e-9 * usual_rad_s
     sd[_OF_FRICTION:] = 1e-9 / usual_rad_s
     sd[np.concatenate([np.zeros(0, dtype=np.int64), *groups])] = usual_rad_s**2
+    found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
     if _late_channel_told(reduced, variance, usual_rad_s):
         sd[pairs[-1]] = 1.0 / usual_rad_s
-        groups.append(pairs[-1])
-    found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
+        late = drawn(reduced.normal, reduced.gradient, variance, groups=[*groups, pairs[-1]], sd=sd)
+        # Between two speeds it does what a torque of order 2 does, and would put another error in the sensor.
+        likelier = reduced.deviance(found.sd, variance, rows) - reduced.deviance(late.sd, variance, rows)
+        if likelier > _SURELY:
+            found, groups = late, [*groups, pairs[-1]]
     sd = found.sd.copy()
     half = 0.5 * sd[[pair[0] for pair in pairs[: len(growing)]]] / usual_rad_s
     if separable[:_OF_RUN_OUT].any():

@@ -12,6 +12,7 @@ import argparse
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -107,6 +108,11 @@ def apart_deg(path: Path, answerer: Answerer) -> float:
     return rms_of_orders(both[0] - both[1])
 
 
+def verdict_of(answer: Mapping[str, Any]) -> str:
+    """The verdict, and whether the search was cut short."""
+    return f"{answer.get('verdict', '')}{' (cut short)' if answer.get('cut_short') else ''}"
+
+
 def told(answer: Mapping[str, Any]) -> str:
     """The causes of an answer with their intervals, in a line."""
     found = []
@@ -133,7 +139,7 @@ def show_spin(path: Path, answerer: Answerer) -> None:
     print(f"{path.name}: locked to the angle {locked_rms_deg(columns):.4f} deg RMS ({orders_of(columns)})")
     try:
         answer, _, unseparated = answerer([str(path)])
-        print(f"  {answer.get('verdict', '')}: {told(answer)}")
+        print(f"  {verdict_of(answer)}: {told(answer)}")
         print(f"  orders left open: {sorted(unseparated) or 'none'}")
         found = halves(columns, answerer)
         pairs = zip(found.before_deg, found.after_deg, strict=True)
@@ -148,7 +154,7 @@ def show_together(paths: Sequence[Path], answerer: Answerer) -> None:
     print(" + ".join(path.name for path in paths))
     try:
         answer, _, unseparated = answerer([str(path) for path in paths])
-        print(f"  {answer.get('verdict', '')}: {told(answer)}; orders left open: {sorted(unseparated) or 'none'}")
+        print(f"  {verdict_of(answer)}: {told(answer)}; orders left open: {sorted(unseparated) or 'none'}")
     except Exception as error:
         print(f"  no answer: {type(error).__name__}: {error}")
 
@@ -177,8 +183,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options.add_argument("--with-reference", action="store_true")
     options.add_argument("--only", default="", help="part of the names of the files to keep")
     options.add_argument("--answerer", default=DEFAULT_ANSWERER, help="module:function")
+    options.add_argument("--budget", type=float, default=120.0, help="seconds of computing for each log of an answer")
     asked = options.parse_args(arguments)
-    answerer = answerer_of(asked.answerer)
+    answerer = partial(answerer_of(asked.answerer), budget_s=asked.budget)
     if asked.with_reference:
         show_with_reference(answerer)
         return

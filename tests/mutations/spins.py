@@ -38,6 +38,27 @@ SPINS: tuple[Mutation, ...] = tuple(
             f"{_SMOOTHER}::test_an_error_that_grows_with_the_speed_is_no_torque",
         ),
         (
+            "spins.a_torque_is_a_late_channel",
+            "diagnosis/spin/smoother.py",
+            "        if likelier > _SURELY:\n",
+            "        if True:\n",
+            f"{_SMOOTHER}::test_a_torque_at_two_speeds_is_no_channel_read_late",
+        ),
+        (
+            "spins.three_speeds_take_the_rotor_for_one_piece",
+            "diagnosis/report/motion.py",
+            "if two else []",
+            "if True else []",
+            f"{_EXPLAIN}::test_what_two_speeds_tell_takes_the_rotor_for_one_piece",
+        ),
+        (
+            "spins.a_reading_each_second_is_told_of_as_any",
+            "diagnosis/report/motion.py",
+            '    if motion["reading_every_s"] > STOP_AND_MEASURE_S:\n',
+            "    if False:\n",
+            f"{_EXPLAIN}::test_a_reading_each_second_may_be_one_each_millisecond[1000.0]",
+        ),
+        (
             "spins.dry_friction_stays",
             "diagnosis/spin/smoother.py",
             "if both_ways else []",

@@ -211,6 +211,24 @@ def test_at_two_speeds_a_cogging_does_not_grow(seed: int) -> None:
     assert cogging.growing_rad_s * speed < 0.1 * cogging.scatter_rad_s2
 
 
+@pytest.mark.parametrize("speeds", [(9.0, 25.0), (9.0, 15.0, 25.0)])
+def test_what_two_speeds_tell_takes_the_rotor_for_one_piece(speeds: tuple[float, ...]) -> None:
+    """A torque of order 3 turns the shaft by 0.1 deg at 9 turns/s, and by 1/speed^2 at others."""
+    logs = [even(one, order=3, error_deg=0.1 * (9.0 / one) ** 2, seed=seed) for seed, one in enumerate(speeds)]
+    answer = explain(logs).to_dict()
+    assert [one["order"] for one in answer["motion"]["torque_ripple"]] == [3]
+    assert answer["motion"]["of_one_piece"] == ([3] if len(speeds) == 2 else [])
+    assert ("if the rotor turns as one piece" in text(answer, width=600)) is (len(speeds) == 2)
+
+
+@pytest.mark.parametrize("scale", [1.0, 1000.0])
+def test_a_reading_each_second_may_be_one_each_millisecond(scale: float) -> None:
+    columns = even(9.0, order=5)
+    answer = explain(columns | {"time_s": scale * TIME}, progress=stop_with_one).to_dict()
+    assert answer["motion"]["reading_every_s"] == pytest.approx(0.001 * scale)
+    assert ("if these are milliseconds" in text(answer, width=600)) is (scale > 1.0)
+
+
 @pytest.mark.parametrize(("frequency", "usb"), [(1000.0, True), (870.0, False)])
 def test_a_wave_in_time_may_be_times_that_are_told_wrong(frequency: float, usb: bool) -> None:
     """Readings that are fetched every 0.25 ms, and taken up to 20 us from when they are said to be."""

@@ -103,6 +103,20 @@ def test_an_error_that_grows_with_the_speed_is_no_torque() -> None:
     assert error_of(fit, 2) == pytest.approx([0.0, 0.0], abs=5e-5)
 
 
+def test_a_torque_at_two_speeds_is_no_channel_read_late() -> None:
+    """Both are of order 2, and what differs between them from one speed to the other is the sensor's error."""
+    time = np.arange(0.0, 3.0, 0.001)
+    logs = []
+    for seed, (speed, settles) in enumerate(((94.0, 0.0), (306.0, 0.03))):
+        angle = speed * (time - 0.4 * settles * (1.0 - np.exp(-time / 0.4)))
+        torque = 0.002 * (94.0 / np.gradient(angle, time)) ** 2 * np.cos(2.0 * angle + 1.0)
+        noise = NOISE * np.random.default_rng(seed + 1).standard_normal(time.size)
+        logs.append(angle + torque + OFFSET * np.sin(2.0 * angle) + noise)
+    slices = [slice(0, time.size), slice(time.size, 2 * time.size)]
+    fit = fitted_motion(np.concatenate(logs), np.concatenate([time, time + 4.0]), slices)
+    assert error_of(fit, 2) == pytest.approx([0.0, OFFSET], abs=4e-4)
+
+
 def test_dry_friction_reverses_with_the_direction() -> None:
     """Its torque of order 1 does so too: there and back it is told from one that does not."""
     there, rubbing = coasting(cogging=0.0), 4.0

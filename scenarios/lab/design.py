@@ -248,19 +248,37 @@ def taken_out(chain: Chain, designs: Designs, motion: Motion) -> Iterator[tuple[
 
 def error_map(chain: Chain, asked: Asked, sizes_mm: Array, gaps_mm: Array) -> dict[str, Any]:
     """Error and field of magnets (sizes,) at air gaps (gaps,), all else as in the design: largest over temperature."""
+    designs = _around(asked, sizes_mm, gaps_mm)
+    error = np.max(np.abs(errors_deg(chain, designs, asked.demand.motion(POINTS))), axis=1)
+    return _mapped(asked, sizes_mm, gaps_mm, designs, error_deg=error)
+
+
+def yield_map(study: DesignStudy, asked: Asked, sizes_mm: Array, gaps_mm: Array) -> dict[str, Any]:
+    """Share of mountings that keep error and window, of magnets (sizes,) at air gaps (gaps,), all mounted alike.
+
+    The same mountings are drawn for each: neighbours differ by what they are, not by the draw.
+    """
+    designs = _around(asked, sizes_mm, gaps_mm)
+    share = study.over_mountings(designs, np.zeros(sizes_mm.size * gaps_mm.size, dtype=np.int64))["yield"]
+    return _mapped(asked, sizes_mm, gaps_mm, designs, **{"yield": share})
+
+
+def _around(asked: Asked, sizes_mm: Array, gaps_mm: Array) -> Designs:
+    """Magnets of these sizes at these air gaps (gaps x sizes,), all else as in the design."""
     size, gap = (part.ravel() for part in np.meshgrid(sizes_mm, gaps_mm))
     sized: dict[str, Any] = dict.fromkeys(sizes_of(asked.magnet), size)
-    magnet = replace(asked.magnet, **sized)
-    designs = Designs(magnet, replace(asked.placement, air_gap_mm=gap))
+    return Designs(replace(asked.magnet, **sized), replace(asked.placement, air_gap_mm=gap))
+
+
+def _mapped(asked: Asked, sizes_mm: Array, gaps_mm: Array, designs: Designs, **columns: Array) -> dict[str, Any]:
+    """Columns of designs as a map (gaps, sizes), with the span of the field."""
     low, high = field_span(designs, asked.demand)
-    error = np.max(np.abs(errors_deg(chain, designs, asked.demand.motion(POINTS))), axis=1)
     shape = (gaps_mm.size, sizes_mm.size)
+    shown_as_map = {**columns, "field_low_mT": low, "field_high_mT": high}
     return {
         "size_mm": _rounded(sizes_mm),
         "air_gap_mm": _rounded(gaps_mm),
-        "error_deg": _rounded(error.reshape(shape)),
-        "field_low_mT": _rounded(low.reshape(shape)),
-        "field_high_mT": _rounded(high.reshape(shape)),
+        **{name: _rounded(column.reshape(shape)) for name, column in shown_as_map.items()},
     }
 
 

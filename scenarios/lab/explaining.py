@@ -28,6 +28,10 @@ class Explaining(ProcessJob):
     def _begun(self, question: Question) -> None:
         self._question, self._stops = question, 0
 
+    def _more(self) -> dict[str, Any]:
+        """Of the computing that the search may take."""
+        return {} if self._question is None else {"budget_s": self._question.budget_s}
+
     def stop(self) -> None:
         """End the search where it stands, as Ctrl-C does: once for the answer so far, twice for none."""
         with self._lock:

@@ -116,7 +116,12 @@ class Layers:
             **{name: self._fixed(cause) for name, cause in self.causes.items()},
         }
         layers = [
-            {"name": name, "without_deg": None if why else self._rms(*self._left(frozenset([name]))), "fixed": why}
+            {
+                "name": name,
+                "title": self._title(name),
+                "without_deg": None if why else self._rms(*self._left(frozenset([name]))),
+                "fixed": why,
+            }
             for name, why in fixed.items()
         ]
         return {
@@ -128,6 +133,21 @@ class Layers:
             "readings": len(self.read.error_deg),
             "two_ways": two_ways(self.read.motion),
         }
+
+    def _title(self, layer: str) -> str:
+        """A layer's name in words; of a cause of several lines with the place of each."""
+        cause = self.causes.get(layer)
+        told = [] if cause is None or len(cause.keys) < 2 else [self._place(key) for key in cause.keys]
+        places = dict.fromkeys(name for name, _ in told if name)
+        said = [f"{label(name)} {', '.join(value for of, value in told if of == name)}" for name in places]
+        return f"{layer.replace('_', ' ')} ({'; '.join(said)})" if said else layer.replace("_", " ")
+
+    def _place(self, key: str) -> tuple[str, str]:
+        """What says where a line of a cause lies, such as its order, and the value; empty for what is no line."""
+        chain = self.explained.discovery.fit.chain
+        line = find(key, chain.effects).line
+        value = chain.values.get(key, {}).get(line.param) if line is not None else None
+        return ("", "") if line is None or value is None else (line.param, f"{value:.4g}")
 
     def _fixed(self, cause: Finding) -> str | None:
         """Why a cause cannot be taken off the mean of the readings; None where it can."""
@@ -161,7 +181,7 @@ class Layers:
             sliders.append(
                 {
                     "name": f"{key}.{name}",
-                    "label": labels.get((key, name), label(name)),
+                    "label": labels.get((key, name)) or self._labelled(owners.get(key), key, name),
                     "of": owners.get(key, MODEL),
                     "unit": "" if param.unit == "1" else param.unit,
                     "value": float(value),
@@ -171,6 +191,11 @@ class Layers:
                 }
             )
         return sliders
+
+    def _labelled(self, owner: str | None, key: str, name: str) -> str:
+        """A parameter in words, with the place of its line where its cause has several."""
+        place, value = self._place(key) if owner is not None and len(self.causes[owner].keys) > 1 else ("", "")
+        return f"{label(name)}, {label(place)} {value}" if place not in ("", name) else label(name)
 
     def look(self, look: Look) -> dict[str, Any]:
         """The residual with some layers off and some values moved, for a picture of so many columns. Raises UserError.

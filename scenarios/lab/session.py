@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, get_args
@@ -23,6 +24,7 @@ from scenarios.lab.design import (
     over_tolerances,
     sizes_of,
     study_of,
+    yield_map,
 )
 from scenarios.lab.dropped import emptied
 from scenarios.lab.explain_worker import ANSWER, EXTENDED, REPORT
@@ -41,6 +43,8 @@ from twin.shown import shown
 
 _MAP = 24
 """Sizes and air gaps of the map."""
+_YIELD_MAP, _MAP_MOUNTINGS = 12, 50
+"""Of the map of the yield, and the mountings drawn for each of its designs: it takes about a second."""
 _SIZES_MM, _GAPS_MM = (3.0, 12.0), (0.4, 5.0)
 _KINDS = {ANSWER: "application/json", REPORT: "text/html; charset=utf-8", EXTENDED: "application/toml"}
 """Files of an answer; each is saved, none is shown: a report has styles of its own, which the page's policy forbids."""
@@ -76,6 +80,7 @@ class Session:
                 "design/causes": self._causes,
                 "design/study": self._over_tolerances,
                 "design/map": self._map,
+                "design/yield-map": self._yield_map,
                 "twin/preset": self._preset,
                 "twin/save": self._save,
                 "bench/begin": self._begin_bench,
@@ -130,8 +135,14 @@ class Session:
 
     def _map(self, content: Any) -> Reply:
         sensor, asked = self._asked(content)
-        sizes, gaps = _spans(asked)
+        sizes, gaps = _spans(asked, _MAP)
         return Reply.of(error_map(sensor.chain, asked, sizes, gaps))
+
+    def _yield_map(self, content: Any) -> Reply:
+        sensor, asked = self._asked(content)
+        sizes, gaps = _spans(asked, _YIELD_MAP)
+        demand = replace(asked.demand, mountings=min(asked.demand.mountings, _MAP_MOUNTINGS))
+        return Reply.of(yield_map(study_of(sensor.chain, demand), asked, sizes, gaps))
 
     def _preset(self, content: Any) -> Reply:
         return self._take(twins.preset(content.get("name") if isinstance(content, Mapping) else content))
@@ -195,12 +206,12 @@ class Session:
         return Reply(content, _KINDS[name], download=download)
 
 
-def _spans(asked: Asked) -> tuple[Array, Array]:
-    """Sizes and air gaps [mm] of the map, wide enough to hold the design. Raises UserError where there is none."""
+def _spans(asked: Asked, count: int) -> tuple[Array, Array]:
+    """So many sizes and air gaps [mm] of a map that holds the design. Raises UserError where there is none."""
     size = float(np.asarray(getattr(asked.magnet, sizes_of(asked.magnet)[0])))
     gap = float(np.asarray(asked.placement.air_gap_mm))
     smallest = float(asked.magnet.bore_mm) / _WALL if asked.magnet.shape == "ring" else SMALLEST_MM
     low, high = max(min(_SIZES_MM[0], size), smallest), max(_SIZES_MM[1], size, 2.0 * smallest)
     if not low < high:
         raise UserError(f"magnet of {size:g} mm has no others beside it on a map; expected a smaller bore")
-    return np.linspace(low, high, _MAP), np.linspace(min(_GAPS_MM[0], gap), max(_GAPS_MM[1], gap), _MAP)
+    return np.linspace(low, high, count), np.linspace(min(_GAPS_MM[0], gap), max(_GAPS_MM[1], gap), count)

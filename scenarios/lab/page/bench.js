@@ -1,7 +1,7 @@
 // The bench view: the closed loop on the virtual bus, its readings as they come, before and with the correction.
-import { ask, complain, got } from "./ask.js";
+import { ask, complain, got, say } from "./ask.js";
 import { by, node } from "./dom.js";
-import { become, given, Plot, shown } from "./plot.js";
+import { become, given, Plot, put, shown } from "./plot.js";
 import { picture, save, showCommand } from "./save.js";
 
 const WATCHED_EVERY_MS = 150;
@@ -46,7 +46,8 @@ export class BenchView {
     clearTimeout(this.timer);
     by("loop-begin").disabled = false;
     by("loop-stop").hidden = true;
-    by("loop-progress").textContent = "";
+    by("loop-seconds").textContent = "";
+    put(by("loop-progress"), "");
   }
 
   show(stand) {
@@ -56,7 +57,8 @@ export class BenchView {
     if (stand.state === "working") {
       by("loop-begin").disabled = true;
       by("loop-stop").hidden = false;
-      by("loop-progress").textContent = `${Math.floor(stand.elapsed_s)} s: ${stand.words}`;
+      by("loop-seconds").textContent = `${Math.floor(stand.elapsed_s)} s:`;
+      put(by("loop-progress"), stand.words);
       this.timer = setTimeout(() => this.trying(async () => this.show(await got("bench"))), WATCHED_EVERY_MS);
       return;
     }
@@ -77,7 +79,9 @@ export class BenchView {
 
   take(answer) {
     const names = answer.causes.map((one) => one.name.replaceAll("_", " ")).join(", ");
-    by("loop-verdict").textContent = `${answer.reached ? "The aim is reached" : "The aim is missed"}: ${shown(answer.after.largest_deg)}° are left over the whole turn`;
+    const reached = `${answer.reached ? "The aim is reached" : "The aim is missed"}: ${shown(answer.after.largest_deg)}° are left over the whole turn`;
+    by("loop-verdict").textContent = reached;
+    say(reached);
     const cards = [
       ["Before, largest", answer.before.largest_deg, "deg", `${shown(answer.before.rms_deg)} deg RMS, zero taken off`],
       ["Corrected, largest", answer.after.largest_deg, "deg", `asked: < ${given(answer.aim_deg)} deg`, answer.reached],

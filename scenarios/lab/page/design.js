@@ -3,12 +3,14 @@ import { ask, complain, latest, posted, say } from "./ask.js";
 import { Controls, withValue } from "./controls.js";
 import { by } from "./dom.js";
 import { ErrorMap } from "./map.js";
-import { become, element, given, Plot, shown } from "./plot.js";
+import { become, element, given, Plot, put, shown } from "./plot.js";
 import { picture, save, showCommand } from "./save.js";
 import { Side, Top } from "./scene.js";
 
 const AT_PAUSE_MS = 60;
 const AT_REST_MS = 180;
+/** As the program has it: `_MAP_MOUNTINGS`. */
+const MAP_MOUNTINGS = 50;
 const TURN = { span: [0, 360], marks: [0, 90, 180, 270, 360], x: "shaft angle / deg" };
 
 export class DesignView {
@@ -31,9 +33,11 @@ export class DesignView {
       this.drawCauses();
     });
     this.askMap = latest(async (design) => {
-      const told = await ask("design/map", design);
-      this.map.draw(told, this.design);
+      const of = by("map-of").value;
+      const told = await ask(of === "yield" ? "design/yield-map" : "design/map", design);
+      if (of === by("map-of").value) this.map.draw(told, this.design);
     });
+    by("map-of").addEventListener("change", () => this.noteMap());
     for (const button of document.querySelectorAll("#design button.picture")) {
       const name = button.dataset.of;
       button.title = "Save this picture as SVG";
@@ -87,9 +91,16 @@ export class DesignView {
     this.map.here(this.design);
   }
 
+  noteMap() {
+    const { mountings } = this.design.demand;
+    const words = { error: "Largest error over the temperatures asked for, mounted as it is.", yield: `Share of ${Math.min(mountings, MAP_MOUNTINGS)} mountings within the tolerances that keep error and field.` };
+    put(by("map-note"), `${words[by("map-of").value]} Hatched: the field leaves the window. Click to go there.`);
+    this.askMap(this.design);
+  }
+
   rest() {
     this.study(this.design);
-    this.askMap(this.design);
+    this.noteMap();
   }
 
   async askAtOnce(design, when) {
@@ -173,6 +184,8 @@ export class DesignView {
     const total = causeRow("all together", "", 0, ["", shown(all, 3)]);
     total.className = "total";
     become(document.querySelector("#causes tbody"), [total, ...rows]);
+    const best = part.map(([name]) => name).filter((name) => without[name] < all).sort((a, b) => without[a] - without[b])[0];
+    put(by("causes-first"), all === undefined ? "" : best ? `Worth mending first: ${words(best)}. Without it the error would be ${shown(without[best])}° in place of ${shown(all)}°.` : "No cause is worth mending by itself: without any one of them the error would be no smaller.");
     const idle = alone.filter((one) => !part.includes(one)).map(([name]) => words(name));
     put(by("no-part"), idle.length ? `No part in it here: ${idle.join(", ")}.` : "");
     put(by("causes-at"), `${design.demand.temperature_c.map(given).join(" to ")} °C, ${given(design.speed_rpm)} rpm`);
@@ -187,11 +200,6 @@ export class DesignView {
       complain(error.message);
     }
   }
-}
-
-/** Other words in an element, where they are others. */
-function put(host, told) {
-  if (host.textContent !== told) host.textContent = told;
 }
 
 const words = (name) => (name === "field" ? "field as mounted" : name.replaceAll("_", " "));

@@ -2,7 +2,7 @@
 import { ask, complain, got, handOver, latest, say } from "./ask.js";
 import { by, node } from "./dom.js";
 import { layerName, Layers, Numbers } from "./layers.js";
-import { become, Plot, shown } from "./plot.js";
+import { become, Plot, put, shown } from "./plot.js";
 import { picture, save, showCommand } from "./save.js";
 
 const WATCHED_EVERY_MS = 250;
@@ -49,7 +49,7 @@ export class ExplainView {
       await work();
     } catch (error) {
       complain(error.message);
-      by("progress").textContent = "";
+      this.waited(null);
     }
   }
 
@@ -60,7 +60,7 @@ export class ExplainView {
 
   open(file) {
     return this.trying(async () => {
-      by("progress").textContent = `reading ${file.name}`;
+      put(by("progress"), `reading ${file.name}`);
       this.sweep = (await handOver("sweep/open", file)).name;
       this.ready();
       await this.begin();
@@ -83,14 +83,22 @@ export class ExplainView {
     by("open-sweep").disabled = working;
     if (working) {
       by("answer-verdict").textContent = `${this.sweep} is searched`;
-      by("answer-words").textContent = "";
-      by("progress").textContent = `${Math.floor(stand.elapsed_s)} s: ${stand.words}`;
+      by("answer-words").textContent = `A thousand readings take seconds, long logs with channels and temperatures minutes. After ${stand.budget_s} s of computing the search ends by itself with what it has.`;
+      this.waited(stand);
       this.timer = setTimeout(() => this.trying(async () => this.show(await got("explain"))), WATCHED_EVERY_MS);
       return;
     }
-    by("progress").textContent = "";
+    this.waited(null);
     if (stand.state === "failed") complain(stand.words);
     if (stand.state === "done") this.take(stand.answer);
+  }
+
+  /** Where the search stands: the stage is told when it changes, the seconds are for the eye alone. */
+  waited(stand) {
+    by("elapsed").hidden = !stand;
+    by("seconds").textContent = stand ? `${Math.floor(stand.elapsed_s)} s:` : "";
+    put(by("progress"), stand ? stand.words : "");
+    if (stand) Object.assign(by("elapsed"), { max: stand.budget_s, value: stand.elapsed_s });
   }
 
   take(answer) {
@@ -103,6 +111,7 @@ export class ExplainView {
     this.numbers = new Numbers(by("factors"), answer, () => this.changed());
     const names_ = { angle: "shaft angle", clock: answer.across.clock.split(" / ")[0], temperature: "temperature", speed: "speed" };
     by("over").replaceChildren(...Object.keys(answer.across).map((key) => node("option", { value: key, textContent: names_[key] })));
+    document.querySelector("#answer .found").classList.toggle("many", answer.causes.length > 3);
     by("cause-list").replaceChildren(...causes(answer));
     by("factor-table").replaceChildren(factors(answer));
     by("next").replaceChildren(...(answer.next.length ? answer.next : [{ do: "nothing: all that can be searched for was", why: "" }]).map((one) => node("li", {}, capital(one.do), node("small", { textContent: one.why.replaceAll("_", " ") }))));
@@ -110,7 +119,7 @@ export class ExplainView {
     by("answer").hidden = false;
     by("spectrum-note").textContent = `${answer.two_ways ? "Order 0: half of the step between the directions. " : ""}Dashed: what noise alone passes at one order in twenty.`;
     this.look(true);
-    say(`explained ${answer.name}`);
+    say(by("answer-verdict").textContent);
   }
 
   /** Something was switched or moved: what is left follows at once, its spectrum when all rests. */
@@ -132,7 +141,7 @@ export class ExplainView {
   }
 
   drawResidual(told) {
-    const off = [...this.layers.off].map((name) => layerName(name, this.answer.held_against));
+    const off = [...this.layers.off].map((name) => layerName(name, this.answer));
     by("residual-title").textContent = off.length ? `What is left without ${off.join(", ")}` : "What is left";
     const [dots, columns, lines] = [[], [], []];
     for (const [way, part] of Object.entries(told.ways)) {
@@ -167,15 +176,17 @@ function figures(answer) {
     ["Closer by", one.gain, "times", "extended twin over that before"],
     ["Noise floor", one.noise_floor_deg, "deg RMS", one.noise_floor_deg === null ? "no angle was read several times in a row" : "from repeated readings"],
   ];
-  return cards.map(([name, value, unit, beside]) => node("div", {}, node("dt", { textContent: name }), node("dd", { className: "value" }, `${shown(value)} `, node("small", { textContent: unit })), node("dd", { className: "beside", textContent: beside })));
+  const figure = (value, unit) => (value === null ? node("dd", { className: "value words", textContent: "not known" }) : node("dd", { className: "value" }, `${shown(value)} `, node("small", { textContent: unit })));
+  return cards.map(([name, value, unit, beside]) => node("div", {}, node("dt", { textContent: name }), figure(value, unit), node("dd", { className: "beside", textContent: beside })));
 }
 
 function causes(answer) {
   const parts = answer.setup.map((words) => node("p", { className: "error", textContent: words }));
   for (const words of answer.changed) parts.push(node("p", { textContent: capital(signed(words)) }));
   for (const cause of answer.causes) {
-    parts.push(node("h4", {}, inCatalogue(cause.name), ` (${cause.stage})`));
-    for (const words of [...cause.parameters, `held-out RMS ${cause.held_out} deg, false alarm ${cause.false_alarm}`, ...cause.said]) parts.push(node("p", { textContent: signed(words) }));
+    const said = [...cause.parameters, `held-out RMS ${cause.held_out} deg, false alarm ${cause.false_alarm}`, ...cause.said];
+    const head = node("h4", {}, inCatalogue(cause.name), ` (${cause.stage})`);
+    parts.push(node("div", { className: "cause" }, head, ...said.map((words) => node("p", { textContent: signed(words) }))));
   }
   if (!answer.causes.length) parts.push(node("p", { textContent: "No cause stands out of the noise." }));
   return parts;
@@ -191,9 +202,15 @@ function inCatalogue(name) {
 /** The paper's factors before and with the causes. */
 function factors(answer) {
   const moved = answer.factors.some((row) => row.after);
-  const cells = (row) => [row.before, ...(moved ? [row.after] : [])].map((words) => node("td", { className: "number", textContent: signed(words) }));
-  const rows = answer.factors.map((row) => node("tr", {}, node("th", { scope: "row", textContent: row.label }), ...cells(row), node("td", { textContent: row.flag })));
   const heads = ["Factor", "before", ...(moved ? ["with the causes"] : []), ""];
-  const head = node("tr", {}, ...heads.map((words, k) => node("th", { scope: "col", textContent: words, className: k && k < heads.length - 1 ? "number" : "" })));
-  return node("table", {}, node("thead", {}, head), node("tbody", {}, ...rows));
+  const cell = (words, k) => {
+    const made = node("td", { className: "number", textContent: signed(words) });
+    if (moved) made.dataset.head = `${heads[k + 1]}:`;
+    return made;
+  };
+  const cells = (row) => [row.before, ...(moved ? [row.after] : [])].map(cell);
+  const rows = answer.factors.map((row) => node("tr", {}, node("th", { scope: "row", textContent: row.label }), ...cells(row), node("td", { textContent: row.flag })));
+  const head = node("tr", {}, ...heads.map((words, k) => (words ? node("th", { scope: "col", textContent: words, className: k ? "number" : "" }) : node("td"))));
+  const caption = node("caption", { className: "unseen", textContent: "Factors of the error model, with their intervals" });
+  return node("table", {}, caption, node("thead", {}, head), node("tbody", {}, ...rows));
 }

@@ -7,7 +7,11 @@ function node(name, properties = {}, ...children) {
   return made;
 }
 
-export const layerName = (name, heldAgainst) => (name === "error model" ? (heldAgainst === "given twin" ? "factors of the twin" : "paper's error model") : name.replaceAll("_", " "));
+/** What a layer is called; of several lines of one cause with their orders. */
+export function layerName(name, answer) {
+  if (name === "error model") return answer.held_against === "given twin" ? "factors of the twin" : "paper's error model";
+  return answer.layers.find((one) => one.name === name)?.title ?? name.replaceAll("_", " ");
+}
 
 /** The list of layers; `changed()` hears of each switch. */
 export class Layers {
@@ -31,7 +35,7 @@ export class Layers {
     const cause = answer.causes.find((one) => one.name === name);
     const gain = fixed ? `always on: ${fixed}` : `without it ${shown(without)} deg are left, with it ${shown(answer.all_deg)}`;
     const held = cause ? `; on readings it never saw ${cause.held_out.replace("->", "→")} deg, false alarm ${cause.false_alarm}` : "";
-    return node("li", {}, node("label", {}, box, node("b", { textContent: layerName(name, answer.held_against) }), node("span", {}), node("span", { className: "left", textContent: gain + held })));
+    return node("li", {}, node("label", {}, box, node("b", { textContent: layerName(name, answer) }), node("span", {}), node("span", { className: "left", textContent: gain + held })));
   }
 
   show(rms) {
@@ -52,7 +56,7 @@ export class Numbers {
     const groups = new Map();
     for (const slider of answer.sliders) groups.set(slider.of, [...(groups.get(slider.of) ?? []), slider]);
     form.onsubmit = () => false;
-    form.replaceChildren(...[...groups].map(([of, sliders]) => node("fieldset", {}, node("legend", { textContent: layerName(of, answer.held_against) }), ...sliders.map((one) => this.row(one, changed)))));
+    form.replaceChildren(...[...groups].map(([of, sliders]) => node("fieldset", {}, node("legend", { textContent: layerName(of, answer) }), ...sliders.map((one) => this.row(one, changed)))));
   }
 
   row({ name, label, unit, value, low, high, half_width: half }, changed) {

@@ -40,6 +40,11 @@ function adopt(old, fresh) {
   become(old, [...fresh.childNodes]);
 }
 
+/** Other words in an element, where they are others: what a screen reader has read it does not read again. */
+export function put(host, told) {
+  if (host.textContent !== told) host.textContent = told;
+}
+
 /** A number with so many significant digits, and a minus sign that is one. */
 export function shown(value, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
@@ -84,7 +89,7 @@ export function watched(host, seen) {
 export class Plot {
   /** `x` and `y` name the axes with their units; `span` is that of x, `marks` its ticks. */
   constructor(host, { x, y, span, marks, height = 190, words }) {
-    Object.assign(this, { host, x, y, span, marks, height });
+    Object.assign(this, { host, x, y, span, marks, height, words });
     this.svg = element("svg", { role: "img", "aria-label": words });
     host.append(this.svg);
     this.data = null;
@@ -106,6 +111,8 @@ export class Plot {
    */
   draw(data) {
     this.data = data;
+    const values = valuesOf(data);
+    this.describe(data, values);
     this.stale = !this.seen;
     if (this.stale && this.drawn) return;
     this.drawn = true;
@@ -118,11 +125,7 @@ export class Plot {
     const top = legend.height + 22;
     const frame = { left: 46, right: width - 8, top, bottom: top + this.height };
     const span = data.span ?? this.span;
-    const values = (data.lines ?? []).flatMap((line) => line.values);
-    for (const { y, low: bottom, high: top_ } of [...(data.dots ?? []), ...(data.columns ?? [])]) {
-      for (const part of [y, bottom, top_]) if (part) for (const value of part) values.push(value);
-    }
-    const reach = [...values, ...(data.bars ?? []).map((bar) => bar.value), ...(data.include ?? []), ...limits.flatMap((limit) => (limit.both ? [limit.value, -limit.value] : [limit.value]))];
+    const reach = [...values, ...(data.include ?? []), ...limits.flatMap((limit) => (limit.both ? [limit.value, -limit.value] : [limit.value]))];
     let [low, high] = [Infinity, -Infinity];
     for (const value of reach) [low, high] = [Math.min(low, value), Math.max(high, value)];
     if (!(high > low)) [low, high] = [low - 1e-3, high + 1e-3];
@@ -181,6 +184,23 @@ export class Plot {
     become(this.svg, parts);
     this.scale = { px, py, frame };
   }
+
+  /** Say in words what is drawn, also where that is not on the screen. */
+  describe(data, values) {
+    let [low, high] = [Infinity, -Infinity];
+    for (const value of values) [low, high] = [Math.min(low, value), Math.max(high, value)];
+    const span = high >= low ? `; ${data.y ?? this.y}: from ${shown(low)} to ${shown(high)}` : "";
+    set(this.svg, { "aria-label": `${this.words}${span}` });
+  }
+}
+
+/** All values that a picture draws. */
+function valuesOf(data) {
+  const values = [...(data.lines ?? []).flatMap((line) => line.values), ...(data.bars ?? []).map((bar) => bar.value)];
+  for (const { y, low, high } of [...(data.dots ?? []), ...(data.columns ?? [])]) {
+    for (const part of [y, low, high]) if (part) for (const value of part) values.push(value);
+  }
+  return values;
 }
 
 /** Words in a picture. */

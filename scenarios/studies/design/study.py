@@ -94,10 +94,10 @@ class DesignStudy:
         }
         for cause, error in cause_errors(self.chain, designs, motion):
             figures[f"error_deg.{cause}"] = np.max(np.abs(error), axis=1)
-        return {**figures, **self._mounted(designs, numbers)}
+        return {**figures, **self.over_mountings(designs, numbers)}
 
-    def _mounted(self, designs: Designs, numbers: IntArray) -> dict[str, Array]:
-        """Yield and 95th percentile of the error over mountings."""
+    def over_mountings(self, designs: Designs, numbers: IntArray) -> dict[str, Array]:
+        """Yield and 95th percentile of the error over mountings, which are drawn anew for each number (designs,)."""
         demand, count = self.demand, self.demand.mountings
         streams = [np.random.SeedSequence(self.seed, spawn_key=(int(k),)) for k in numbers]
         uniforms = np.concatenate([np.random.default_rng(s).random((count, MOUNTING_UNIFORMS)) for s in streams])

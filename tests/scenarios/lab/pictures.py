@@ -1,4 +1,4 @@
-"""The pictures of the guide's page about the page, made by the page itself.
+"""The pictures of the guide's first walk, made by the page itself, and the steps of that walk.
 
 python -m tests.scenarios.lab.pictures
 """
@@ -12,29 +12,52 @@ from tests.scenarios.lab.browser import BROWSER, WHY_SKIPPED, Page, browsing, op
 from tests.scenarios.lab.serving import serving
 
 DATA = Path(__file__).parents[3] / "scenarios" / "data"
-_AT_REST = "!!document.querySelector('#map-plot rect') && !document.querySelector('#figures.waiting')"
-_SET = """(() => {{ const one = document.querySelector('[aria-label="{}"]'); one.value = "{}";
-    one.dispatchEvent(new Event("change")); }})()"""
-_HIGH = 905.0
+PICTURES = ("lab_begins.png", "lab_chosen.png", "lab_explains.png")
+AT_REST = "!!document.querySelector('#map-plot rect') && !document.querySelector('#figures.waiting')"
+HIGH = 905.0
+_PLACE = """(() => {
+    const svg = document.querySelector("#map-plot svg");
+    svg.scrollIntoView({ block: "center" });
+    const along = (anchor, from, size) => [...svg.querySelectorAll(`text[text-anchor=${anchor}]`)].map((one) => {
+        const box = one.getBoundingClientRect();
+        return [Number(one.textContent), box[from] + box[size] / 2];
+    });
+    return { across: along("middle", "x", "width"), up: along("end", "y", "height") };
+})()"""
+"""Where the ticks of the map stand on the screen: value and pixel of each, across and up."""
 
 
-def design(page: Page, folder: Path) -> None:
-    """As it begins, and with a magnet that keeps what is asked."""
-    page.until(_AT_REST)
-    page.picture(folder / "lab_begins.png", height=_HIGH)
-    for name, value in (("Diameter in mm", 10), ("Air gap in mm", 2.5)):
-        page.of(_SET.format(name, value))
-    page.until(f"document.getElementById('verdict').textContent.includes(' in 100 % ') && {_AT_REST}")
-    page.picture(folder / "lab_chosen.png", height=_HIGH)
+def begins(page: Page, folder: Path) -> None:
+    """The page as it begins."""
+    page.until(AT_REST)
+    page.picture(folder / PICTURES[0], height=HIGH)
 
 
-def explain(page: Page, folder: Path) -> None:
+def chosen(page: Page, folder: Path) -> None:
+    """A click on the map, at 10 mm and 2.5 mm: a magnet that keeps what is asked."""
+    ticks = page.of(_PLACE)
+    x, y = (_pixel(ticks[axis], value) for axis, value in (("across", 10.0), ("up", 2.5)))
+    for kind in ("mousePressed", "mouseReleased"):
+        page.mouse(kind, x, y)
+    page.until(f"document.getElementById('verdict').textContent.includes(' in 100 % ') && {AT_REST}")
+    page.of("scrollTo(0, 0)")
+    page.picture(folder / PICTURES[1], height=HIGH)
+
+
+def _pixel(ticks: list[list[float]], value: float) -> float:
+    """Where a value stands on an axis of which two ticks are known."""
+    numbered = [(tick, pixel) for tick, pixel in ticks if tick is not None]
+    (low, at_low), (high, at_high) = numbered[0], numbered[-1]
+    return at_low + (at_high - at_low) * (value - low) / (high - low)
+
+
+def explains(page: Page, folder: Path) -> None:
     """A sweep explained, its cause switched off."""
     page.drop(DATA / "bench_sweep.csv")
     page.until("!!document.querySelector('#spectrum-plot path.line')", within_s=120.0)
     page.of("document.querySelector('#layers li:nth-child(3) input').click()")
     page.until("document.getElementById('residual-title').textContent.includes('without hysteresis')")
-    page.picture(folder / "lab_explains.png", height=_HIGH)
+    page.picture(folder / PICTURES[2], height=HIGH)
 
 
 def main() -> None:
@@ -46,8 +69,8 @@ def main() -> None:
         (folder / "server").mkdir()
         with serving(folder / "server") as client, browsing(folder) as browser:
             page = opened(browser, client.server.guard.url, folder)
-            design(page, DATA)
-            explain(page, DATA)
+            for step in (begins, chosen, explains):
+                step(page, DATA)
 
 
 if __name__ == "__main__":

@@ -31,7 +31,9 @@ def sweep(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def explained(page: Page, sweep: Path) -> Page:
     """The page with the sweep dropped on it and explained."""
     page.drop(sweep)
-    page.until("document.getElementById('progress').textContent.includes(' s: ')")
+    page.until("document.getElementById('progress').textContent.includes('search')", within_s=60.0)
+    assert page.of("document.getElementById('seconds').textContent").endswith(" s:")
+    assert page.of("document.getElementById('elapsed').max") == 120.0
     assert not page.of("document.getElementById('stop').hidden")
     page.until(DONE, within_s=120.0)
     return page

@@ -321,7 +321,7 @@ class Chain:
         guess = recorded
         for _ in range(4):
             error = self.reference(guess) - guess.shaft_rad
-            guess = replace(recorded, shaft_rad=recorded.shaft_rad - error)
+            guess = recorded.at(recorded.shaft_rad - error)
         return guess
 
     def trace(self, motion: Motion, *, seed: int | None = None) -> dict[str, Array]:

@@ -9,10 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from twin.angles import TAU, Array, IntArray, wrap
+from twin.direction import as_reached, way_of
 from twin.estimated_motion import EstimatedMotion
 from twin.pace import LEAST_SPEEDS, speed_over_time
 from twin.recordings import Recordings, Setup
 from twin.runs import runs
+from twin.whole_counts import WholeCounts, whole_counts
 
 LEAST_FIELD_RATIO = 1.1
 """Between two recordings, from which on what follows the field is told from what does not."""
@@ -123,7 +125,7 @@ class Motion:
         wrapped = np.asarray(shaft_rad, dtype=np.float64)
         n = wrapped.size
         shaft = wrapped if n == 0 else np.concatenate([wrapped[:1], wrapped[0] + np.cumsum(wrap(np.diff(wrapped)))])
-        way = _as_reached(shaft, _way(shaft, direction, speed_rad_s))
+        way = as_reached(shaft, way_of(shaft, direction, speed_rad_s))
         speed = _speed(shaft, way, time_s, speed_rad_s)
         temperature, current = _without_gaps(temperature_c), _without_gaps(current_a)
         recorded = {
@@ -150,7 +152,7 @@ class Motion:
 
     def part(self, rows: IntArray) -> Motion:
         """Only these rows (m,) of the motion, with the turns numbered anew."""
-        return replace(
+        found = replace(
             self,
             shaft_rad=self.shaft_rad[rows],
             time_s=self.time_s[rows],
@@ -162,6 +164,16 @@ class Motion:
             estimated=None if self.estimated is None else self.estimated.part(rows),
             recordings=None if self.recordings is None else self.recordings.part(rows),
         )
+        # Where between two counts a reading was taken is told by those around it, in the part or not.
+        whole = None if self.whole_counts is None else self.whole_counts.part(rows)
+        found.__dict__.update(recorded_rad=self.recorded_rad[rows], whole_counts=whole)
+        return found
+
+    def at(self, shaft_rad: Array) -> Motion:
+        """The same record, of a shaft that stood at other angles (n,) than the reference reads."""
+        found = replace(self, shaft_rad=shaft_rad)
+        found.__dict__.update(recorded_rad=self.recorded_rad, whole_counts=self.whole_counts)
+        return found
 
     @classmethod
     def joined(cls, parts: Sequence[Motion], setups: Sequence[Setup]) -> Motion:
@@ -210,6 +222,16 @@ class Motion:
         return tuple(
             replace(self.part(own), recordings=Recordings(np.zeros_like(own), (setup,))) for own, setup in each
         )
+
+    @cached_property
+    def recorded_rad(self) -> Array:
+        """What the reference read [rad], (n,): the shaft's angles, unless these were found from it (see :meth:`at`)."""
+        return self.shaft_rad
+
+    @cached_property
+    def whole_counts(self) -> WholeCounts | None:
+        """Where the shaft stood between two counts of a reference that reads in steps, where its even motion tells."""
+        return whole_counts(self.recorded_rad) if self.estimated is None else None
 
     @cached_property
     def segments(self) -> tuple[tuple[int, int, float], ...]:
@@ -282,11 +304,9 @@ class Motion:
             found.add("one turn")
         if np.ptp(self.shaft_rad) > 1.8 * TAU:
             found.add("several turns")
-        found |= self._levels()
+        found |= self._levels() | self._of_the_reference()
         if self.turn.max(initial=0) > 0:
             found.add("two turns")
-        if self.estimated is None:
-            found.add("a reference")
         return frozenset(found)
 
     def _levels(self) -> set[str]:
@@ -295,6 +315,11 @@ class Motion:
             "two temperatures": np.ptp(self.temperature_c) > LEAST_SPAN_K,
             "two currents": np.ptp(self.current_a) > LEAST_CURRENTS * np.max(np.abs(self.current_a)),
         }
+        return {name for name, has in shown.items() if has}
+
+    def _of_the_reference(self) -> set[str]:
+        """Whether there is one, and whether it shows where the shaft stood between two of its counts."""
+        shown = {"a reference": self.estimated is None, "whole counts": self.whole_counts is not None}
         return {name for name, has in shown.items() if has}
 
     def _by_recordings(self) -> set[str]:
@@ -319,36 +344,6 @@ def _mostly_there(size: Array) -> bool:
     return bool(size.size and float(np.median(size)) > 0.02 * float(np.max(size)))
 
 
-def _way(shaft_rad: Array, direction: Array | None, speed_rad_s: Array | None) -> Array:
-    """Direction (+1 or -1) of each row (n,): as recorded, else from the order of the angles and a signed speed."""
-    if direction is not None:
-        return np.where(np.asarray(direction) < 0, -1.0, 1.0)
-    way = infer_direction(shaft_rad)
-    if speed_rad_s is None or np.ptp(np.sign(speed_rad_s)) != 2.0:
-        return way
-    # A signed speed says the direction of the very row at which the shaft turns round.
-    sense = np.where(np.asarray(speed_rad_s) < 0.0, -1.0, 1.0)
-    agreement = float(np.mean(sense * way))
-    return np.asarray(sense * np.sign(agreement)) if abs(agreement) > 0.8 else way
-
-
-def _as_reached(shaft_rad: Array, way: Array) -> Array:
-    """Direction (n,) in which the shaft came to each reading.
-
-    A record may name the row at which the shaft turns round by the way in which it leaves it; but what lags, lags as on
-    the way to it.
-    """
-    step = np.diff(shaft_rad)
-    usual = np.median(np.abs(step[step != 0.0])) if np.any(step) else 0.0
-    turned = np.flatnonzero(np.diff(way[:-1]))
-    onward = step[turned] * way[turned] > 0.5 * usual
-    back = step[turned + 1] * way[turned] < -0.5 * usual
-    reached = np.array(way)
-    late = turned[onward & back]
-    reached[late + 1] = way[late]
-    return reached
-
-
 def _speed(shaft_rad: Array, way: Array, time_s: Array | None, speed_rad_s: Array | None) -> Array:
     """Signed speed [rad/s] (n,): as recorded, else from time stamps dense enough for a shaft in motion, else zero."""
     if speed_rad_s is not None:
@@ -365,18 +360,3 @@ def _without_gaps(column: Array | None) -> Array | None:
         return None
     known = np.flatnonzero(np.isfinite(column))
     return np.asarray(np.interp(np.arange(np.size(column)), known, np.asarray(column)[known]))
-
-
-def infer_direction(shaft_rad: Array) -> Array:
-    """Direction (+1 or -1) of each row from the order of the angles (n,); a row at rest keeps the last one.
-
-    A step back that is much shorter than the usual step is jitter of the stop, not a reversal.
-    """
-    step = np.diff(shaft_rad)
-    moving = np.abs(step) > 0.1 * np.median(np.abs(step[step != 0.0])) if np.any(step) else np.zeros(0, dtype=bool)
-    if not moving.any():
-        return np.ones(shaft_rad.size)
-    last = np.maximum.accumulate(np.where(moving, np.arange(step.size), -1))
-    last = np.where(last < 0, np.flatnonzero(moving)[0], last)
-    sign = np.sign(step[last])
-    return np.concatenate([sign[:1], sign])

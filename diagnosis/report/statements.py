@@ -44,6 +44,7 @@ _LACKS = {
     "two turns": ("one turn in the turn column", "record several turns"),
     "varying speed|two currents": ("no change of speed or current", "record current_a, or speed_rpm as it changes"),
     "vx": ("no vx, vy", "record vx and vy"),
+    "whole counts": ("a reference without steps, or uneven readings", "take readings at even steps"),
     "two mountings": ("one mounting", "turn the sensor about the shaft and explain both recordings together"),
     "vx|two air gaps": ("no vx, vy", "record vx and vy, or explain recordings at two air gaps together"),
     "vx|two mountings": (

@@ -23,6 +23,7 @@ from tests.contract.signatures import (
     mains,
     misaligned,
     modes,
+    of_counts,
     of_periods,
     over_flanks,
     play,
@@ -226,6 +227,9 @@ EXAMPLES: dict[str, Example] = {
         strengths={"step_deg": 0.4},
         shapes={"time_s": 4.0},
         signature=lambda m, p: rad(p["step_deg"]) * (m.time_s >= p["time_s"]),
+    ),
+    "reference_quantisation": Example(
+        strengths={"step_deg": 0.3}, shapes={"counts_per_turn": 1000.0}, signature=of_counts
     ),
     # empirical
     "unnamed_order": Example(

@@ -88,6 +88,12 @@ def stepper(motion: Motion, p: Params) -> Array:
     return np.asarray(np.angle((one + 1j * other) * np.exp(-1j * commanded)) / p["order"])
 
 
+def of_counts(motion: Motion, p: Params) -> Array:
+    """A reference that reads whole counts: what it has dropped or added, the sensor reads more or less."""
+    counted = motion.shaft_rad * p["counts_per_turn"] / (2.0 * np.pi)
+    return -rad(p["step_deg"]) * (np.floor(counted + 0.5) - counted)
+
+
 def of_periods(motion: Motion, p: Params) -> Array:
     """Offset, gain and phase as in a sensor of one period, at p times the angle and over p."""
     a = p["periods"] * motion.shaft_rad

@@ -30,8 +30,8 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "forms.a_stop_counts_as_recorded",
             "twin/motion.py",
-            "way = _as_reached(shaft, _way(shaft, direction, speed_rad_s))",
-            "way = _way(shaft, direction, speed_rad_s)",
+            "way = as_reached(shaft, way_of(shaft, direction, speed_rad_s))",
+            "way = way_of(shaft, direction, speed_rad_s)",
             f"{_FORMS}::test_a_stack_of_plays_is_one_hysteresis",
         ),
         (

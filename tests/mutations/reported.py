@@ -9,7 +9,37 @@ _HARD = f"{_CASES}::test_a_draw_that_was_hard_is_answered_rightly"
 _SELECTION = "tests/diagnosis/discovery/proof/test_selection.py"
 _WATCH = "tests/diagnosis/discovery/test_watch.py"
 
+_COUNTS = "tests/twin/test_whole_counts.py"
+
 REPORTED = (
+    Mutation(
+        "reference_quantisation.the_way_tells_the_rounding",
+        "twin/reference/reference_quantisation.py",
+        "return recorded.off",
+        "return np.zeros(len(motion))",
+        (f"{_CASES}::test_a_sweep_of_the_kind_is_answered_rightly[coarse_reference]",),
+    ),
+    Mutation(
+        "whole_counts.stretches_overlap",
+        "twin/whole_counts.py",
+        "first += max(many // 2, 1)",
+        "first += max(many, 1)",
+        (f"{_COUNTS}::test_a_slow_wow_is_followed",),
+    ),
+    Mutation(
+        "whole_counts.stops_are_read_several_times",
+        "twin/whole_counts.py",
+        "((False, counts), (True, counts[_stops(counts)]))",
+        "((False, counts),)",
+        (f"{_COUNTS}::test_an_even_way_tells_where_between_two_counts_each_reading_was",),
+    ),
+    Mutation(
+        "motion.a_part_knows_what_the_whole_told",
+        "twin/motion.py",
+        "found.__dict__.update(recorded_rad=self.recorded_rad[rows], whole_counts=whole)",
+        "pass",
+        (f"{_COUNTS}::test_a_part_of_the_rows_knows_what_all_of_them_told",),
+    ),
     Mutation(
         "variance.far_off_together_is_loud",
         "diagnosis/discovery/stages/variance.py",

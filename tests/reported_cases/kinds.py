@@ -10,6 +10,7 @@ import numpy as np
 
 from tests.hidden.period_causes import MOTORS
 from tests.reported_cases.bench import Array, Case, Sensor, a_turn, case, some_sensor, words
+from tests.reported_cases.counted import coarse_reference, hand_turned
 
 Answer = Mapping[str, Any]
 WORD = "output_quantisation"
@@ -299,4 +300,6 @@ KINDS: dict[str, Kind] = {
     "scale_error": Kind(scale_error, _only("scale_error", "factor", within=0.001)),
     "typing_error": Kind(typing_error, _right_row),
     "axial_magnet": Kind(axial_magnet, lambda drawn, answer: False, lambda message: "axial" in message),
+    "coarse_reference": Kind(coarse_reference, _only("reference_quantisation", "counts_per_turn", within=0.0)),
+    "hand_turned": Kind(hand_turned, _nothing),
 }

@@ -30,6 +30,7 @@ WHOLE = {
             "motor_poles",
             "motor_field",
             "reference_eccentricity",
+            "reference_quantisation",
         ),
         *("stray_field", "mains_pickup", "thermal_zero_shift", "unnamed_speed_zero", "unnamed_flanks"),
     },

@@ -1,0 +1,87 @@
+"""Counts of a reference: their number, where the shaft stood between them, and when nothing tells."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from twin.angles import Array
+from twin.motion import Motion
+from twin.whole_counts import counts_of_a_turn, whole_counts
+
+THERE = np.linspace(0.0, 720.0, 360, endpoint=False) + 12.3
+
+
+def read(shaft_deg: Array, counts: int, *, decimals: int = 9) -> Array:
+    """What an encoder of so many counts reads [rad], as a file of so many decimals holds it."""
+    return np.asarray(np.radians(np.round(np.round(shaft_deg / 360.0 * counts) * (360.0 / counts), decimals)))
+
+
+def rounding(shaft_deg: Array, counts: int) -> Array:
+    """What it reads too much, in counts."""
+    return np.asarray(np.round(shaft_deg / 360.0 * counts) - shaft_deg / 360.0 * counts)
+
+
+WAYS = {
+    "even stops": THERE,
+    "both ways": np.concatenate([THERE, THERE[::-1]]),
+    "slow": np.arange(3000) * 0.0123,
+    "several at a stop": np.repeat(THERE[::2], 5),
+    "a gap": np.concatenate([THERE[:100], THERE[150:]]),
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize(("counts", "decimals"), [(4000, 9), (3700, 4), (16_384, 4)])
+def test_an_even_way_tells_where_between_two_counts_each_reading_was(way: str, counts: int, decimals: int) -> None:
+    shaft = WAYS[way]
+    found = whole_counts(read(shaft, counts, decimals=decimals))
+    assert found is not None
+    assert found.counts_per_turn == counts
+    # A line through n roundings of 0.29 counts is known to 0.58 / sqrt(n) at its ends; the shortest runs have 100 rows.
+    assert float(np.std(found.off - rounding(shaft, counts))) < 0.58 / np.sqrt(100)
+
+
+def test_a_slow_wow_is_followed() -> None:
+    turns = np.linspace(0.0, 3.1, 2000)
+    shaft = 360.0 * turns + 0.05 * np.sin(2.0 * np.pi * turns)
+    found = whole_counts(read(shaft, 4000))
+    assert found is not None
+    # A stretch ends where the wow is half a count off it. At its ends a line leaves twice what it leaves in its middle:
+    # laid end to end the stretches leave 0.041, each begun in the middle of the one before 0.020.
+    assert float(np.std(found.off - rounding(shaft, 4000))) < 0.03
+
+
+@pytest.mark.parametrize(
+    "shaft",
+    [
+        THERE - 12.3,  # At 2 deg a step each stop is one of 180 counts.
+        np.concatenate([THERE - 12.3, THERE[::-1] - 12.3]),
+        np.cumsum(np.random.default_rng(3).uniform(0.3, 5.0, 400)),
+    ],
+    ids=["at counts", "at counts both ways", "turned by hand"],
+)
+def test_where_nothing_tells_nothing_is_said(shaft: Array) -> None:
+    counts = 180 if shaft[1] - shaft[0] == pytest.approx(2.0) else 4000
+    assert whole_counts(read(shaft, counts)) is None
+
+
+def test_an_angle_of_its_own_is_on_no_counts() -> None:
+    assert counts_of_a_turn(np.radians(THERE + np.random.default_rng(1).normal(0.0, 0.01, THERE.size))) is None
+    assert counts_of_a_turn(np.zeros(20)) is None
+
+
+def test_a_part_of_the_rows_knows_what_all_of_them_told() -> None:
+    motion = Motion.from_angle(read(THERE, 4000))
+    rows = np.flatnonzero(np.random.default_rng(5).random(THERE.size) < 0.5)
+    part = motion.part(rows).whole_counts
+    assert part is not None
+    assert motion.whole_counts is not None
+    np.testing.assert_array_equal(part.off, motion.whole_counts.off[rows])
+
+
+def test_a_motion_found_from_what_was_read_keeps_what_that_told() -> None:
+    motion = Motion.from_angle(read(THERE, 4000))
+    moved = motion.at(motion.shaft_rad + 1e-4)
+    assert moved.whole_counts is motion.whole_counts
+    np.testing.assert_array_equal(moved.recorded_rad, motion.shaft_rad)

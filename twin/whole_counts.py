@@ -1,0 +1,225 @@
+"""Whole counts: a reference that reads in steps, and where between two of them an even motion had the shaft.
+
+Counts of a shaft that goes on evenly from row to row are those of a digital straight line: there is a line from which
+none is off by more than half a count (the condition is exact: A. Rosenfeld, "Digital straight line segments", IEEE
+Transactions on Computers C-23, 1974). The longer the stretch over which one line will do, the closer it is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.angles import TAU, Array, IntArray, wrap
+from twin.runs import runs
+
+_ROWS = 8
+"""Rows of the shortest stretch: a line has two parameters, and fewer rows hardly say that they lie on one."""
+_MOST_COUNTS = 1_000_000
+_OFF = 0.05
+"""RMS distance, in counts, that is none: it is that of a file's decimals. Rounding makes 0.29."""
+_SAME_RAD = 1e-8
+"""Angles that differ by less are one."""
+_TRIED_WINDOWS = 1000
+_FEW = 100
+"""Readings by which the number of counts is chosen, all of which must then agree."""
+_LONG = 8 * _ROWS
+_HALVINGS = 50
+"""Of the range of a line's slopes, to the precision of a double."""
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class WholeCounts:
+    """A reference that reads whole counts while the shaft goes on evenly.
+
+    Attributes
+    ----------
+    counts_per_turn : int
+        Counts of a turn.
+    counts : ndarray
+        What it has counted since its first reading, (n,).
+    by_stops : bool
+        Whether it is from stop to stop that the shaft goes on evenly, with several readings at each.
+    """
+
+    counts_per_turn: int
+    counts: Array
+    by_stops: bool
+
+    @cached_property
+    def off(self) -> Array:
+        """Each reading less where the shaft stood, (n,), in counts: within half a count; 0 where that is not known."""
+        if not self.by_stops:
+            return _off(self.counts)
+        stops = _stops(self.counts)
+        return np.asarray(_off(self.counts[stops])[np.cumsum(stops) - 1])
+
+    def part(self, rows: IntArray) -> WholeCounts:
+        """The same at these rows (m,): from all readings, unless the rows themselves lie in long stretches."""
+        found = replace(self, counts=self.counts[rows])
+        stretches = 1 + np.count_nonzero(np.diff(rows) != 1)
+        if rows.size < _LONG * stretches:
+            found.__dict__["off"] = self.off[rows]
+        return found
+
+
+def whole_counts(shaft_rad: Array) -> WholeCounts | None:
+    """What a reference's readings (n,) [rad], in the order of the rows, tell of their rounding.
+
+    Parameters
+    ----------
+    shaft_rad : ndarray
+        The reference's readings [rad], (n,), unwrapped, each of them finite.
+
+    Returns
+    -------
+    WholeCounts or None
+        None where they lie on no grid of a whole number of counts a turn, where the shaft did not go on evenly (then
+        nothing tells where between two counts it stood), and where each stood at a count.
+    """
+    counts_per_turn = counts_of_a_turn(shaft_rad)
+    if counts_per_turn is None:
+        return None
+    counts = np.round((shaft_rad - shaft_rad[0]) / TAU * counts_per_turn)
+    # Several readings at one stop are of one angle; a shaft that moves evenly may also stay within a count.
+    for by_stops, moving in ((False, counts), (True, counts[_stops(counts)])):
+        tried = list(_short(moving))
+        straight = [_off_line(some) for some in tried if _straight(some)]
+        if 2 * len(straight) > len(tried):
+            rounded = float(np.sqrt(np.mean(np.square(straight)))) > _OFF
+            return WholeCounts(counts_per_turn, counts, by_stops) if rounded else None
+    return None
+
+
+def _stops(counts: Array) -> npt.NDArray[np.bool_]:
+    """Which readings (n,) are the first at their count."""
+    return np.concatenate([[True], np.diff(counts) != 0.0])
+
+
+def _short(counts: Array) -> Iterator[Array]:
+    """Short stretches of counts (n,) of one direction, spread evenly over all."""
+    if counts.size >= _ROWS:
+        way = _way(counts)
+        for first in np.unique(np.linspace(0, counts.size - _ROWS, _TRIED_WINDOWS).astype(np.int64)):
+            if way[first] == way[first + _ROWS - 1]:
+                yield counts[first : first + _ROWS]
+
+
+def _way(counts: Array) -> IntArray:
+    """Number (n,) of the stretch of one direction that each reading is of; a stop where it turns round is its own."""
+    step = np.sign(np.diff(counts))
+    moved = np.flatnonzero(step)
+    if not moved.size:
+        return np.zeros(counts.size, dtype=np.int64)
+    rows = np.arange(step.size)
+    before = step[moved[np.clip(np.searchsorted(moved, rows, "right") - 1, 0, None)]]
+    after = step[moved[np.clip(np.searchsorted(moved, rows), None, moved.size - 1)]]
+    way = before + after
+    return np.concatenate([[0], np.cumsum(np.concatenate([[0], np.diff(way) != 0.0]))]).astype(np.int64)
+
+
+def counts_of_a_turn(shaft_rad: Array) -> int | None:
+    """On how many even steps of the turn readings (n,) [rad] lie, all of them, from whichever zero; None: on none.
+
+    The step is the least by which two steps from row to row differ, or a half, a third or a quarter of it.
+    """
+    steps = np.unique(np.round(wrap(np.diff(shaft_rad)) / _SAME_RAD)) * _SAME_RAD
+    least = np.diff(np.concatenate([[0.0], np.sort(np.abs(steps))]))
+    least = least[least > TAU / _MOST_COUNTS / 2.0]
+    if shaft_rad.size < _ROWS or not least.size:
+        return None
+    few = shaft_rad[np.unique(np.linspace(0, shaft_rad.size - 1, _FEW).astype(np.int64))]
+    for share in (1, 2, 3, 4):
+        about = share * TAU / float(np.min(least))
+        # Decimals of the file leave the step uncertain, and with it how many make a turn.
+        first, last = max(2, int(about * (1.0 - 0.5 * _OFF))), min(_MOST_COUNTS, int(about * (1.0 + 0.5 * _OFF)) + 1)
+        near = np.arange(first, last + 1)
+        if near.size:
+            best = int(near[np.argmax(_resultant(few, near[:, None]))])
+            if float(_resultant(shaft_rad, best)) > np.exp(-0.5 * (TAU * _OFF) ** 2):
+                return best
+    return None
+
+
+def _resultant(angle_rad: Array, counts: int | IntArray) -> Array:
+    """Mean resultant length of an angle (n,) within a count: 1 where all lie at one place of it."""
+    return np.asarray(np.abs(np.mean(np.exp(1j * (counts * angle_rad)), axis=-1)))
+
+
+def _off(counts: Array) -> Array:
+    """Each count (n,) less the line that it lies on, over stretches that are each as long as one line will do.
+
+    Each begins in the middle of the one before, and a reading counts in both by how far it lies from their ends: there
+    a way that is bent leaves its line the most.
+    """
+    total, weight = np.zeros(counts.size), np.zeros(counts.size)
+    for rows in runs(_way(counts)):
+        for first, many in _stretches(counts[rows]):
+            part = slice(rows.start + first, rows.start + first + many)
+            from_ends = 1.0 - np.abs(np.linspace(-1.0, 1.0, many + 2)[1:-1])
+            total[part] += from_ends * _off_line(counts[part])
+            weight[part] += from_ends
+    return np.divide(total, weight, out=total, where=weight > 0.0)
+
+
+def _stretches(counts: Array) -> Iterator[tuple[int, int]]:
+    """First row and length of each stretch that lies on a line, the last of them found from the end."""
+    first = 0
+    while first + _ROWS <= counts.size:
+        many = _rows_on_a_line(counts[first:])
+        if many:
+            yield first, many
+        if first + many == counts.size:
+            return
+        first += max(many // 2, 1)
+    many = _rows_on_a_line(counts[::-1])
+    if many:
+        yield counts.size - many, many
+
+
+def _off_line(counts: Array) -> Array:
+    """Each count (n,) less the line of least squares, which a row that is of the next stretch hardly moves."""
+    rows = np.arange(counts.size) - 0.5 * (counts.size - 1)
+    return np.asarray(counts - np.mean(counts) - rows * (rows @ counts) / (rows @ rows))
+
+
+def _rows_on_a_line(counts: Array) -> int:
+    """How many rows from the first lie on one line; 0: not as many as a stretch has."""
+    if counts.size < _ROWS or not _straight(counts[:_ROWS]):
+        return 0
+    good, step = _ROWS, _ROWS
+    while good + step <= counts.size and _straight(counts[: good + step]):
+        good, step = good + step, 2 * step
+    bad = min(counts.size + 1, good + step)
+    while bad - good > 1:
+        middle = (good + bad) // 2
+        good, bad = (middle, bad) if _straight(counts[:middle]) else (good, middle)
+    return good
+
+
+def _straight(counts: Array) -> bool:
+    """Whether counts (n,) are those of a straight line: some line is within half a count of each.
+
+    The width of the band that holds them is a convex function of its slope, and is least where its own slope changes
+    sign.
+    """
+    rows = np.arange(counts.size, dtype=np.float64)
+    # Its ends are off by half a count each at the most, which bounds the slope.
+    middle, around = (counts[-1] - counts[0]) / rows[-1], 1.0 / rows[-1]
+    low, high = middle - around, middle + around
+    for _ in range(_HALVINGS):
+        left = counts - 0.5 * (low + high) * rows
+        top, bottom = int(np.argmax(left)), int(np.argmin(left))
+        width, falls = left[top] - left[bottom], rows[top] - rows[bottom]
+        if width <= 1.0:
+            return True
+        # From here the band narrows by `falls` for each unit of slope, at best to the end of the range.
+        if width - abs(falls) * 0.5 * (high - low) > 1.0:
+            return False
+        low, high = (0.5 * (low + high), high) if falls > 0.0 else (low, 0.5 * (low + high))
+    return bool(width <= 1.0 + _ROUNDING)

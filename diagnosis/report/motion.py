@@ -12,6 +12,7 @@ from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.sweep_words import speeds_shown
 from diagnosis.report.wording import plain
+from diagnosis.spin.smoother import HIGHEST_ORDER
 from twin.angles import TAU, Array
 from twin.catalogue import find
 from twin.confidence import Z95
@@ -123,6 +124,8 @@ def may_be_torque(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     if _in_time(fit, cause):
         return [(TORQUE, IN_TIME), *_may_be_stamps(fit, cause)]
     open_orders = not_separable(estimated)
+    if HIGHEST_ORDER in open_orders:
+        open_orders += _orders_beyond(fit, keys)
     # What touches single readings, or makes them louder, is no movement of the shaft.
     if not open_orders or not any(effect.footprint in ("mean", "values") for effect in effects.values()):
         return []
@@ -131,6 +134,13 @@ def may_be_torque(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     # What no torque can do stands out of the noise as any cause has to.
     told = float(np.sum(beyond[fit.observations.usable] ** 2)) / max(fit.variance, 1e-300)
     return [] if told > -2.0 * fit.settings.effect_log_p(rows) else [(TORQUE, SECOND_SPEED)]
+
+
+def _orders_beyond(fit: Fit, keys: Sequence[str]) -> list[int]:
+    """Whole orders of a cause's own waves above those that torques are looked for at."""
+    lines = [(find(key, fit.chain.effects).line, fit.chain.values[key]) for key in keys]
+    own = {round(float(values[line.param])) for line, values in lines if line is not None and line.clock == "shaft"}
+    return sorted(order for order in own if order > HIGHEST_ORDER)
 
 
 def _in_time(fit: Fit, cause: Finding) -> bool:

@@ -59,6 +59,13 @@ SPINS: tuple[Mutation, ...] = tuple(
             f"{_EXPLAIN}::test_a_reading_each_second_may_be_one_each_millisecond[1000.0]",
         ),
         (
+            "spins.a_high_order_is_no_torque",
+            "diagnosis/report/motion.py",
+            "        open_orders += _orders_beyond(fit, keys)\n",
+            "        pass\n",
+            f"{_EXPLAIN}::test_a_cogging_of_a_higher_order_than_is_looked_for_may_be_a_torque_too",
+        ),
+        (
             "spins.dry_friction_stays",
             "diagnosis/spin/smoother.py",
             "if both_ways else []",

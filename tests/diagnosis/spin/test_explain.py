@@ -60,6 +60,13 @@ def test_at_one_speed_a_cause_may_be_a_torque() -> None:
     assert "orders 1 to 32" in text(answer, width=400)
 
 
+def test_a_cogging_of_a_higher_order_than_is_looked_for_may_be_a_torque_too() -> None:
+    """Of 40 teeth."""
+    (cause,) = explain(even(9.0, order=40, error_deg=0.1)).to_dict()["causes"]
+    assert "torque_ripple" in cause["indistinguishable_from"]
+    assert "second speed" in cause["to_tell_apart"]
+
+
 def test_at_one_speed_a_ripple_of_the_reference_is_two_waves_in_time() -> None:
     answer = at_one_speed().to_dict()
     assert answer["not_visible"]["reference_ripple"] == ["a reference|two speeds|vx"]

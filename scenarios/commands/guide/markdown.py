@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from html import escape
 
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
@@ -15,6 +14,8 @@ _PART = re.compile(r"^<!-- /?[\w ]+ -->\n", re.M)
 """What marks a part of a page for the tests."""
 Linked = Callable[[str], str | None]
 """From a link's target to where it leads on the pages; None where nothing there answers to it."""
+_MANY = 3
+"""Columns from which on a table's rows stand as blocks on a narrow screen."""
 
 
 def as_html(text: str, linked: Linked, *, beside: Mapping[str, str] | None = None) -> str:
@@ -30,6 +31,7 @@ def as_html(text: str, linked: Linked, *, beside: Mapping[str, str] | None = Non
             token.attrs = {"class": "number"}
         if token.type == "tr_open" and beside:
             _set_beside(token, tokens[k + 2], beside)
+    _head_cells(tokens)
     return _scrolling(str(reader.renderer.render(tokens, reader.options, {})))
 
 
@@ -52,6 +54,22 @@ def _lead(inline: Token, linked: Linked) -> None:
             child.attrSet("href", target)
 
 
+def _head_cells(tokens: list[Token]) -> None:
+    """Have each cell of a table of many columns bear its column's head, for where the rows stand as blocks."""
+    table, heads, column = None, list[str](), 0
+    for k, token in enumerate(tokens):
+        if token.type == "table_open":
+            table, heads = token, []
+        elif token.type == "th_open":
+            heads.append(_plain(tokens[k + 1]))
+        elif token.type == "tr_open":
+            column = 0
+        elif token.type == "td_open" and table is not None and len(heads) >= _MANY:
+            table.attrSet("class", "many")
+            token.attrSet("data-head", heads[column])
+            column += 1
+
+
 def _set_beside(row: Token, cell: Token, beside: Mapping[str, str]) -> None:
     """Give a row that begins with a known name an anchor of that name, and its cell what stands below it."""
     children = cell.children or []
@@ -63,12 +81,12 @@ def _set_beside(row: Token, cell: Token, beside: Mapping[str, str]) -> None:
 
 def _scrolling(html: str) -> str:
     """Each table in a frame of its own that scrolls sideways, by keys too."""
-    frame = '<div class="scroll" tabindex="0" role="region" aria-label="{}"><table>'
+    frame = '<div class="scroll" tabindex="0" role="region" aria-label="{}">{}'
     heading = "table"
-    parts = re.split(r"(<h\d[^>]*>.*?</h\d>|<table>)", html, flags=re.S)
+    parts = re.split(r"(<h\d[^>]*>.*?</h\d>|<table[^>]*>)", html, flags=re.S)
     for k, part in enumerate(parts):
         if part.startswith("<h"):
             heading = re.sub(r"<[^>]+>", "", part)
-        elif part == "<table>":
-            parts[k] = frame.format(escape(heading, quote=True).replace("&amp;", "&"))
+        elif part.startswith("<table"):
+            parts[k] = frame.format(heading.replace('"', "&quot;"), part)
     return "".join(parts).replace("</table>", "</table></div>")

@@ -64,6 +64,18 @@ def test_a_row_of_the_catalogue_is_led_to(page: Page, client: Client) -> None:
     assert drawn == "4px, 3px"
 
 
+def test_rows_of_the_catalogue_are_blocks_on_a_phone(page: Page, client: Client) -> None:
+    """Each cell below the other, with its column's head; nothing to scroll sideways."""
+    page.resize(390)
+    read(page, client, "catalogue.html")
+    assert page.of("[...document.querySelectorAll('.scroll')].every((one) => one.scrollWidth <= one.clientWidth + 1)")
+    heads = page.of("[...document.querySelectorAll('#hysteresis td')].map((one) => one.dataset.head)")
+    assert heads[:3] == ["cause", "stage", "parameters"]
+    assert (
+        page.of("getComputedStyle(document.querySelectorAll('#hysteresis td')[1], '::before').content") == '"stage: "'
+    )
+
+
 def test_a_picture_of_it(page: Page, client: Client, tmp_path: Path) -> None:
     read(page, client, "choose_magnet.html")
     page.picture(tmp_path / "guide.png")

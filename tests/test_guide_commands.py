@@ -77,7 +77,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("page", RUN, ids=lambda page: page.stem)
 def test_commands_run_as_they_stand(page: Path, folder: Path) -> None:
-    for needed in ("matplotlib", "xarray", "zarr", "distributed", "can", "pyarrow"):
+    for needed in ("matplotlib", "xarray", "zarr", "distributed", "can"):
         pytest.importorskip(needed)
     STAND_FOR.get(page.stem, lambda _: None)(folder)
     path = f"{folder.parent / 'bin'}{os.pathsep}{os.environ['PATH']}"

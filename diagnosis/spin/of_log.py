@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from diagnosis.spin.clock import even_clock
-from diagnosis.spin.smoother import HIGHEST_OF_FRICTION, HIGHEST_ORDER, MotionFit, fitted_motion
+from diagnosis.spin.problem import Own
+from diagnosis.spin.smoother import ANY_GROWTH, HIGHEST_OF_FRICTION, HIGHEST_ORDER, MotionFit, fitted_motion
 from diagnosis.spin.stretches import Turning, turning
 from twin.angles import TAU, Array, IntArray
 from twin.errors import SweepError
@@ -71,9 +72,9 @@ def sweeps_of(spins: Sequence[Spin]) -> list[Sweep]:
     """
     logs = [_Log.of(spin) for spin in spins]
     fit = _fitted(logs)
-    jerks = fit.knee_rad_s > _FREE * float(np.median(fit.knee_rad_s))
-    if jerks.any():
-        parts = np.split(jerks, np.cumsum([log.found.rows.size for log in logs])[:-1])
+    knees = np.split(fit.knee_rad_s, np.cumsum([log.found.rows.size for log in logs])[:-1])
+    parts = [knee > _FREE * float(np.median(knee)) for knee in knees]
+    if any(part.any() for part in parts):
         calmer = [replace(log, found=log.found.kept(~out)) for log, out in zip(logs, parts, strict=True)]
         if all(log.found.rows.size >= FEWEST_ROWS for log in calmer):
             logs = calmer
@@ -96,17 +97,40 @@ def _checked(found: Turning, spin: Spin) -> Turning:
     return found
 
 
-def _fitted(logs: Sequence[_Log], **known: Array) -> MotionFit:
-    """The motion in all logs, one behind the other."""
+def _fitted(logs: Sequence[_Log], *, most_growing: Array = ANY_GROWTH) -> MotionFit:
+    """The motion in all logs, one behind the other: each as free, and its readings as noisy, as it is alone."""
+    own = None if len(logs) == 1 else _own([_one_behind_the_other([log]) for log in logs])
+    return _one_behind_the_other(logs, own=own, most_growing=most_growing)
+
+
+def _own(alone: Sequence[MotionFit]) -> Own:
+    """What each log has of its own, by its fit alone."""
+    least = min(float(fit.noise_rad[0]) for fit in alone)
+    usual = [float(np.median(np.abs(fit.speed_rad_s))) for fit in alone]
+    orders, errors = np.arange(1, HIGHEST_ORDER + 1), slice(2 * HIGHEST_ORDER)
+    seen = [np.hypot(*fit.terms.values[errors].reshape(-1, 2).T) for fit in alone]
+    return Own(
+        precision=np.concatenate([(least / fit.noise_rad) ** 2 for fit in alone]),
+        knee_rad_s=np.concatenate([np.full_like(fit.knee_rad_s, np.median(fit.knee_rad_s)) for fit in alone]),
+        usual_rad_s=np.concatenate(
+            [np.full_like(fit.speed_rad_s, speed) for fit, speed in zip(alone, usual, strict=True)]
+        ),
+        largest_rad_s2=np.max([one * (orders * speed) ** 2 for one, speed in zip(seen, usual, strict=True)], axis=0),
+    )
+
+
+def _one_behind_the_other(
+    logs: Sequence[_Log], *, own: Own | None = None, most_growing: Array = ANY_GROWTH
+) -> MotionFit:
     times, stretches, begins, number = [], [], 0.0, 0
     for log in logs:
-        own = log.time_s[log.found.rows]
-        times.append(own - own[0] + begins)
+        taken = log.time_s[log.found.rows]
+        times.append(taken - taken[0] + begins)
         stretches.append(log.found.stretch + number)
         begins, number = float(times[-1][-1]) + 1.0, int(stretches[-1][-1]) + 1
     time, stretch = np.concatenate(times), np.concatenate(stretches)
     readings = np.concatenate([log.found.readings_rad for log in logs])
-    return fitted_motion(readings, time, runs(stretch), **known)
+    return fitted_motion(readings, time, runs(stretch), own=own, most_growing=most_growing)
 
 
 def _sweep(log: _Log, fit: MotionFit, own: slice, torques: tuple[Torque, ...]) -> Sweep:
@@ -128,7 +152,7 @@ def _sweep(log: _Log, fit: MotionFit, own: slice, torques: tuple[Torque, ...]) -
         estimated=EstimatedMotion(
             stretch=log.found.stretch,
             knee_rad=fit.knee_rad_s[own] * float(np.median(np.diff(time))),
-            noise_rad=fit.noise_rad,
+            noise_rad=float(np.median(fit.noise_rad[own])),
             torques=torques,
             damping_per_s=fit.damping_per_s,
             rows_aside=len(spin) - rows.size,

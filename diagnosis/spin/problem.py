@@ -16,31 +16,50 @@ three hundred of them."""
 
 
 @dataclass(frozen=True, eq=False)
+class Own:
+    """What the log of each reading (n,) has of its own, as it tells it alone.
+
+    How much a reading counts against others by its noise, the frequency below which the motion is freer than the noise
+    is loud, and the usual speed. ``largest_rad_s2`` (orders,) are torques that make all that is seen of an order in one
+    of the logs.
+    """
+
+    precision: Array
+    knee_rad_s: Array
+    usual_rad_s: Array
+    largest_rad_s2: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Problem:
     """Readings (n,) [rad] about a start, on the splines, and columns (p, n) beside them.
 
-    ``weights`` (n,) are 0 for readings that are left out, ``stiffness`` (d,) that of each difference of the spline.
+    ``precision`` (n,) is how much a reading counts against others, ``weights`` (n,) the same with 0 for readings that
+    are left out, ``stiffness`` (d,) that of each difference of the spline.
     """
 
     spline: Spline
     readings: Array
     time_s: Array
+    precision: Array
     weights: Array
     stiffness: Array
     start: Array
     columns: Array
 
     @cached_property
-    def _of_readings(self) -> tuple[Array, Array, Array, Array, Array]:
+    def _of_readings(self) -> tuple[Array, Array, Array, Array, Array, float]:
         """What the readings make of the normal equations, whatever the penalty.
 
-        Bands, across, left, its product, and the columns' own.
+        Bands, across, left, its product, the columns' own, and the squares of what is left.
         """
         design = self.spline.design
-        left = self.weights * (self.readings - design @ self.start)
+        away = self.readings - design @ self.start
+        left = self.weights * away
         weighed = self.weights * self.columns
         across = np.asarray(design.T @ weighed.T)
-        return bands(design, self.weights), across, left, design.T @ left, weighed @ self.columns.T
+        own = weighed @ self.columns.T
+        return bands(design, self.weights), across, left, design.T @ left, own, float(left @ away)
 
     @cached_property
     def _of_differences(self) -> tuple[Array, Array]:
@@ -52,7 +71,7 @@ class Problem:
         from scipy.linalg import cho_solve_banded, cholesky_banded
 
         penalty = 10.0**log_penalty
-        by_readings, across, left, along, own = self._of_readings
+        by_readings, across, left, along, own, squares = self._of_readings
         by_differences, differences = self._of_differences
         held = penalty * self.stiffness * differences
         system = by_readings + penalty * by_differences
@@ -64,7 +83,7 @@ class Problem:
         step, pulled = solved[:, 0], solved[:, 1:]
         normal = own - across.T @ pulled
         gradient = self.columns @ left - across.T @ step
-        squares = float(left @ left + held @ differences - rhs @ step)
+        squares += float(held @ differences - rhs @ step)
         log_det = 2.0 * float(np.sum(np.log(factor[0]))) - len(held) * log_penalty * float(np.log(10.0))
         return Reduced(normal, gradient, squares, log_det, step, pulled)
 
@@ -103,7 +122,7 @@ class Reduced:
 
 def degrees_of_freedom(problem: Problem, sd: Array) -> float:
     """Readings in use less what is free: the splines' parabola, and the columns that do not scatter."""
-    return float(problem.weights.sum()) - PENALISED - int(np.count_nonzero(~np.isfinite(sd)))
+    return float(np.count_nonzero(problem.weights)) - PENALISED - int(np.count_nonzero(~np.isfinite(sd)))
 
 
 def knee(problem: Problem, log_penalty: float) -> Array:
@@ -111,11 +130,21 @@ def knee(problem: Problem, log_penalty: float) -> Array:
     spline = problem.spline
     step = float(np.median(np.diff(problem.time_s)))
     held = 10.0**log_penalty * np.interp(problem.time_s, spline.at_s, problem.stiffness)
-    return np.asarray((spline.spacing_s / (held * step)) ** (1.0 / (2 * PENALISED)) / spline.spacing_s)
+    return np.asarray(
+        (problem.precision * spline.spacing_s / (held * step)) ** (1.0 / (2 * PENALISED)) / spline.spacing_s
+    )
+
+
+def held_at(problem: Problem, knee_rad_s: Array) -> Array:
+    """Stiffness (d,) with which the spline takes half of what a reading's noise does at these frequencies (n,)."""
+    spline = problem.spline
+    step = float(np.median(np.diff(problem.time_s)))
+    held = problem.precision * spline.spacing_s / (step * (knee_rad_s * spline.spacing_s) ** (2 * PENALISED))
+    return np.asarray(np.interp(spline.at_s, problem.time_s, held))
 
 
 def likeliest(
-    problem: Problem, sd: Array, variance: float, *, around: float | None, turning_rad_s: float
+    problem: Problem, sd: Array, variance: float, *, around: float | None, turning_rad_s: Array | float
 ) -> tuple[float, float]:
     """The penalty (its common logarithm) and the noise's variance of highest restricted likelihood.
 
@@ -131,7 +160,7 @@ def likeliest(
     def cost(log_penalty: float) -> float:
         return problem.reduced(log_penalty).cost(sd, variance, rows)
 
-    least = 2.0 * PENALISED * float(np.log10(np.median(knee(problem, 0.0)) / turning_rad_s))
+    least = 2.0 * PENALISED * float(np.log10(np.median(knee(problem, 0.0) / turning_rad_s)))
     if around is None:
         tried = least + _BEYOND
         costs = np.array([cost(one) for one in tried])

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.problem import Problem, Reduced, degrees_of_freedom, knee, likeliest
+from diagnosis.spin.problem import Own, Problem, Reduced, degrees_of_freedom, held_at, knee, likeliest
 from diagnosis.spin.spline import Spline, rate
 from diagnosis.spin.variance_components import Drawn, drawn, solved
 from twin.angles import Array
@@ -51,19 +51,19 @@ class MotionFit:
     """A motion (n,), and what was found with it.
 
     ``shaft_rad`` is the part that is smooth in time with what the torques do. ``knee_rad_s`` (n,) is the angular
-    frequency below which the motion is freer than the readings' noise is loud. ``noise_rad`` is the RMS of a reading
-    about it all. ``terms`` are the coefficients: cosine and sine of each order of the error [rad], of each order's
-    torque [rad/s^2], of what of it grows with the speed [rad/s^2 for each rad/s] and of what reverses with it [rad/s^2]
-    up to the order 4, and of an error of order 2 that grows with the speed [rad for each rad/s]. ``separable``
-    (orders,): whether a torque that makes all that is seen of an order would be told. ``growing`` (orders up to 4,) is
-    the standard deviation of what of a torque grows with the speed [rad/s^2 for each rad/s], infinite where that is not
-    told.
+    frequency below which the motion is freer than the readings' noise is loud. ``noise_rad`` (n,) is the RMS of a
+    reading about it all. ``terms`` are the coefficients: cosine and sine of each order of the error [rad], of each
+    order's torque [rad/s^2], of what of it grows with the speed [rad/s^2 for each rad/s] and of what reverses with it
+    [rad/s^2] up to the order 4, and of an error of order 2 that grows with the speed [rad for each rad/s].
+    ``separable`` (orders,): whether a torque that makes all that is seen of an order would be told. ``growing`` (orders
+    up to 4,) is the standard deviation of what of a torque grows with the speed [rad/s^2 for each rad/s], infinite
+    where that is not told.
     """
 
     shaft_rad: Array
     speed_rad_s: Array
     knee_rad_s: Array
-    noise_rad: float
+    noise_rad: Array
     terms: Drawn
     usable: BoolArray
     damping_per_s: float
@@ -71,14 +71,19 @@ class MotionFit:
     growing: Array
 
 
-_ANY = np.full(HIGHEST_OF_FRICTION, np.inf)
+ANY_GROWTH = np.full(HIGHEST_OF_FRICTION, np.inf)
 
 
 @dataclass(frozen=True, eq=False)
 class _Estimate:
-    """Where the rounds stand: the problem, the shaft's angle (n,) [rad], and how much everything scatters."""
+    """Where the rounds stand: the problem, the shaft's angle (n,) [rad], and how much everything scatters.
+
+    ``stiffness`` (d,) is that of the spline before rougher motion is held less, ``turning_rad_s`` (n,) the usual speed
+    of each log, not given: that of all.
+    """
 
     problem: Problem
+    stiffness: Array
     stretches: Sequence[slice]
     shaft_rad: Array
     sd: Array
@@ -87,8 +92,10 @@ class _Estimate:
     damping_per_s: float = 0.0
     terms: Drawn | None = None
     separable: BoolArray = field(default_factory=lambda: np.zeros(HIGHEST_ORDER, dtype=bool))
-    growing: Array = field(default_factory=lambda: _ANY)
-    most_growing: Array = field(default_factory=lambda: _ANY)
+    growing: Array = field(default_factory=lambda: ANY_GROWTH)
+    most_growing: Array = field(default_factory=lambda: ANY_GROWTH)
+    turning_rad_s: Array | None = None
+    largest_rad_s2: Array = field(default_factory=lambda: np.zeros(HIGHEST_ORDER))
 
     @cached_property
     def rates(self) -> tuple[Array, Array]:
@@ -106,11 +113,12 @@ class _Estimate:
         """One round: damping, penalty, coefficients, and which readings count, one after the other."""
         made = self._with_columns()
         usual = float(np.median(np.abs(self.rates[0])))
+        turning = usual if self.turning_rad_s is None else self.turning_rad_s
         log_penalty, variance = likeliest(
-            made.problem, made.sd, made.variance, around=self.log_penalty, turning_rad_s=usual
+            made.problem, made.sd, made.variance, around=self.log_penalty, turning_rad_s=turning
         )
         reduced = made.problem.reduced(log_penalty)
-        separable = _separable(reduced, variance, usual)
+        separable = _separable(reduced, variance, usual, self.largest_rad_s2)
         both_ways = bool(np.ptp(np.sign(self.rates[0])) > 0.0)
         terms, growing = _drawn(
             reduced,
@@ -126,12 +134,14 @@ class _Estimate:
         start = made.problem.start + reduced.step - reduced.pulled @ terms.values
         smooth = made.problem.spline.design @ start
         left = made.problem.readings - smooth - terms.values @ made.problem.columns
-        usual_left = 1.4826 * float(np.median(np.abs(left[made.problem.weights > 0.0])))
+        left = np.abs(left) * np.sqrt(made.problem.precision)
+        usual_left = 1.4826 * float(np.median(left[made.problem.weights > 0.0]))
+        differences = made.problem.spline.rough @ start
         problem = replace(
             made.problem,
             start=start,
-            weights=(np.abs(left) < _FAR_OUT * usual_left).astype(np.float64),
-            stiffness=_stiffness(made.problem.spline.rough @ start),
+            weights=np.where(left < _FAR_OUT * usual_left, made.problem.precision, 0.0),
+            stiffness=made.stiffness * _stiffness(np.sqrt(made.stiffness) * differences),
         )
         return replace(
             made,
@@ -157,7 +167,12 @@ class _Estimate:
 
 
 def fitted_motion(
-    readings_rad: Array, time_s: Array, stretches: Sequence[slice], *, most_growing: Array = _ANY
+    readings_rad: Array,
+    time_s: Array,
+    stretches: Sequence[slice],
+    *,
+    most_growing: Array = ANY_GROWTH,
+    own: Own | None = None,
 ) -> MotionFit:
     """Estimate the motion behind unwrapped readings.
 
@@ -172,20 +187,10 @@ def fitted_motion(
         The rows of each stretch, one behind the other.
     most_growing : ndarray
         What of each order's torque (orders up to 4,) is known to grow with the speed at most [rad/s^2 for each rad/s].
+    own : Own, optional
+        What the readings of several logs have of their own; not given: all are alike.
     """
-    spline = Spline.over(time_s, stretches)
-    problem = Problem(
-        spline,
-        readings_rad,
-        time_s,
-        np.ones(readings_rad.size),
-        np.ones(spline.rough.shape[0]),
-        np.zeros(spline.size),
-        np.zeros((0, readings_rad.size)),
-    )
-    start = problem.reduced(0.0).step
-    shaft, free = np.asarray(spline.design @ start), np.full(_OF_ERROR, np.inf)
-    found = _Estimate(replace(problem, start=start), stretches, shaft, free, most_growing=most_growing)
+    found = _set_out(readings_rad, time_s, stretches, own, most_growing)
     # The first round finds the motion and its speed, which what torques do follows.
     found = found.next()
     if _several_speeds(found.rates[0]):
@@ -199,12 +204,45 @@ def fitted_motion(
         shaft_rad=found.shaft_rad,
         speed_rad_s=found.rates[0],
         knee_rad_s=knee(found.problem, found.log_penalty),
-        noise_rad=float(np.sqrt(found.variance)),
+        noise_rad=np.sqrt(found.variance / found.problem.precision),
         terms=found.terms,
         usable=found.problem.weights > 0.0,
         damping_per_s=found.damping_per_s,
         separable=found.separable,
         growing=found.growing,
+    )
+
+
+def _set_out(
+    readings_rad: Array, time_s: Array, stretches: Sequence[slice], own: Own | None, most_growing: Array
+) -> _Estimate:
+    """A motion through the readings, from which the rounds set out."""
+    spline = Spline.over(time_s, stretches)
+    precision = np.ones(readings_rad.size) if own is None else own.precision
+    problem = Problem(
+        spline,
+        readings_rad,
+        time_s,
+        precision,
+        precision,
+        np.ones(spline.rough.shape[0]),
+        np.zeros(spline.size),
+        np.zeros((0, readings_rad.size)),
+    )
+    if own is not None:
+        held = held_at(problem, own.knee_rad_s)
+        problem = replace(problem, stiffness=held / float(np.median(held)))
+    start = problem.reduced(0.0).step
+    shaft, free = np.asarray(spline.design @ start), np.full(_OF_ERROR, np.inf)
+    return _Estimate(
+        replace(problem, start=start),
+        problem.stiffness,
+        stretches,
+        shaft,
+        free,
+        most_growing=most_growing,
+        turning_rad_s=None if own is None else own.usual_rad_s,
+        largest_rad_s2=np.zeros(HIGHEST_ORDER) if own is None else own.largest_rad_s2,
     )
 
 
@@ -222,13 +260,13 @@ def _seen(reduced: Reduced, variance: float) -> Array:
     return np.asarray(np.sqrt(np.sum((seen**2 + noise).reshape(-1, 2), axis=1)))
 
 
-def _separable(reduced: Reduced, variance: float, usual_rad_s: float) -> BoolArray:
+def _separable(reduced: Reduced, variance: float, usual_rad_s: float, largest_rad_s2: Array) -> BoolArray:
     """Whether of each order (orders,) a torque that makes all that is seen of it would be told from an error."""
     if len(reduced.gradient) <= _OF_ERROR:
         return np.zeros(HIGHEST_ORDER, dtype=bool)
     orders = np.arange(1, HIGHEST_ORDER + 1)
-    makes = np.repeat(_seen(reduced, variance) * (orders * usual_rad_s) ** 2, 2)
-    return _told(reduced, variance, makes)[:HIGHEST_ORDER]
+    makes = np.maximum(_seen(reduced, variance) * (orders * usual_rad_s) ** 2, largest_rad_s2)
+    return _told(reduced, variance, np.repeat(makes, 2))[:HIGHEST_ORDER]
 
 
 def _late_channel_told(reduced: Reduced, variance: float, usual_rad_s: float) -> bool:
@@ -271,7 +309,7 @@ def _drawn(
     torques alone are about as likely, none is taken to be there.
     """
     if len(sd) <= _OF_ERROR:
-        return solved(reduced.normal, reduced.gradient, variance, sd), _ANY
+        return solved(reduced.normal, reduced.gradient, variance, sd), ANY_GROWTH
     pairs = [np.arange(place, place + 2) for place in range(_OF_ERROR, len(sd), 2)]
     growing = pairs[HIGHEST_ORDER:][:HIGHEST_OF_FRICTION]
     reversing = pairs[HIGHEST_ORDER + HIGHEST_OF_FRICTION : -1] if both_ways else []

@@ -66,6 +66,13 @@ SPINS: tuple[Mutation, ...] = tuple(
             f"{_EXPLAIN}::test_a_cogging_of_a_higher_order_than_is_looked_for_may_be_a_torque_too",
         ),
         (
+            "spins.all_logs_are_one",
+            "diagnosis/spin/of_log.py",
+            "    own = None if len(logs) == 1 else ",
+            "    own = None if logs else ",
+            f"{_SMOOTHER}::test_each_of_two_logs_has_a_noise_and_a_motion_of_its_own",
+        ),
+        (
             "spins.dry_friction_stays",
             "diagnosis/spin/smoother.py",
             "if both_ways else []",

@@ -56,7 +56,7 @@ def test_a_coast_tells_the_sensor_from_a_torque_of_the_same_order() -> None:
     torque = fit.terms.values[2 * HIGHEST_ORDER + 4 : 2 * HIGHEST_ORDER + 6]
     assert np.hypot(*torque) == pytest.approx(COGGING, rel=0.1)
     assert fit.separable[:4].all()
-    assert fit.noise_rad == pytest.approx(NOISE, rel=0.1)
+    assert fit.noise_rad[0] == pytest.approx(NOISE, rel=0.1)
 
 
 def test_at_one_speed_a_torque_is_taken_for_the_sensors() -> None:
@@ -149,6 +149,28 @@ def test_a_jerk_is_set_aside() -> None:
     assert not np.any(np.abs(sweep.time_s - 3.0) < 0.05)
     assert len(sweep) > 0.85 * TIME.size
     assert len(sweep.estimated.lengths) == 2
+
+
+def test_each_of_two_logs_has_a_noise_and_a_motion_of_its_own() -> None:
+    """The slow one is ten times as noisy and wanders: what the fast one tells of the sensor stays as sure as it is."""
+    phases = np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, 6)
+    wander = sum(0.02 * np.cos(2.0 * np.pi * (0.3 + 0.2 * k) * TIME + phase) for k, phase in enumerate(phases))
+    logs = []
+    for seed, (speed, way, noise) in enumerate(((12.0, wander, 10.0 * NOISE), (120.0, 0.0, NOISE))):
+        angle = speed * TIME + way
+        turned = angle - 100.0 * np.cos(6.0 * angle) / (6.0 * np.gradient(angle, TIME)) ** 2
+        read_rad = (
+            turned + 0.002 * np.sin(6.0 * turned) + noise * np.random.default_rng(seed).standard_normal(TIME.size)
+        )
+        logs.append(Spin.from_columns({"time_s": TIME, "measured_deg": np.degrees(read_rad)}))
+    slow, fast = sweeps_of(logs)
+    assert slow.estimated is not None
+    assert fast.estimated is not None
+    assert slow.estimated.noise_rad > 8.0 * NOISE
+    assert fast.estimated.noise_rad == pytest.approx(NOISE, rel=0.2)
+    torque = fast.estimated.torques[5]
+    assert np.hypot(torque.cos_rad_s2, torque.sin_rad_s2) == pytest.approx(100.0, rel=0.05)
+    assert torque.separable
 
 
 def test_two_logs_of_one_speed_each_tell_together_what_neither_tells() -> None:

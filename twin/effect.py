@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 
 from twin.angles import TAU, Array
+from twin.forward import ActsOn as ActsOn
+from twin.forward import Behind as Behind
+from twin.forward import Forward as Forward
 from twin.found_by import BoolArray as BoolArray
 from twin.found_by import Comb as Comb
 from twin.found_by import FindMarks as FindMarks
@@ -22,17 +25,6 @@ from twin.param import Param as Param
 from twin.param import Parameters as Parameters
 from twin.param import Role as Role
 from twin.words import InWords as InWords
-
-ActsOn = Literal["shaft", "field", "channels", "angle", "word", "reference"]
-"""The signal an effect changes, in the order of the chain.
-
-``shaft``      angle of the magnet on the shaft [rad], one for each channel's sampling instant, ``(..., 2, n)``
-``field``      angle of the field in the sensor's axes [rad], ``(..., 2, n)``
-``channels``   x and y, nominal amplitude 1, ``(..., 2, n)``
-``angle``      the angle computed from them [rad], ``(..., 1, n)``
-``word``       the same as it is sent, counted as the output counts [rad], ``(..., 1, n)``
-``reference``  the reference encoder's reading [rad], ``(..., 1, n)``
-"""
 
 Footprint = Literal["mean", "spread", "values", "sequence"]
 """Where an effect leaves its mark: on the expected reading, on its spread, on the set of values that readings can
@@ -47,43 +39,6 @@ Drawing = Callable[[Array, Array, Motion], Mapping[str, Array]]
 Called with strengths [deg] (k,), uniform numbers (k, 4) and a motion, it returns parameters (k,) by name at which the
 effect is about that strong.
 """
-
-
-class Forward(Protocol):
-    """What an effect does to its signal.
-
-    Parameters
-    ----------
-    signal : array, (..., k, n)
-        The signal that the effect acts on, as :data:`ActsOn` describes it.
-    motion : Motion
-        What the shaft does at each of the n readings.
-    values : mapping
-        Every parameter by name: scalars, or arrays (batch, 1, 1).
-    rng : numpy.random.Generator or None
-        Draws what is random; without it the effect acts in expectation, and what is random does nothing.
-
-    Returns
-    -------
-    array
-        The changed signal, of the same shape; the one handed in stays as it is.
-    """
-
-    def __call__(self, signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array: ...
-
-
-@dataclass(frozen=True, kw_only=True)
-class Behind:
-    """What an effect also does to a signal behind the one that it acts on.
-
-    ``forward`` is given all of the effect's parameters; where those named in ``params`` are at their nulls it does
-    nothing. ``record_wide`` is as in :class:`Effect`.
-    """
-
-    acts_on: ActsOn
-    forward: Forward
-    params: tuple[str, ...]
-    record_wide: bool = False
 
 
 def _one_shape(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -169,6 +124,8 @@ class Effect:
         run as built has this in place of the arctangent and of `forward`.
     at_magnet, assumes : callable, optional, and str
         From a described magnet (an ``Assembly``) to the same effect in its field; what figures count against without.
+    vectors : tuple of tuple of str
+        Levels that a search sets together, as the components of a field are.
     repeatable : bool
         Whether a second instance beside the first makes sense: another source with parameters of its own.
     record_wide : bool
@@ -217,6 +174,7 @@ class Effect:
     computes: Callable[[Array, Parameters], Array | None] | None = None
     at_magnet: Callable[[Any], Effect] | None = None
     assumes: str = ""
+    vectors: tuple[tuple[str, ...], ...] = ()
     repeatable: bool = False
     record_wide: bool = False
     handicap: float = 0.0
@@ -297,22 +255,30 @@ class Effect:
         return terms if self.roles("per turn") else len(self.drawn)
 
     @property
+    def stand_aside(self) -> tuple[tuple[str, ...], ...]:
+        """Levels that stand aside, those of a vector together."""
+        aside = [name for name in self.roles("level") if self.params[name].aside]
+        return *self.vectors, *((name,) for name in aside if not any(name in one for one in self.vectors))
+
+    @property
     def sought_alone(self) -> tuple[Effect, ...]:
-        """The effect with one strength alone, for each that a search sets by itself, within the bounds of that.
+        """The effect with one strength alone, or those of a vector, for each that a search sets by itself.
 
         What it is counted in, such as a range that the sweep does not show, is as uncertain as it was before.
         """
-        forms = (self.alone(name, within=param.sought) for name, param in self.params.items() if param.sought)
+        set_so = (names for names in self.stand_aside if all(self.params[name].sought for name in names))
+        forms = (self.alone(*names, sought=True) for names in set_so)
         return tuple(replace(form, fitted_shapes=self.fitted_shapes) for form in forms)
 
-    def alone(self, name: str, *, within: tuple[float, float] | None = None) -> Effect:
-        """The same effect where one of its parameters is its only strength, and all others stay at their null.
+    def alone(self, *names: str, sought: bool = False) -> Effect:
+        """The same effect where these are its only strengths, and all other parameters stay at their null.
 
-        ``within`` are its bounds in place of those of its declaration.
+        ``sought``: within the bounds at which a search sets them, in place of those of their declaration.
         """
         params = {other: replace(param, role="shape") for other, param in self.params.items()}
-        lower, upper = within or (params[name].lower, params[name].upper)
-        params[name] = replace(params[name], role="strength", lower=lower, upper=upper)
+        for name in names:
+            lower, upper = (sought and params[name].sought) or (params[name].lower, params[name].upper)
+            params[name] = replace(params[name], role="strength", lower=lower, upper=upper)
         return replace(
             self, params=params, shapes=_one_shape, zoomed=(), fitted_shapes=(), channel_shapes=(), line=None
         )

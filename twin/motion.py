@@ -23,6 +23,8 @@ LEAST_TURN_RAD = 0.17
 
 RPM = TAU / 60.0
 """One revolution a minute [rad/s]."""
+KRPM = 1000.0 * RPM
+"""1000 rpm [rad/s]."""
 LEAST_SPAN_K = 5.0
 """Span of temperatures, or difference between two recordings, from which on drifts may show."""
 LEAST_CURRENTS = 0.2

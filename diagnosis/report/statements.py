@@ -37,6 +37,8 @@ _LACKS = {
     "time_s": ("no time_s", "record time_s"),
     "turn": ("no turn column", "number the sweeps in a turn column"),
     "two currents": ("no current_a that changes", "record current_a at several currents"),
+    "two currents|a reference": ("no reference and no current_a", "record current_a at several currents"),
+    "two currents|two speeds|varying speed": ("one speed and no current", "record current_a, or measure at two speeds"),
     "two air gaps": ("one air gap", "measure at a second air gap"),
     "two speeds": ("one speed", "measure at a second speed"),
     "two speeds|both directions": ("one speed, one direction", "measure at a second speed or in both directions"),

@@ -23,6 +23,7 @@ from tests.contract.signatures import (
     mains,
     misaligned,
     modes,
+    motor,
     of_counts,
     of_periods,
     over_flanks,
@@ -89,11 +90,13 @@ EXAMPLES: dict[str, Example] = {
         signature=lambda m, p: line(m, p, p["order"]),
     ),
     "motor_field": Example(
-        strengths={"bx_mT_per_A": 0.1, "by_mT_per_A": -0.06},
+        strengths={
+            **{"bx_mT_per_A": 0.03, "by_mT_per_A": -0.02, "bx_mT_per_krpm": 0.1, "by_mT_per_krpm": 0.2},
+            **{"bx_mT_per_krpm_per_s": 0.3, "by_mT_per_krpm_per_s": -0.2},
+        },
         shapes={"field_mT": 60.0},
-        signature=lambda m, p: shift(
-            m, p["bx_mT_per_A"] * m.current_a / p["field_mT"], p["by_mT_per_A"] * m.current_a / p["field_mT"]
-        ),
+        memory=True,
+        signature=motor,
     ),
     "magnet_misalignment": Example(
         strengths={"off_axis_mm": 0.4}, shapes={"direction_deg": 20.0}, signature=misaligned, power=2

@@ -84,8 +84,8 @@ _MECHANISMS: tuple[Mutation, ...] = (
     Mutation(
         "motor_field.turns_with_the_sensor",
         "twin/magnet/motor_field.py",
-        "add(signal, *along_axes(bx, by, motion))",
-        "add(signal, bx, by)",
+        "add(signal, *along_axes(bx / field, by / field, motion))",
+        "add(signal, bx / field, by / field)",
         ("tests/twin/test_each_recording.py::test_a_motor_that_stays_where_it_is_is_seen_from_another_side",),
     ),
     Mutation(

@@ -242,8 +242,8 @@ PARTS: tuple[Mutation, ...] = (
         ),
         (
             "rivals.details_are_none",
-            "if effect.params[name].aside:",
-            "if False:",
+            "for names in effect.stand_aside:",
+            "for names in ():",
             "search/test_rivals.py::test_a_detail_that_no_search_sets_is_a_rival_by_itself",
         ),
         (

@@ -20,6 +20,13 @@ REPORTED = (
         (f"{_CASES}::test_a_sweep_of_the_kind_is_answered_rightly[coarse_reference]",),
     ),
     Mutation(
+        "motor_field.drag_draws_a_current",
+        "twin/magnet/motor_field.py",
+        "vectors=(tuple(_BY_CURRENT), tuple(_BY_SPEED)),",
+        "vectors=(tuple(_BY_CURRENT),),",
+        (f"{_CASES}::test_a_sweep_of_the_kind_is_answered_rightly[field_of_drag]",),
+    ),
+    Mutation(
         "whole_counts.stretches_overlap",
         "twin/whole_counts.py",
         "first += max(many // 2, 1)",

@@ -11,6 +11,7 @@ import numpy as np
 from tests.hidden.period_causes import MOTORS
 from tests.reported_cases.bench import Array, Case, Sensor, a_turn, case, some_sensor, words
 from tests.reported_cases.counted import coarse_reference, hand_turned
+from tests.reported_cases.driven import field_of_drag, field_of_inertia
 
 Answer = Mapping[str, Any]
 WORD = "output_quantisation"
@@ -272,6 +273,15 @@ def _right_row(drawn: Case, answer: Answer) -> bool:
     return not answer["causes"] and [one["rows"] for one in typed] == [[drawn.truth["row"]]]
 
 
+def _motors(per: str) -> Callable[[Case, Answer], bool]:
+    """The motor's field alone, counted by what it goes with."""
+
+    def right(drawn: Case, answer: Answer) -> bool:
+        return _alone(answer, "motor_field") and bool(_values(answer, "motor_field", f"bx_mT_per_{per}"))
+
+    return right
+
+
 def axial_magnet(rng: np.random.Generator) -> Case:
     """The reading swings by less than half a turn while the shaft goes round."""
     shaft = a_turn(rng, points=int(rng.integers(60, 361)), turns=float(rng.choice([1.0, 2.0])))
@@ -302,4 +312,6 @@ KINDS: dict[str, Kind] = {
     "axial_magnet": Kind(axial_magnet, lambda drawn, answer: False, lambda message: "axial" in message),
     "coarse_reference": Kind(coarse_reference, _only("reference_quantisation", "counts_per_turn", within=0.0)),
     "hand_turned": Kind(hand_turned, _nothing),
+    "field_of_drag": Kind(field_of_drag, _motors("krpm")),
+    "field_of_inertia": Kind(field_of_inertia, _motors("krpm_per_s")),
 }

@@ -10,13 +10,19 @@ from twin.angles import Array
 from twin.effect import Effect, Param, Parameters
 from twin.hall.offset import add
 from twin.magnet.stray_field import FIELD_MT, OWN_FIELD, along_axes, beside
-from twin.motion import Motion
+from twin.motion import KRPM, Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    share = motion.current_a / np.asarray(values.get("field_mT", FIELD_MT))
-    bx, by = np.asarray(values["bx_mT_per_A"]) * share, np.asarray(values["by_mT_per_A"]) * share
-    return add(signal, *along_axes(bx, by, motion))
+    # A drive draws the current that drag asks for, and that which accelerates what it turns.
+    by_current, by_drag = motion.current_a, motion.speed_rad_s / KRPM
+    by_inertia = motion.acceleration_rad_s2 / KRPM
+    bx = np.asarray(values["bx_mT_per_A"]) * by_current + np.asarray(values["bx_mT_per_krpm"]) * by_drag
+    by = np.asarray(values["by_mT_per_A"]) * by_current + np.asarray(values["by_mT_per_krpm"]) * by_drag
+    bx = bx + np.asarray(values["bx_mT_per_krpm_per_s"]) * by_inertia
+    by = by + np.asarray(values["by_mT_per_krpm_per_s"]) * by_inertia
+    field = np.asarray(values.get("field_mT", FIELD_MT))
+    return add(signal, *along_axes(bx / field, by / field, motion))
 
 
 def at_magnet(assembly: Any) -> Effect:
@@ -24,29 +30,49 @@ def at_magnet(assembly: Any) -> Effect:
     return beside(MOTOR_FIELD, assembly)
 
 
+def _components(name: str, unit: str, of: str, *, sought: bool) -> dict[str, Param]:
+    """Both components of the field that goes with the current, or with what the current goes with."""
+    return {
+        f"b{axis}_{name}": Param(
+            unit=unit,
+            null=0.0,
+            lower=-50.0,
+            upper=50.0,
+            doc=f"field {of} along the sensor's {axis}",
+            role="level" if sought else "strength",
+            mirror=-1 if axis == "y" else None,
+            aside=True,
+            sought=(-50.0, 50.0) if sought else None,
+            owner="bench",
+        )
+        for axis in "xy"
+    }
+
+
+_BY_CURRENT = _components("mT_per_A", "mT/A", "of an ampere", sought=True)
+_BY_SPEED = _components("mT_per_krpm", "mT/krpm", "of the current drawn at 1000 rpm", sought=True)
+_BY_ACCELERATION = _components(
+    "mT_per_krpm_per_s", "mT/(krpm/s)", "of the current that accelerates by 1000 rpm a second", sought=False
+)
+
 MOTOR_FIELD = Effect(
     name="motor_field",
     stage="magnet",
     acts_on="channels",
     params={
-        "bx_mT_per_A": Param(
-            unit="mT/A", null=0.0, lower=-50.0, upper=50.0, doc="field of an ampere along the sensor's x", owner="bench"
-        ),
-        "by_mT_per_A": Param(
-            unit="mT/A",
-            null=0.0,
-            lower=-50.0,
-            upper=50.0,
-            doc="field of an ampere along the sensor's y",
-            mirror=-1,
-            owner="bench",
-        ),
+        **_BY_CURRENT,
+        **_BY_SPEED,
+        **_BY_ACCELERATION,
         "field_mT": OWN_FIELD,
     },
+    vectors=(tuple(_BY_CURRENT), tuple(_BY_SPEED)),
     forward=forward,
     at_magnet=at_magnet,
     assumes=f"a field of {FIELD_MT:g} mT at the sensor",
-    needs=frozenset({"two currents"}),
-    source="Biot and Savart: the field of a winding and its leads in proportion to the current, added to the magnet's",
-    signature="order 1 times the current",
+    # Without a reference the speed is told by these very readings, and a motor that coasts draws no current.
+    needs=frozenset({"two currents|a reference", "two currents|two speeds|varying speed"}),
+    record_wide=True,
+    source="Biot and Savart: the field of a winding and its leads in proportion to the current, added to the magnet's; "
+    "a motor's current in proportion to the torque of drag and inertia",
+    signature="order 1 times the current, or times speed or acceleration",
 )

@@ -6,14 +6,11 @@ import numpy as np
 
 from twin.angles import Array, radians
 from twin.effect import Effect, Param, Parameters
-from twin.motion import RPM, Motion
-
-KRPM_RAD_S = 1000.0 * RPM
-"""1000 rpm in rad/s."""
+from twin.motion import KRPM, Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    twisted = signal - radians(values["deg_per_krpm_per_s"]) * motion.acceleration_rad_s2 / KRPM_RAD_S
+    twisted = signal - radians(values["deg_per_krpm_per_s"]) * motion.acceleration_rad_s2 / KRPM
     return twisted + radians(values["deg_per_A"]) * motion.current_a
 
 

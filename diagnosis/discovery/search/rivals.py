@@ -69,9 +69,8 @@ def forms(effect: Effect) -> Iterator[Effect]:
 
     A detail that no search sets, because another effect says it more plainly, is a rival of that one alone.
     """
-    for name in effect.roles("level"):
-        if effect.params[name].aside:
-            yield effect.alone(name)
+    for names in effect.stand_aside:
+        yield effect.alone(*names)
     yield effect
 
 

@@ -20,17 +20,24 @@ from twin.runs import runs
 _ROWS = 8
 """Rows of the shortest stretch: a line has two parameters, and fewer rows hardly say that they lie on one."""
 _MOST_COUNTS = 1_000_000
+"""The step of 0.0004 deg is beyond what any bench would call rounding."""
 _OFF = 0.05
 """RMS distance, in counts, that is none: it is that of a file's decimals. Rounding makes 0.29."""
 _SAME_RAD = 1e-8
 """Angles that differ by less are one."""
+_MOST_TRIED = 5000
+"""Numbers of counts: more are as good as any."""
 _TRIED_WINDOWS = 1000
+"""Short stretches by which the way is judged: a share of them is known to 0.03."""
 _FEW = 100
 """Readings by which the number of counts is chosen, all of which must then agree."""
 _LONG = 8 * _ROWS
+"""Rows of a stretch whose own counts tell as much as those of the whole record."""
 _HALVINGS = 50
 """Of the range of a line's slopes, to the precision of a double."""
 _ROUNDING = 1e-9
+_WHOLE = 1e-5
+"""Distance from a whole number of decimals that is the rounding of a double."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +60,7 @@ class WholeCounts:
 
     @cached_property
     def off(self) -> Array:
-        """Each reading less where the shaft stood, (n,), in counts: within half a count; 0 where that is not known."""
+        """Each reading less where the shaft stood, (n,), in counts; 0 where that is not known."""
         if not self.by_stops:
             return _off(self.counts)
         stops = _stops(self.counts)
@@ -82,18 +89,20 @@ def whole_counts(shaft_rad: Array) -> WholeCounts | None:
         None where they lie on no grid of a whole number of counts a turn, where the shaft did not go on evenly (then
         nothing tells where between two counts it stood), and where each stood at a count.
     """
-    counts_per_turn = counts_of_a_turn(shaft_rad)
-    if counts_per_turn is None:
-        return None
-    counts = np.round((shaft_rad - shaft_rad[0]) / TAU * counts_per_turn)
-    # Several readings at one stop are of one angle; a shaft that moves evenly may also stay within a count.
-    for by_stops, moving in ((False, counts), (True, counts[_stops(counts)])):
-        tried = list(_short(moving))
-        straight = [_off_line(some) for some in tried if _straight(some)]
-        if 2 * len(straight) > len(tried):
-            rounded = float(np.sqrt(np.mean(np.square(straight)))) > _OFF
-            return WholeCounts(counts_per_turn, counts, by_stops) if rounded else None
+    for counts_per_turn in counts_of_a_turn(shaft_rad):
+        counts = np.round((shaft_rad - shaft_rad[0]) / TAU * counts_per_turn)
+        # Several readings at one stop are of one angle; a shaft that moves evenly may also stay within a count.
+        for by_stops, moving in ((False, counts), (True, counts[_stops(counts)])):
+            if _rounded(moving):
+                return WholeCounts(counts_per_turn, counts, by_stops)
     return None
+
+
+def _rounded(counts: Array) -> bool:
+    """Whether most short stretches of counts (n,) are straight, and beside the counts."""
+    tried = list(_short(counts))
+    straight = [_off_line(some) for some in tried if _straight(some)]
+    return 2 * len(straight) > len(tried) and float(np.sqrt(np.mean(np.square(straight)))) > _OFF
 
 
 def _stops(counts: Array) -> npt.NDArray[np.bool_]:
@@ -123,23 +132,47 @@ def _way(counts: Array) -> IntArray:
     return np.concatenate([[0], np.cumsum(np.concatenate([[0], np.diff(way) != 0.0]))]).astype(np.int64)
 
 
-def counts_of_a_turn(shaft_rad: Array) -> int | None:
-    """On how many even steps of the turn readings (n,) [rad] lie, all of them, from whichever zero; None: on none.
+def counts_of_a_turn(shaft_rad: Array) -> Iterator[int]:
+    """On how many even steps of the turn readings (n,) [rad] lie, all of them, from whichever zero: the fewest first.
 
-    The step is the least by which two steps from row to row differ, or a half, a third or a quarter of it.
+    The step is the least by which two steps from row to row differ, or a half, a third or a quarter of it. Steps that
+    differ by the last decimal of the file are the same, unless it is that decimal to which the reference was rounded.
     """
-    steps = np.unique(np.round(wrap(np.diff(shaft_rad)) / _SAME_RAD)) * _SAME_RAD
-    least = np.diff(np.concatenate([[0.0], np.sort(np.abs(steps))]))
-    least = least[least > TAU / _MOST_COUNTS / 2.0]
-    if shaft_rad.size < _ROWS or not least.size:
+    if shaft_rad.size < _ROWS:
+        return
+    sizes = np.unique(np.round(np.abs(wrap(np.diff(shaft_rad))) / _SAME_RAD)) * _SAME_RAD
+    for same in (*_last_decimals_rad(shaft_rad), 0.5 * TAU / _MOST_COUNTS):
+        found = _counts_by(shaft_rad, sizes, same)
+        if found is not None:
+            yield found
+
+
+def _last_decimals_rad(shaft_rad: Array) -> list[float]:
+    """By how much [rad] two steps of a file of few decimals, in degrees or in radians, differ that are the same."""
+    found = []
+    for unit, values in ((TAU / 360.0, np.degrees(shaft_rad)), (1.0, shaft_rad), (1.0, np.mod(shaft_rad, TAU))):
+        for decimals in (1, 2, 3, 4):
+            places = values * 10.0**decimals
+            if np.max(np.abs(places - np.round(places))) < _WHOLE:
+                # Each of two angles is off by half a decimal at the most, and so is each of two others.
+                found.append(2.0 * unit * 10.0**-decimals)
+                break
+    return found
+
+
+def _counts_by(shaft_rad: Array, sizes: Array, same: float) -> int | None:
+    """The counts of a turn by the least difference of the steps' sizes (m,) [rad], which up to ``same`` is none."""
+    least = np.diff(np.concatenate([[0.0], sizes]))
+    least = least[least > same * (1.0 + _OFF)]
+    if not least.size:
         return None
     few = shaft_rad[np.unique(np.linspace(0, shaft_rad.size - 1, _FEW).astype(np.int64))]
     for share in (1, 2, 3, 4):
         about = share * TAU / float(np.min(least))
         # Decimals of the file leave the step uncertain, and with it how many make a turn.
-        first, last = max(2, int(about * (1.0 - 0.5 * _OFF))), min(_MOST_COUNTS, int(about * (1.0 + 0.5 * _OFF)) + 1)
-        near = np.arange(first, last + 1)
-        if near.size:
+        off = about * (0.5 * _OFF + same / float(np.min(least)))
+        near = np.arange(max(2, int(about - off)), min(_MOST_COUNTS, int(about + off) + 1) + 1)
+        if 0 < near.size <= _MOST_TRIED:
             best = int(near[np.argmax(_resultant(few, near[:, None]))])
             if float(_resultant(shaft_rad, best)) > np.exp(-0.5 * (TAU * _OFF) ** 2):
                 return best
@@ -162,7 +195,7 @@ def _off(counts: Array) -> Array:
         for first, many in _stretches(counts[rows]):
             part = slice(rows.start + first, rows.start + first + many)
             from_ends = 1.0 - np.abs(np.linspace(-1.0, 1.0, many + 2)[1:-1])
-            total[part] += from_ends * _off_line(counts[part])
+            total[part] += from_ends * _off_parabola(counts[part])
             weight[part] += from_ends
     return np.divide(total, weight, out=total, where=weight > 0.0)
 
@@ -186,6 +219,14 @@ def _off_line(counts: Array) -> Array:
     """Each count (n,) less the line of least squares, which a row that is of the next stretch hardly moves."""
     rows = np.arange(counts.size) - 0.5 * (counts.size - 1)
     return np.asarray(counts - np.mean(counts) - rows * (rows @ counts) / (rows @ rows))
+
+
+def _off_parabola(counts: Array) -> Array:
+    """The same of the parabola: what speeds up bends its line, and what is left of that would follow the acceleration."""
+    rows = np.linspace(-1.0, 1.0, counts.size)
+    bent = rows**2 - np.mean(rows**2)
+    left = _off_line(counts)
+    return np.asarray(left - bent * (bent @ left) / (bent @ bent))
 
 
 def _rows_on_a_line(counts: Array) -> int:

@@ -67,8 +67,28 @@ def test_where_nothing_tells_nothing_is_said(shaft: Array) -> None:
 
 
 def test_an_angle_of_its_own_is_on_no_counts() -> None:
-    assert counts_of_a_turn(np.radians(THERE + np.random.default_rng(1).normal(0.0, 0.01, THERE.size))) is None
-    assert counts_of_a_turn(np.zeros(20)) is None
+    assert not list(counts_of_a_turn(np.radians(THERE + np.random.default_rng(1).normal(0.0, 0.01, THERE.size))))
+    assert not list(counts_of_a_turn(np.zeros(20)))
+
+
+@pytest.mark.parametrize(("counts", "decimals"), [(500, 1), (1024, 2), (4096, 2), (4096, 3), (16_384, 3), (3600, 1)])
+def test_a_files_last_decimal_is_not_taken_for_a_count(counts: int, decimals: int) -> None:
+    shaft = 0.3 + np.arange(700) * 360.0 / 351.0
+    found = whole_counts(read(shaft, counts, decimals=decimals))
+    assert found is not None
+    assert found.counts_per_turn == counts
+
+
+def test_a_shaft_that_speeds_up_is_followed() -> None:
+    """What lines leave of its bends would follow the acceleration, as a torsion of the shaft does."""
+    time = np.linspace(0.0, 6.0, 3000)
+    rate = 2.0 * np.pi * 0.5
+    shaft = 6.0 * (500.0 * time - 300.0 * np.cos(rate * time) / rate)
+    found = whole_counts(read(shaft, 2048))
+    assert found is not None
+    left, bend = found.off - rounding(shaft, 2048), np.cos(rate * time)
+    # Lines alone: slope 0.2 counts. By chance, as there are 40 stretches and more, 0.11 / sqrt(40) * sqrt(2).
+    assert abs(2.0 * float(np.mean(left * bend))) < 3.0 * 0.025
 
 
 def test_a_part_of_the_rows_knows_what_all_of_them_told() -> None:

@@ -221,9 +221,13 @@ class Motion:
         if recordings is None or len(recordings) == 1:
             return (self,)
         each = [(rows[one], setup) for one, setup in zip(recordings.slices, recordings.setups, strict=True)]
-        return tuple(
-            replace(self.part(own), recordings=Recordings(np.zeros_like(own), (setup,))) for own, setup in each
-        )
+        return tuple(self.part(own)._of(Recordings(np.zeros_like(own), (setup,))) for own, setup in each)
+
+    def _of(self, recordings: Recordings) -> Motion:
+        """The same of these recordings."""
+        found = replace(self, recordings=recordings)
+        found.__dict__.update(recorded_rad=self.recorded_rad, whole_counts=self.whole_counts)
+        return found
 
     @cached_property
     def recorded_rad(self) -> Array:

@@ -222,7 +222,7 @@ def _off_line(counts: Array) -> Array:
 
 
 def _off_parabola(counts: Array) -> Array:
-    """The same of the parabola: what speeds up bends its line, and what is left of that would follow the acceleration."""
+    """The same of the parabola: what lines leave of a way that speeds up would follow its acceleration."""
     rows = np.linspace(-1.0, 1.0, counts.size)
     bent = rows**2 - np.mean(rows**2)
     left = _off_line(counts)

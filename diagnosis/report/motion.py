@@ -119,7 +119,7 @@ def may_be_torque(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
         return []
     keys = [key for key in cause.keys if key in fit.chain.values]
     effects = {key: find(key, fit.chain.effects) for key in keys}
-    if any("two currents" in effect.needs for effect in effects.values()):
+    if any(need.startswith("two currents") for effect in effects.values() for need in effect.needs):
         return [(TORQUE, WITHOUT_CURRENT)]
     if _in_time(fit, cause):
         return [(TORQUE, IN_TIME), *_may_be_stamps(fit, cause)]

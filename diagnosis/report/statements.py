@@ -38,7 +38,7 @@ _LACKS = {
     "turn": ("no turn column", "number the sweeps in a turn column"),
     "two currents": ("no current_a that changes", "record current_a at several currents"),
     "two currents|a reference": ("no reference and no current_a", "record current_a at several currents"),
-    "two currents|two speeds|varying speed": ("one speed and no current", "record current_a, or measure at two speeds"),
+    "two currents|two speeds": ("one speed and no current", "record current_a, or measure at two speeds"),
     "two air gaps": ("one air gap", "measure at a second air gap"),
     "two speeds": ("one speed", "measure at a second speed"),
     "two speeds|both directions": ("one speed, one direction", "measure at a second speed or in both directions"),
@@ -209,13 +209,19 @@ def senses_words(answer: Mapping[str, Any]) -> str:
         if key == "zero_deg" and "motion" in answer:
             continue  # Without a reference there is none.
         # A sensor that was turned between recordings is another one in the mirror, not the same with other signs.
-        if key not in _MIRRORED and parameters[key]["low"] <= mirrored[key] <= parameters[key]["high"]:
+        if key not in _MIRRORED and _within(mirrored[key], parameters[key]):
             continue
         # As many digits as the interval of the one that is shown.
         text, _ = figure({**parameters[key], **around(parameters[key], mirrored[key])}, SCALES[key])
         there.append(f"{LABELS[key]} {text} {UNITS[key]}")
     pair = f"s = {-senses['sensor']:+d}, h = {-senses['output']:+d}"
     return f"The mirrored twin ({pair}) fits as well, with {listed(there)}"
+
+
+def _within(value: float, parameter: Mapping[str, Any]) -> bool:
+    """Whether a value lies in a parameter's interval, which may have no end."""
+    low, high = parameter["low"], parameter["high"]
+    return (low is None or low <= value) and (high is None or value <= high)
 
 
 def _signs_words(senses: Mapping[str, Any], *, zero: bool) -> str:

@@ -16,7 +16,7 @@ _FIFTY = 50
 """Readings of which an RMS is known to a tenth."""
 _LOPSIDED = 1.5
 """Ratio of the two sides of an interval from which on both ends are told."""
-_ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT(?:_per_(?:A|krpm(?:_per_s)?))?|mm|mm2|ms2|ms3|lsb|Hz|s)$")
+_ENDING = re.compile(r"(?:^|_)(deg|percent|us|mT(?:_per_(?:A|krpm))?|mm|mm2|ms2|ms3|lsb|Hz|s)$")
 _NUMBERED = re.compile(r"^(?P<name>.*?)(?:_(?P<number>\d+))?$")
 
 

@@ -92,10 +92,8 @@ EXAMPLES: dict[str, Example] = {
     "motor_field": Example(
         strengths={
             **{"bx_mT_per_A": 0.03, "by_mT_per_A": -0.02, "bx_mT_per_krpm": 0.1, "by_mT_per_krpm": 0.2},
-            **{"bx_mT_per_krpm_per_s": 0.3, "by_mT_per_krpm_per_s": -0.2},
         },
         shapes={"field_mT": 60.0},
-        memory=True,
         signature=motor,
     ),
     "magnet_misalignment": Example(

@@ -89,13 +89,12 @@ def stepper(motion: Motion, p: Params) -> Array:
 
 
 def motor(motion: Motion, p: Params) -> Array:
-    """A field fixed in the stator: of the current, and of what drag and inertia draw at so many thousand rpm."""
+    """A field fixed in the stator: of the current, and of what drag draws at so many thousand rpm."""
     krpm = motion.speed_rad_s * 60.0 / (2.0 * np.pi) / 1000.0
-    gained = motion.acceleration_rad_s2 * 60.0 / (2.0 * np.pi) / 1000.0
 
     def along(axis: str) -> Array:
         mT = p[f"{axis}_mT_per_A"] * motion.current_a + p[f"{axis}_mT_per_krpm"] * krpm
-        return np.asarray((mT + p[f"{axis}_mT_per_krpm_per_s"] * gained) / p["field_mT"])
+        return np.asarray(mT / p["field_mT"])
 
     return shift(motion, along("bx"), along("by"))
 

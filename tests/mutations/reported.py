@@ -22,8 +22,8 @@ REPORTED = (
     Mutation(
         "motor_field.drag_draws_a_current",
         "twin/magnet/motor_field.py",
-        "vectors=(tuple(_BY_CURRENT), tuple(_BY_SPEED)),",
-        "vectors=(tuple(_BY_CURRENT),),",
+        "krpm, field = motion.speed_rad_s / KRPM,",
+        "krpm, field = 0.0 * motion.speed_rad_s,",
         (f"{_CASES}::test_a_sweep_of_the_kind_is_answered_rightly[field_of_drag]",),
     ),
     Mutation(

@@ -195,7 +195,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.a_current_makes_no_torque",
             "diagnosis/report/motion.py",
-            'if any("two currents" in effect.needs for effect in effects.values()):',
+            'if any(need.startswith("two currents") for effect in effects.values() for need in effect.needs):',
             "if False:",
             f"{_EXPLAIN}::test_what_grows_with_the_current_may_be_the_torque_that_the_current_makes",
         ),

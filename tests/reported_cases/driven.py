@@ -1,4 +1,4 @@
-"""A motor turns the shaft and no current is recorded: its field goes with what drag and inertia ask of it."""
+"""A motor turns the shaft and no current is recorded: its field goes with what drag asks of it."""
 
 from __future__ import annotations
 
@@ -14,23 +14,13 @@ def field_of_drag(rng: np.random.Generator) -> Case:
     points = int(rng.choice([180, 256, 360]))
     rpm = np.repeat([way * speed for way in ways for speed in speeds], 2 * points)
     step = np.where(rpm > 0.0, 1.0, -1.0) * (360.0 / points)
-    return _driven(rng, np.cumsum(step), np.cumsum(np.abs(step) / (6.0 * np.abs(rpm))), rpm, rpm)
+    return _driven(rng, np.cumsum(step), np.cumsum(np.abs(step) / (6.0 * np.abs(rpm))), rpm)
 
 
-def field_of_inertia(rng: np.random.Generator) -> Case:
-    """A speed that swings about its mean, and no drag to speak of."""
-    time = np.linspace(0.0, rng.uniform(4.0, 8.0), int(rng.integers(2000, 5000)))
-    middle, rate = rng.uniform(300.0, 800.0), rng.uniform(0.3, 0.8)
-    swing = rng.uniform(0.4, 0.8) * middle
-    rpm = middle + swing * np.sin(2.0 * np.pi * rate * time)
-    turned = 6.0 * (middle * time - swing * np.cos(2.0 * np.pi * rate * time) / (2.0 * np.pi * rate))
-    return _driven(rng, turned, time, rpm, np.cos(2.0 * np.pi * rate * time))
-
-
-def _driven(rng: np.random.Generator, shaft: Array, time: Array, rpm: Array, drawn: Array) -> Case:
-    """What is read where a field goes with the current that is drawn (n,), in whatever unit."""
+def _driven(rng: np.random.Generator, shaft: Array, time: Array, rpm: Array) -> Case:
+    """What is read where a field goes with the speed."""
     angle, towards = np.radians(shaft), rng.uniform(0.0, 2.0 * np.pi)
-    share = np.radians(rng.uniform(0.06, 0.3)) * drawn / np.max(np.abs(drawn))
+    share = np.radians(rng.uniform(0.06, 0.3)) * rpm / np.max(np.abs(rpm))
     sensor = some_sensor(rng, noise_deg=(0.01, 0.05))
     channels = sensor.channels(angle) + np.multiply.outer([np.cos(towards), np.sin(towards)], share)
     return case(shaft, sensor.angle_deg(channels, rng), time_s=time, speed_rpm=rpm)

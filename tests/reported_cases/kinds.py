@@ -11,7 +11,7 @@ import numpy as np
 from tests.hidden.period_causes import MOTORS
 from tests.reported_cases.bench import Array, Case, Sensor, a_turn, case, some_sensor, words
 from tests.reported_cases.counted import coarse_reference, hand_turned
-from tests.reported_cases.driven import field_of_drag, field_of_inertia
+from tests.reported_cases.driven import field_of_drag
 
 Answer = Mapping[str, Any]
 WORD = "output_quantisation"
@@ -273,13 +273,9 @@ def _right_row(drawn: Case, answer: Answer) -> bool:
     return not answer["causes"] and [one["rows"] for one in typed] == [[drawn.truth["row"]]]
 
 
-def _motors(per: str) -> Callable[[Case, Answer], bool]:
-    """The motor's field alone, counted by what it goes with."""
-
-    def right(drawn: Case, answer: Answer) -> bool:
-        return _alone(answer, "motor_field") and bool(_values(answer, "motor_field", f"bx_mT_per_{per}"))
-
-    return right
+def _right_drag(drawn: Case, answer: Answer) -> bool:
+    """The motor's field alone, counted by the speed that it goes with."""
+    return _alone(answer, "motor_field") and bool(_values(answer, "motor_field", "bx_mT_per_krpm"))
 
 
 def axial_magnet(rng: np.random.Generator) -> Case:
@@ -312,6 +308,5 @@ KINDS: dict[str, Kind] = {
     "axial_magnet": Kind(axial_magnet, lambda drawn, answer: False, lambda message: "axial" in message),
     "coarse_reference": Kind(coarse_reference, _only("reference_quantisation", "counts_per_turn", within=0.0)),
     "hand_turned": Kind(hand_turned, _nothing),
-    "field_of_drag": Kind(field_of_drag, _motors("krpm")),
-    "field_of_inertia": Kind(field_of_inertia, _motors("krpm_per_s")),
+    "field_of_drag": Kind(field_of_drag, _right_drag),
 }

@@ -14,14 +14,10 @@ from twin.motion import KRPM, Motion
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
-    # A drive draws the current that drag asks for, and that which accelerates what it turns.
-    by_current, by_drag = motion.current_a, motion.speed_rad_s / KRPM
-    by_inertia = motion.acceleration_rad_s2 / KRPM
-    bx = np.asarray(values["bx_mT_per_A"]) * by_current + np.asarray(values["bx_mT_per_krpm"]) * by_drag
-    by = np.asarray(values["by_mT_per_A"]) * by_current + np.asarray(values["by_mT_per_krpm"]) * by_drag
-    bx = bx + np.asarray(values["bx_mT_per_krpm_per_s"]) * by_inertia
-    by = by + np.asarray(values["by_mT_per_krpm_per_s"]) * by_inertia
-    field = np.asarray(values.get("field_mT", FIELD_MT))
+    # Where no current is recorded, it goes with the drag, and that with the speed.
+    krpm, field = motion.speed_rad_s / KRPM, np.asarray(values.get("field_mT", FIELD_MT))
+    bx = np.asarray(values["bx_mT_per_krpm"]) * krpm + np.asarray(values["bx_mT_per_A"]) * motion.current_a
+    by = np.asarray(values["by_mT_per_krpm"]) * krpm + np.asarray(values["by_mT_per_A"]) * motion.current_a
     return add(signal, *along_axes(bx / field, by / field, motion))
 
 
@@ -50,10 +46,7 @@ def _components(name: str, unit: str, of: str, *, sought: bool) -> dict[str, Par
 
 
 _BY_CURRENT = _components("mT_per_A", "mT/A", "of an ampere", sought=True)
-_BY_SPEED = _components("mT_per_krpm", "mT/krpm", "of the current drawn at 1000 rpm", sought=True)
-_BY_ACCELERATION = _components(
-    "mT_per_krpm_per_s", "mT/(krpm/s)", "of the current that accelerates by 1000 rpm a second", sought=False
-)
+_BY_SPEED = _components("mT_per_krpm", "mT/krpm", "of the current drawn at 1000 rpm", sought=False)
 
 MOTOR_FIELD = Effect(
     name="motor_field",
@@ -62,17 +55,15 @@ MOTOR_FIELD = Effect(
     params={
         **_BY_CURRENT,
         **_BY_SPEED,
-        **_BY_ACCELERATION,
         "field_mT": OWN_FIELD,
     },
-    vectors=(tuple(_BY_CURRENT), tuple(_BY_SPEED)),
+    vectors=(tuple(_BY_CURRENT),),
     forward=forward,
     at_magnet=at_magnet,
     assumes=f"a field of {FIELD_MT:g} mT at the sensor",
     # Without a reference the speed is told by these very readings, and a motor that coasts draws no current.
-    needs=frozenset({"two currents|a reference", "two currents|two speeds|varying speed"}),
-    record_wide=True,
+    needs=frozenset({"two currents|a reference", "two currents|two speeds"}),
     source="Biot and Savart: the field of a winding and its leads in proportion to the current, added to the magnet's; "
-    "a motor's current in proportion to the torque of drag and inertia",
-    signature="order 1 times the current, or times speed or acceleration",
+    "a motor's current in proportion to the torque of drag",
+    signature="order 1 times the current, or times the speed",
 )

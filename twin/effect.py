@@ -256,13 +256,13 @@ class Effect:
 
     @property
     def stand_aside(self) -> tuple[tuple[str, ...], ...]:
-        """Levels that stand aside, those of a vector together."""
+        """Levels that an answer gives only where they are not at their null, those of a vector together."""
         aside = [name for name in self.roles("level") if self.params[name].aside]
         return *self.vectors, *((name,) for name in aside if not any(name in one for one in self.vectors))
 
     @property
     def sought_alone(self) -> tuple[Effect, ...]:
-        """The effect with one strength alone, or those of a vector, for each that a search sets by itself.
+        """The effect with one strength alone, or a vector's, for each that a search sets, within the bounds of that.
 
         What it is counted in, such as a range that the sweep does not show, is as uncertain as it was before.
         """

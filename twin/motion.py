@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -173,7 +174,11 @@ class Motion:
 
     def at(self, shaft_rad: Array) -> Motion:
         """The same record, of a shaft that stood at other angles (n,) than the reference reads."""
-        found = replace(self, shaft_rad=shaft_rad)
+        return self._with(shaft_rad=shaft_rad)
+
+    def _with(self, **changed: Any) -> Motion:
+        """The same record with other fields; what its reference read, and what that tells, stays as it is."""
+        found = replace(self, **changed)
         found.__dict__.update(recorded_rad=self.recorded_rad, whole_counts=self.whole_counts)
         return found
 
@@ -221,13 +226,7 @@ class Motion:
         if recordings is None or len(recordings) == 1:
             return (self,)
         each = [(rows[one], setup) for one, setup in zip(recordings.slices, recordings.setups, strict=True)]
-        return tuple(self.part(own)._of(Recordings(np.zeros_like(own), (setup,))) for own, setup in each)
-
-    def _of(self, recordings: Recordings) -> Motion:
-        """The same of these recordings."""
-        found = replace(self, recordings=recordings)
-        found.__dict__.update(recorded_rad=self.recorded_rad, whole_counts=self.whole_counts)
-        return found
+        return tuple(self.part(own)._with(recordings=Recordings(np.zeros_like(own), (setup,))) for own, setup in each)
 
     @cached_property
     def recorded_rad(self) -> Array:

@@ -100,7 +100,11 @@ def whole_counts(shaft_rad: Array) -> WholeCounts | None:
 
 def _rounded(counts: Array) -> bool:
     """Whether most short stretches of counts (n,) are straight, and beside the counts."""
-    tried = list(_short(counts))
+    way = _way(counts)
+    if not np.any(np.diff(counts, 2)[way[2:] == way[:-2]]):
+        # One and the same step all along: each stop is at a count.
+        return False
+    tried = list(_short(counts, way))
     straight = [_off_line(some) for some in tried if _straight(some)]
     return 2 * len(straight) > len(tried) and float(np.sqrt(np.mean(np.square(straight)))) > _OFF
 
@@ -110,10 +114,9 @@ def _stops(counts: Array) -> npt.NDArray[np.bool_]:
     return np.concatenate([[True], np.diff(counts) != 0.0])
 
 
-def _short(counts: Array) -> Iterator[Array]:
+def _short(counts: Array, way: IntArray) -> Iterator[Array]:
     """Short stretches of counts (n,) of one direction, spread evenly over all."""
     if counts.size >= _ROWS:
-        way = _way(counts)
         for first in np.unique(np.linspace(0, counts.size - _ROWS, _TRIED_WINDOWS).astype(np.int64)):
             if way[first] == way[first + _ROWS - 1]:
                 yield counts[first : first + _ROWS]
@@ -141,15 +144,17 @@ def counts_of_a_turn(shaft_rad: Array) -> Iterator[int]:
     if shaft_rad.size < _ROWS:
         return
     sizes = np.unique(np.round(np.abs(wrap(np.diff(shaft_rad))) / _SAME_RAD)) * _SAME_RAD
+    told: set[int] = set()
     for same in (*_last_decimals_rad(shaft_rad), 0.5 * TAU / _MOST_COUNTS):
         found = _counts_by(shaft_rad, sizes, same)
-        if found is not None:
+        if found is not None and found not in told:
+            told.add(found)
             yield found
 
 
 def _last_decimals_rad(shaft_rad: Array) -> list[float]:
-    """By how much [rad] two steps of a file of few decimals, in degrees or in radians, differ that are the same."""
-    found = []
+    """By how much [rad] two steps that are the same differ in a file of few decimals, in degrees or in radians."""
+    found: list[float] = []
     for unit, values in ((TAU / 360.0, np.degrees(shaft_rad)), (1.0, shaft_rad), (1.0, np.mod(shaft_rad, TAU))):
         for decimals in (1, 2, 3, 4):
             places = values * 10.0**decimals
@@ -162,15 +167,16 @@ def _last_decimals_rad(shaft_rad: Array) -> list[float]:
 
 def _counts_by(shaft_rad: Array, sizes: Array, same: float) -> int | None:
     """The counts of a turn by the least difference of the steps' sizes (m,) [rad], which up to ``same`` is none."""
-    least = np.diff(np.concatenate([[0.0], sizes]))
-    least = least[least > same * (1.0 + _OFF)]
-    if not least.size:
+    differences = np.diff(np.concatenate([[0.0], sizes]))
+    differences = differences[differences > same * (1.0 + _OFF)]
+    if not differences.size:
         return None
+    least = float(np.min(differences))
     few = shaft_rad[np.unique(np.linspace(0, shaft_rad.size - 1, _FEW).astype(np.int64))]
     for share in (1, 2, 3, 4):
-        about = share * TAU / float(np.min(least))
+        about = share * TAU / least
         # Decimals of the file leave the step uncertain, and with it how many make a turn.
-        off = about * (0.5 * _OFF + same / float(np.min(least)))
+        off = about * (0.5 * _OFF + same / least)
         near = np.arange(max(2, int(about - off)), min(_MOST_COUNTS, int(about + off) + 1) + 1)
         if 0 < near.size <= _MOST_TRIED:
             best = int(near[np.argmax(_resultant(few, near[:, None]))])
@@ -185,7 +191,7 @@ def _resultant(angle_rad: Array, counts: int | IntArray) -> Array:
 
 
 def _off(counts: Array) -> Array:
-    """Each count (n,) less the line that it lies on, over stretches that are each as long as one line will do.
+    """Each count (n,) less the way that it lies on, over stretches that are each as long as one line will do.
 
     Each begins in the middle of the one before, and a reading counts in both by how far it lies from their ends: there
     a way that is bent leaves its line the most.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tests.reported_cases.bench import Array, Case, case, some_sensor
+from tests.reported_cases.bench import Case, case, some_sensor
 
 
 def field_of_drag(rng: np.random.Generator) -> Case:
@@ -14,13 +14,9 @@ def field_of_drag(rng: np.random.Generator) -> Case:
     points = int(rng.choice([180, 256, 360]))
     rpm = np.repeat([way * speed for way in ways for speed in speeds], 2 * points)
     step = np.where(rpm > 0.0, 1.0, -1.0) * (360.0 / points)
-    return _driven(rng, np.cumsum(step), np.cumsum(np.abs(step) / (6.0 * np.abs(rpm))), rpm)
-
-
-def _driven(rng: np.random.Generator, shaft: Array, time: Array, rpm: Array) -> Case:
-    """What is read where a field goes with the speed."""
-    angle, towards = np.radians(shaft), rng.uniform(0.0, 2.0 * np.pi)
+    shaft, time = np.cumsum(step), np.cumsum(np.abs(step) / (6.0 * np.abs(rpm)))
+    towards = rng.uniform(0.0, 2.0 * np.pi)
     share = np.radians(rng.uniform(0.06, 0.3)) * rpm / np.max(np.abs(rpm))
     sensor = some_sensor(rng, noise_deg=(0.01, 0.05))
-    channels = sensor.channels(angle) + np.multiply.outer([np.cos(towards), np.sin(towards)], share)
+    channels = sensor.channels(np.radians(shaft)) + np.multiply.outer([np.cos(towards), np.sin(towards)], share)
     return case(shaft, sensor.angle_deg(channels, rng), time_s=time, speed_rpm=rpm)

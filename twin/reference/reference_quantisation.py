@@ -10,8 +10,8 @@ from twin.angles import TAU, Array, radians
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
-_RMS = float(np.sqrt(12.0))
-"""A step by the RMS of its rounding."""
+_STEPS_OF_RMS = float(np.sqrt(12.0))
+"""A step is so many times the RMS of what rounding to it leaves."""
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
@@ -37,7 +37,7 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
 
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
     """As many counts as make rounding of this RMS."""
-    counts = np.round(360.0 / (_RMS * strength_deg))
+    counts = np.round(360.0 / (_STEPS_OF_RMS * strength_deg))
     return {"counts_per_turn": counts, "step_deg": 360.0 / counts}
 
 
@@ -51,8 +51,8 @@ REFERENCE_QUANTISATION = Effect(
             null=0.0,
             lower=0.0,
             upper=10.0,
-            doc="the step, as the readings show its rounding; 360 by the counts where they show all of it",
-            typical=0.1 * _RMS,
+            doc="the step by what the readings show of its rounding: 360 over the counts, less where the way is uneven",
+            typical=0.1 * _STEPS_OF_RMS,
         ),
         "counts_per_turn": Param(
             unit="1/turn",

@@ -26,14 +26,19 @@ def run(sweep: str | None, *, twin: str | None, port: int, browser: bool) -> Non
     recording = None if sweep is None else sweeps.named(sweep)
     with tempfile.TemporaryDirectory(prefix="halltwin-lab-") as folder:
         session = Session(sensor, Path(folder), sweep=recording, held=twin is not None)
-        with contextlib.closing(session), _listening(session, port) as server:
+        with (
+            contextlib.closing(session),
+            _listening(session, port) as server,
+            # From before the page is told of: whoever waits for its address may end it at once.
+            contextlib.suppress(KeyboardInterrupt),
+            _ended_by(signal.SIGTERM),
+        ):
             print(f"the page is at {server.guard.url}\nonly this machine can open it; Ctrl-C ends it", flush=True)
             if browser and _has_screen():
                 # Not the secret itself: what a command is given, all users of the machine can list.
                 address = f"{server.guard.origin}{server.door.path}"
                 threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
-            with contextlib.suppress(KeyboardInterrupt), _ended_by(signal.SIGTERM):
-                server.serve_forever(poll_interval=0.2)
+            server.serve_forever(poll_interval=0.2)
 
 
 @contextlib.contextmanager

@@ -37,6 +37,7 @@ BASE: dict[str, tuple[str, ...]] = {
     "doctor": ("short.csv",),
     "monitor": tuple(f"s{k}.csv" for k in range(8)),
     "bench": ("--points", "8", "-o", "out/bench.csv"),
+    **dict.fromkeys(("bench --spin-time", "bench --rate"), ("--spin", "coast", "-o", "out/bench.csv")),
     "generate": ("-o", "out/study"),
     "design": ("-o", "out/study", "--no-plot"),
     "recover": ("-o", "out/study", "--no-plot"),
@@ -51,6 +52,7 @@ WORDS = frozenset(
         *("--for", "--name", "--least"),
         *("--order", "--explain"),
         "--columns",
+        "--spin",
     }
 )
 """Options that take no number."""
@@ -65,6 +67,7 @@ RIGHT: dict[str, str] = {
     "--mounting": "-1 0 36.9",
     "--settle": "0 36.9",
     "--manifest": "0 36.9",
+    "--spin-time": "36.9",
     "--timeout": "36.9",
     "--run-length": "36.9",
     "simulate --max-size": "36.9",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scenarios.bench.hidden import DEFAULT_TWIN, HIDDEN, hidden_encoder
+from scenarios.bench.spin_options import check_spin, plan_of, refuse_without_spin
 from scenarios.commands.once import check_once
 from twin.errors import UserError
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from scenarios.bench.faults import Fault, Opener
     from scenarios.bench.measure import Measured, Measurement
     from scenarios.bench.readings import Reading
+    from scenarios.bench.spin import Spun
     from scenarios.commands.outputs import OutputFiles
     from twin.chain import Chain
 
@@ -37,6 +39,9 @@ class Options:
     speeds_rpm: Sequence[float] = (0.0,)
     temperatures: str = ""
     settle_s: float = 0.3
+    spin: str | None = None
+    spin_time_s: float | None = None
+    rate_Hz: float | None = None
     channels: bool = True
     chamber: bool = True
     closed_loop: bool = False
@@ -71,6 +76,8 @@ def run(options: Options) -> None:
 
     if options.fail_on and (options.replay is not None or options.serve is not None or not options.closed_loop):
         raise UserError("--fail-on asks about the closed loop; give --closed-loop")
+    if options.spin is None:
+        refuse_without_spin(options.spin_time_s, options.rate_Hz)
     if options.replay is not None:
         _replay(options)
         return
@@ -79,6 +86,9 @@ def run(options: Options) -> None:
     open_bus = Interface(options.interface, options.channel, parse_options(options.bus_options)).opener()
     if options.serve is not None:
         _serve(options, open_bus, faults)
+        return
+    if options.spin is not None:
+        _spin(options, open_bus, faults)
         return
     _measure(options, open_bus, faults)
 
@@ -188,6 +198,33 @@ def _close_loop(options: Options, job: Measurement, own_bus: Opener, words: Sequ
     raise_found(words, in_loop(summary(loop)))
 
 
+def _spin(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> None:
+    """Spin the shaft of a bench without a reference, and write what the encoder alone says."""
+    from scenarios.bench.buses import with_bench_faults
+    from scenarios.bench.sequence import Patience
+    from scenarios.bench.spin import SpinJob, measure_spin
+    from scenarios.bench.written import files_of_spin
+
+    check_spin(options, faults)
+    plan = plan_of(options)
+    inputs = [name for name in (options.twin, *options.effect_files) if name is not None]
+    files = files_of_spin(options.output, record=options.record, inputs=inputs, force=options.force)
+    encoder = _encoder(options, faults)
+    job = SpinJob(
+        plan=plan,
+        output=options.output,
+        files=files,
+        channels=options.channels,
+        patience=Patience(timeout_s=options.timeout_s, attempts=options.attempts),
+        record=options.record,
+    )
+    with _bench(options, encoder, open_bus, faults, start=0):
+        spun = measure_spin(job, with_bench_faults(open_bus, faults, options.seed))
+    _report_spin(options.output, spun)
+    if options.record is not None:
+        print(f"wrote {options.record}")
+
+
 def _picture(loop: Loop) -> Any:
     from scenarios.bench.closed_loop_plot import loop_figure
 
@@ -228,7 +265,13 @@ def _bench(
     from scenarios.bench.virtual import Setup, running
 
     # A continued run draws other noise than the one it continues.
-    setup = Setup(chain=encoder, faults=faults, seed=(options.seed, start), real_time=options.real_time)
+    setup = Setup(
+        chain=encoder,
+        faults=faults,
+        seed=(options.seed, start),
+        real_time=options.real_time,
+        reference=options.spin is None,
+    )
     with running(setup, open_bus):
         yield
 
@@ -286,6 +329,7 @@ def _wait(seconds: float, sleep: Callable[[float], None]) -> None:
 
 def _replay(options: Options) -> None:
     from scenarios.bench.replay import replay
+    from scenarios.bench.spin import Spun
 
     assert options.replay is not None
     found = replay(
@@ -296,7 +340,16 @@ def _replay(options: Options) -> None:
         manifest_deg=options.manifest_deg,
         force=options.force,
     )
-    _report(options.output, found)
+    if isinstance(found, Spun):
+        _report_spin(options.output, found)
+    else:
+        _report(options.output, found)
+
+
+def _report_spin(output: Path, spun: Spun) -> None:
+    lost = f", {spun.asked - spun.readings} rejected" if spun.asked is not None else ""
+    print(f"wrote {output}: {spun.readings} readings without a reference{lost}")
+    _report_bus(spun.counts)
 
 
 def _report(output: Path, measured: Measured) -> None:
@@ -305,5 +358,9 @@ def _report(output: Path, measured: Measured) -> None:
     print(f"wrote {output}: {len(kept)} readings{already}, {len(rejected)} rejected")
     for index, why in rejected.items():
         print(f"- reading {index + 1} rejected: {why}")
+    _report_bus(counts)
+
+
+def _report_bus(counts: Mapping[str, int]) -> None:
     faults = [f"{count} {kind}" for kind, count in sorted(counts.items()) if kind != "frames"]
     print(f"bus: {counts['frames']} frames; {', '.join(faults) or 'no faults'}")

@@ -13,7 +13,7 @@ import can
 from scenarios.bench.bus_log import BusLog
 from scenarios.bench.faults import FaultyBus, Opener
 from scenarios.bench.messages import SEQUENCES, Frame, messages
-from scenarios.bench.readings import Assembler, Event
+from scenarios.bench.readings import Collector, Event
 from twin.errors import UserError
 
 RECOVERY_S = 0.05
@@ -25,7 +25,7 @@ class Link:
     """One bus, one assembler. Every frame that was sent or received passes the assembler and the log, in order."""
 
     def __init__(
-        self, open_bus: Opener, assembler: Assembler, record: Path | None = None, *, replace: bool = False
+        self, open_bus: Opener, assembler: Collector[Any], record: Path | None = None, *, replace: bool = False
     ) -> None:
         self._open = open_bus
         self._bus = open_bus()

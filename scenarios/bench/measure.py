@@ -120,7 +120,7 @@ def _take(
     if prepare is not None:
         prepare(sequence)
     sequence.prepare(job.plan, stops[0])
-    with progress(job.plan.readings, link.assembler, job.output.name) as display:
+    with progress(job.plan.readings, link.assembler.counts, job.output.name) as display:
 
         def keep(reading: Reading) -> None:
             journal.keep(clock.going_on(reading))

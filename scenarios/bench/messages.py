@@ -24,6 +24,8 @@ CHANNEL_LIMIT = 2.0 - 2.0**-16
 SPEED_STEP_RPM = 0.5
 FASTEST_RPM = 1023.5
 """What MotionCommand can carry."""
+REFERENCE_CLOCK_S, HALL_CLOCK_S = 2.0**32 * 1e-5, 2.0**36 * 1e-7
+"""After these times the clocks that ReferenceTime and HallTime tell begin anew."""
 
 _CHECKSUM_BYTE = 7
 _COUNTER_BYTE, _COUNTER_SHIFT = 6, 4

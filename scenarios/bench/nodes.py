@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from scenarios.bench.faults import FaultyBus
-from scenarios.bench.messages import Frame
+from scenarios.bench.messages import REFERENCE_CLOCK_S, Frame
 from scenarios.bench.node import Node
 from scenarios.bench.stepper import Stepper
 from scenarios.bench.world import World
@@ -17,7 +17,7 @@ from twin.chain import Chain
 from twin.motion import RPM
 from twin.reference.encoder import Encoder
 
-MOVING, AT_REST, PASSED = 1, 2, 3
+MOVING, AT_REST, PASSED, TURNING, LET_GO = 1, 2, 3, 4, 5
 """MotionStatus.State."""
 CHAMBER_TIME_CONSTANT_S = 300.0
 CHAMBER_BAND_C = 0.05
@@ -32,9 +32,11 @@ class StepperNode(Node):
         self._world, self._drive = world, drive
         self._commanded_rad = 0.0
         self._done: tuple[float, float, float] | None = None
+        self._leg: float | None = None
+        self._spun = False
 
     def handlers(self) -> Mapping[str, Callable[[Frame], None]]:
-        return {"MotionCommand": self._move, "MotionSettings": self._set}
+        return {"MotionCommand": self._move, "MotionSettings": self._set, "SpinCommand": self._spin}
 
     def _set(self, frame: Frame) -> None:
         self._drive = replace(
@@ -42,10 +44,29 @@ class StepperNode(Node):
             settle_s=frame.values["Settle"] / 1000.0,
             acceleration_rpm_per_s=frame.values["Acceleration"],
         )
+        # Whoever sets the drive up counts legs of their own.
+        self._leg = None
         self._report(frame, 0)
+
+    def _spin(self, frame: Frame) -> None:
+        values = frame.values
+
+        def busy() -> None:
+            self._report(frame, MOVING)
+
+        if values["Leg"] != self._leg:
+            busy()
+            speed = values["Speed"] * RPM
+            duration = abs(speed - self._world.speed_rad_s) / (self._drive.acceleration_rpm_per_s * RPM)
+            self._world.spin_up(speed, duration, let_go=bool(values["Release"]), busy=busy)
+            self._leg, self._spun = values["Leg"], True
+        self._report(frame, LET_GO if values["Release"] else TURNING)
 
     def _move(self, frame: Frame) -> None:
         values = frame.values
+        if self._spun:
+            # Of a shaft that has spun, the drive begins to count its steps anew where it stands.
+            self._commanded_rad, self._done, self._spun = self._drive.commanded(self._world.shaft_rad), None, False
         order = (values["Target"], values["Speed"], values["Passing"])
         if order != self._done:
             self._report(frame, MOVING)
@@ -97,8 +118,7 @@ class ReferenceNode(Node):
         seen = self._encoder.has_index and bool(np.floor(high / TAU) > np.floor(low / TAU))
         counted = replace(self._encoder, has_index=seen).read(reading)[pose]
         self.say("ReferenceAngle", Sequence=sequence, Angle=np.degrees(counted) % 360.0, IndexSeen=seen, Fault=0)
-        # The clock of a node starts anew after 12 hours.
-        self.say("ReferenceTime", Sequence=sequence, Time=self._world.at(pose)["time_s"] % (2**32 * 1e-5))
+        self.say("ReferenceTime", Sequence=sequence, Time=self._world.at(pose)["time_s"] % REFERENCE_CLOCK_S)
 
 
 class ChamberNode(Node):

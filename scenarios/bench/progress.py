@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
 from scenarios.bench.pretreatment import errors_deg
-from scenarios.bench.readings import Assembler, Reading
+from scenarios.bench.readings import Reading
 from twin.angles import Array
 
 WIDTH, HEIGHT = 72, 8
@@ -32,8 +32,8 @@ def curve(angle_deg: Array, error_deg: Array, *, width: int = WIDTH, height: int
 class Progress:
     """Draws now and then; without a terminal it does nothing."""
 
-    def __init__(self, live: Any, total: int, assembler: Assembler, title: str) -> None:
-        self._live, self._total, self._assembler, self._title = live, total, assembler, title
+    def __init__(self, live: Any, total: int, counts: Mapping[str, int], title: str) -> None:
+        self._live, self._total, self._counts, self._title = live, total, counts, title
 
     def show(self, readings: Sequence[Reading]) -> None:
         """Show the state after another reading."""
@@ -43,23 +43,23 @@ class Progress:
 
         last = readings[-1]
         drawn, edge = curve(np.array([one.reference_deg for one in readings]), errors_deg(readings))
-        faults = {kind: count for kind, count in self._assembler.counts.items() if kind != "frames"}
+        faults = {kind: count for kind, count in self._counts.items() if kind != "frames"}
         said = ", ".join(f"{count} {kind}" for kind, count in sorted(faults.items())) or "no faults"
         head = f"{self._title}: {len(readings)} of {self._total}   {last.reference_deg:.1f} deg, turn {last.turn}"
-        foot = f"error +-{edge:.3f} deg over 0 to 360 deg   bus: {self._assembler.counts['frames']} frames, {said}"
+        foot = f"error +-{edge:.3f} deg over 0 to 360 deg   bus: {self._counts['frames']} frames, {said}"
         self._live.update(Text(f"{head}\n{drawn}\n{foot}"))
 
 
 @contextmanager
-def progress(total: int, assembler: Assembler, title: str) -> Iterator[Progress]:
+def progress(total: int, counts: Mapping[str, int], title: str) -> Iterator[Progress]:
     """A live display on a terminal."""
     from rich.console import Console
 
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield Progress(None, total, assembler, title)
+        yield Progress(None, total, counts, title)
         return
     from rich.live import Live
 
     with Live(console=console, refresh_per_second=5) as live:
-        yield Progress(live, total, assembler, title)
+        yield Progress(live, total, counts, title)

@@ -5,20 +5,21 @@ Nothing here knows whether the frames come from a bus or from a recorded log, so
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar, Generic, TypeVar
 
 import can
 
-from scenarios.bench.messages import COUNTS, Frame, messages
+from scenarios.bench.messages import COUNTS, REFERENCE_CLOCK_S, Frame, messages
 
 SENSOR_PARTS = ("ReferenceAngle", "ReferenceTime", "HallAngle")
 OPTIONAL_PARTS = ("HallChannels", "ChamberStatus")
 REFUSED = ("checksum", "counter stands still", "fault flag")
 """Kinds of events that say of a frame that it cannot be trusted."""
-_CLOCK_S = 2.0**32 * 1e-5
+R = TypeVar("R")
 
 
 @dataclass(frozen=True)
@@ -49,23 +50,35 @@ class Event:
 
 
 @dataclass(eq=False)
-class Assembler:
+class Collector(ABC, Generic[R]):
     """Takes every frame, sent and received, in order; ``readings`` grows by those that are complete.
 
-    ``channels``: a reading is complete only with the two channels, as long as no correction is active; ``chamber``:
-    only with the temperature.
+    ``channels``: a reading is complete only with the two channels, as long as no correction is active.
     """
 
+    request: ClassVar[str]
+    """The message that asks for a reading and says which."""
+    parts: ClassVar[tuple[str, ...]]
+    """The messages that may belong to one."""
+    clock_s: ClassVar[float]
+    """After this time the clock of the readings begins anew."""
     channels: bool = True
-    chamber: bool = True
     on_event: Callable[[Event], None] = lambda event: None
-    readings: list[Reading] = field(default_factory=list)
+    readings: list[R] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
     label: dict[str, float] = field(default_factory=dict)
     _parts: dict[str, Frame] = field(default_factory=dict)
     _last: dict[str, tuple[int, bytes]] = field(default_factory=dict)
     _clock_base_s: float = 0.0
     _clock_s: float = 0.0
+
+    @abstractmethod
+    def wanted(self) -> tuple[str, ...]:
+        """The messages that a reading cannot do without, besides those of the channels."""
+
+    @abstractmethod
+    def reading(self, parts: dict[str, Mapping[str, float]]) -> R:
+        """The reading of a label and the values of its messages."""
 
     def feed(self, message: can.Message) -> Frame | None:
         """The frame where it can be trusted, None otherwise."""
@@ -79,9 +92,9 @@ class Assembler:
             return None
         if frame.counter is not None and not self._moves_on(frame, bytes(message.data)):
             return None
-        if frame.name == "Sync":
+        if frame.name == self.request:
             self.label, self._parts = dict(frame.values), {}
-        elif frame.name in (*SENSOR_PARTS, *OPTIONAL_PARTS):
+        elif frame.name in self.parts:
             self._take(frame)
         return frame
 
@@ -89,10 +102,9 @@ class Assembler:
     def missing(self) -> tuple[str, ...]:
         """The messages that the reading asked for last still lacks."""
         angle = self._parts.get("HallAngle")
-        wanted = [*SENSOR_PARTS, *(["ChamberStatus"] if self.chamber else [])]
-        if self.channels and not (angle is not None and angle.values["Corrected"]):
-            wanted.append("HallChannels")
-        return tuple(name for name in wanted if name not in self._parts)
+        corrected = angle is not None and angle.values["Corrected"]
+        channels = ("HallChannels",) if self.channels and not corrected else ()
+        return tuple(name for name in (*self.wanted(), *channels) if name not in self._parts)
 
     def _moves_on(self, frame: Frame, data: bytes) -> bool:
         """Whether the rolling counter has gone on; a gap is counted, a repeat is not used."""
@@ -123,10 +135,38 @@ class Assembler:
             return
         self._parts[frame.name] = frame
         if not self.missing:
-            self.readings.append(self._reading())
+            self.readings.append(self.reading({name: part.values for name, part in self._parts.items()}))
 
-    def _reading(self) -> Reading:
-        label, parts = self.label, {name: frame.values for name, frame in self._parts.items()}
+    def unwrapped(self, clock_s: float) -> float:
+        """The node's clock without its turn-overs."""
+        if clock_s < self._clock_s - 0.5 * self.clock_s:
+            self._clock_base_s += self.clock_s
+        self._clock_s = clock_s
+        return self._clock_base_s + clock_s
+
+    @property
+    def _index(self) -> int | None:
+        return int(self.label["Index"]) if self.label else None
+
+    def _refuse(self, kind: str, frame: Frame) -> None:
+        self.counts[kind] += 1
+        self.on_event(Event(kind, frame.name, self._index))
+
+
+@dataclass(eq=False)
+class Assembler(Collector[Reading]):
+    """Readings of both encoders. ``chamber``: one is complete only with the temperature."""
+
+    request = "Sync"
+    parts = (*SENSOR_PARTS, *OPTIONAL_PARTS)
+    clock_s = REFERENCE_CLOCK_S
+    chamber: bool = True
+
+    def wanted(self) -> tuple[str, ...]:
+        return (*SENSOR_PARTS, *(("ChamberStatus",) if self.chamber else ()))
+
+    def reading(self, parts: dict[str, Mapping[str, float]]) -> Reading:
+        label = self.label
         way = -1 if label["Backwards"] else 1
         seen: dict[str, Any] = {**parts["ReferenceAngle"]}
         channels = parts.get("HallChannels") if self.channels else None
@@ -134,7 +174,7 @@ class Assembler:
         corrected = bool(parts["HallAngle"]["Corrected"])
         return Reading(
             index=int(label["Index"]),
-            time_s=self._unwrapped(parts["ReferenceTime"]["Time"]),
+            time_s=self.unwrapped(parts["ReferenceTime"]["Time"]),
             reference_deg=seen["Angle"],
             measured_deg=parts["HallAngle"]["Angle"],
             direction=way,
@@ -147,18 +187,3 @@ class Assembler:
             index_seen=bool(seen["IndexSeen"]),
             corrected=corrected,
         )
-
-    def _unwrapped(self, clock_s: float) -> float:
-        """The node's clock without its turn-overs."""
-        if clock_s < self._clock_s - 0.5 * _CLOCK_S:
-            self._clock_base_s += _CLOCK_S
-        self._clock_s = clock_s
-        return self._clock_base_s + clock_s
-
-    @property
-    def _index(self) -> int | None:
-        return int(self.label["Index"]) if self.label else None
-
-    def _refuse(self, kind: str, frame: Frame) -> None:
-        self.counts[kind] += 1
-        self.on_event(Event(kind, frame.name, self._index))

@@ -6,6 +6,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from diagnosis.correction.compensation import Correction
 from scenarios.bench.link import Link
@@ -13,7 +14,7 @@ from scenarios.bench.loading import ACTIVE, RECEIVING, items, numbers
 from scenarios.bench.messages import Frame, messages
 from scenarios.bench.nodes import AT_REST, MOVING, PASSED
 from scenarios.bench.plan import Plan, Stop, resolution_deg
-from scenarios.bench.readings import REFUSED, Assembler, Event, Reading
+from scenarios.bench.readings import REFUSED, Collector, Event, Reading
 from twin.errors import UserError
 
 NODE_WORDS = {
@@ -42,13 +43,13 @@ class Sequence:
     """Runs a plan over a link."""
 
     link: Link
-    assembler: Assembler
+    assembler: Collector[Any]
     patience: Patience
 
     def prepare(self, plan: Plan, first: Stop) -> None:
         """Settings of the drive, and the run-in before the first reading."""
         settings = {"Settle": round(plan.settle_s * 1000.0), "Acceleration": round(plan.acceleration_rpm_per_s)}
-        self._ask("MotionSettings", "MotionStatus", settings, lambda frame: True)
+        self.ask("MotionSettings", "MotionStatus", settings, lambda frame: True)
         for angle in plan.run_in_deg(first):
             self.drive(angle, plan.drive_rpm)
 
@@ -68,7 +69,7 @@ class Sequence:
     def drive(self, angle_deg: float, speed_rpm: float, *, passing: bool = False) -> None:
         """Go to an angle and stand still, or pass it at this speed."""
         done = PASSED if passing else AT_REST
-        self._ask(
+        self.ask(
             "MotionCommand",
             "MotionStatus",
             {"Target": resolution_deg(angle_deg), "Speed": speed_rpm, "Passing": passing},
@@ -83,12 +84,12 @@ class Sequence:
         for item, value in enumerate(listed):
             wanted = ACTIVE if item == len(listed) - 1 else RECEIVING
             given = {"Transfer": transfer, "Item": item}
-            answer = self._ask("CorrectionPart", "CorrectionStatus", {**given, "Value": value}, _matches(given))
+            answer = self.ask("CorrectionPart", "CorrectionStatus", {**given, "Value": value}, _matches(given))
             if answer.values["State"] != wanted:
                 raise UserError(f"the Hall encoder refused the correction at item {item} of {len(listed)}")
 
     def _heat(self, temperature_c: float) -> None:
-        self._ask(
+        self.ask(
             "TemperatureCommand",
             "ChamberStatus",
             {"Setpoint": temperature_c},
@@ -104,19 +105,26 @@ class Sequence:
             "Backwards": stop.direction < 0,
             "Speed": stop.speed_rpm,
         }
-        before, refused = len(self.assembler.readings), self.assembler.counts.copy()
+        before = len(self.assembler.readings)
+        self.request_reading(label, lambda: len(self.assembler.readings) > before)
+        reading: Reading = self.assembler.readings[-1]
+        return reading
+
+    def request_reading(self, label: Mapping[str, float], answered: Callable[[], bool]) -> None:
+        """Ask all nodes for a reading until it is ``answered``."""
+        name, refused = self.assembler.request, self.assembler.counts.copy()
         for attempt in range(self.patience.attempts):
             if attempt:
-                self._repeat("Sync", attempt)
-            self.link.send("Sync", {"Sequence": self.link.next_sequence(), **label})
+                self._repeat(name, attempt)
+            self.link.send(name, {"Sequence": self.link.next_sequence(), **label})
             end = time.monotonic() + self.patience.timeout_s
             while (left := end - time.monotonic()) > 0.0:
                 self.link.receive(left)
-                if len(self.assembler.readings) > before:
-                    return self.assembler.readings[-1]
-        raise self._gone({messages().sender(name) for name in self.assembler.missing}, "Sync", refused)
+                if answered():
+                    return
+        raise self._gone({messages().sender(part) for part in self.assembler.missing}, name, refused)
 
-    def _ask(
+    def ask(
         self,
         name: str,
         answer: str,

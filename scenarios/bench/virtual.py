@@ -24,7 +24,10 @@ HIGH_PRECISION = Encoder(lines=5000, interpolation=50, index_deg=0.0)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Setup:
-    """What stands on the virtual bench. ``seed`` is of everything random; a continued run adds where it starts."""
+    """What stands on the virtual bench, with a ``reference`` or without.
+
+    ``seed`` is of everything random; a continued run adds where it starts.
+    """
 
     chain: Chain
     drive: Stepper = field(default_factory=Stepper)
@@ -32,6 +35,7 @@ class Setup:
     faults: Sequence[Fault] = ()
     seed: tuple[int, ...] = (0,)
     real_time: bool = False
+    reference: bool = True
 
 
 @contextmanager
@@ -50,10 +54,11 @@ def running(setup: Setup, open_bus: Opener) -> Iterator[dict[str, Counter[str]]]
     spi = sum(fault.value for fault in setup.faults if fault.kind == "spi")
     nodes: list[Node] = [
         StepperNode(bus("stepper"), world, setup.drive),
-        ReferenceNode(bus("reference"), world, setup.chain, setup.encoder, setup.seed),
         HallNode(bus("hall"), world, setup.chain, setup.seed, spi_faults=spi),
         ChamberNode(bus("chamber"), world),
     ]
+    if setup.reference:
+        nodes.append(ReferenceNode(bus("reference"), world, setup.chain, setup.encoder, setup.seed))
     for node in nodes:
         node.start()
     try:

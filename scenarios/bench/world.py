@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from scenarios.commands.coast import slowed
 from twin.angles import Array
-from twin.motion import Motion
+from twin.motion import RPM, Motion
 
 SYNC_S = 1e-3
 """Simulated time between two latches in one place [s]."""
@@ -22,6 +23,9 @@ BUSY_S = 0.1
 """How often a node that is busy says so in real time [s]."""
 BLOCK = 512
 """Poses that share one draw of random numbers: a reading keeps its noise when those after it are added."""
+FRICTION_PER_S, DRY_AS_SPEED_RAD_S = 0.18, 100.0 * RPM
+"""Friction of the shaft that is let go, a typical assumption: what grows with the speed slows it by so much a second,
+and dry friction as that does at this speed. From 600 rpm to 60 takes 8 s."""
 _COLUMNS = ("shaft_rad", "time_s", "direction", "speed_rad_s", "temperature_c")
 
 
@@ -35,6 +39,7 @@ class World:
     _poses: int = 0
     _latched: tuple[int, int] | None = None
     _fresh: bool = True
+    _let_go: bool = False
     _lock: threading.RLock = field(default_factory=threading.RLock)
 
     def __post_init__(self) -> None:
@@ -64,9 +69,33 @@ class World:
         """Bring the shaft to an angle within a time; it arrives there with this speed."""
         self._wait(duration_s, busy)
         with self._lock:
-            moved = shaft_rad - self.shaft_rad
+            moved, self._let_go = shaft_rad - self.shaft_rad, False
             way = float(np.sign(moved)) if moved else float(self._path["direction"][self._poses - 1])
             self._append(shaft_rad, self.time_s + duration_s, way, speed_rad_s)
+
+    def spin_up(self, speed_rad_s: float, duration_s: float, *, let_go: bool, busy: Callable[[], None]) -> None:
+        """Bring the shaft to a speed within a time, evenly; then it is held there, or let go."""
+        self._wait(duration_s, busy)
+        with self._lock:
+            angle = self.shaft_rad + 0.5 * (self.speed_rad_s + speed_rad_s) * duration_s
+            way = float(np.sign(speed_rad_s)) if speed_rad_s else float(self._path["direction"][self._poses - 1])
+            self._append(angle, self.time_s + duration_s, way, speed_rad_s)
+            self._let_go = let_go
+
+    def capture(self, period_s: float, count: int, *, busy: Callable[[], None]) -> slice:
+        """The poses of so many readings, one a period, from now on: the shaft turns on evenly, or coasts."""
+        self._wait(period_s * count, busy)
+        with self._lock:
+            first, began, speed = self._poses, self.time_s, self.speed_rad_s
+            time: Array = period_s * np.arange(1, count + 1, dtype=np.float64)
+            angles, speeds = speed * time, np.full(count, speed)
+            if self._let_go:
+                slowing = {"dry_as_rad_s": DRY_AS_SPEED_RAD_S, "rate_per_s": FRICTION_PER_S}
+                angles, speeds = (np.sign(speed) * one for one in slowed(abs(speed), time, **slowing))
+            way, from_rad = float(self._path["direction"][self._poses - 1]), self.shaft_rad
+            for angle, at, now in zip(angles, time, speeds, strict=True):
+                self._append(from_rad + float(angle), began + float(at), way, float(now))
+            return slice(first, self._poses)
 
     def heat_to(self, temperature_c: float, duration_s: float, *, busy: Callable[[], None]) -> None:
         """Bring the air to a temperature within a time, the shaft at rest."""

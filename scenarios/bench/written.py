@@ -42,6 +42,13 @@ def files_of_measurement(
     return OutputFiles.checked(given, inputs=inputs, force=force, unfinished=_unfinished(output))
 
 
+def files_of_spin(
+    output: Path, *, record: Path | None = None, inputs: Sequence[str | Path] = (), force: bool = False
+) -> OutputFiles:
+    """The log of a spin, and the bus log. Raises UserError as above."""
+    return OutputFiles.checked([(output, MEASURED), (record, _BUS_LOG)], inputs=inputs, force=force)
+
+
 def files_of_loop(
     output: Path,
     *,

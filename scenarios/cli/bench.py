@@ -52,6 +52,20 @@ def bench(
     both_directions: BothDirections = False,
     speed_rpm: SpeedRpm = None,
     temperatures: Temperatures = "",
+    spin: Annotated[
+        str | None,
+        typer.Option(
+            metavar="HOW",
+            help="No reference on the bus: log time_s and the Hall encoder alone, of a shaft that coasts from "
+            "--speed-rpm (coast) or turns evenly at it (steady).",
+        ),
+    ] = None,
+    spin_time: Annotated[
+        float | None, typer.Option(metavar="s", help="Time in s at each speed of a spin. Without: 8.")
+    ] = None,
+    rate: Annotated[
+        float | None, typer.Option(metavar="Hz", help="Readings a second of a spin. Without: 1000.")
+    ] = None,
     settle: Annotated[float, typer.Option(metavar="s", help="Time in s from the last step to a reading.")] = 0.3,
     channels: Annotated[bool, typer.Option(help="The encoder sends vx and vy as well.")] = True,
     chamber: Annotated[bool, typer.Option(help="A climate chamber on the bus tells the temperature.")] = True,
@@ -103,6 +117,9 @@ def bench(
             speeds_rpm=speed_rpm or (0.0,),
             temperatures=temperatures,
             settle_s=settle,
+            spin=spin,
+            spin_time_s=spin_time,
+            rate_Hz=rate,
             channels=channels,
             chamber=chamber,
             closed_loop=closed_loop,

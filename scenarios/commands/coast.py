@@ -84,8 +84,20 @@ class Coast:
         # c / v, from the shares at the start; v then from the time.
         level = start * self.dry_share / (1.0 - self.dry_share)
         rate = log1p((start - stop) / (stop + level)) / self.time_s
-        fallen = -np.expm1(-rate * time)
-        return (start * fallen - level * _less_its_slope(rate * time)) / rate, start - (start + level) * fallen
+        return slowed(start, time, dry_as_rad_s=level, rate_per_s=rate)
+
+
+def slowed(start_rad_s: float, time_s: Array, *, dry_as_rad_s: float, rate_per_s: float) -> tuple[Array, Array]:
+    """Angle [rad] and speed [rad/s] (n,) of a shaft let go at a speed, until it stands.
+
+    Friction that grows with the speed slows it by ``rate_per_s`` of it, dry friction as that does at ``dry_as_rad_s``:
+    dw/dt = -rate (w + dry).
+    """
+    stands = np.inf if dry_as_rad_s == 0.0 else log1p(start_rad_s / dry_as_rad_s) / rate_per_s
+    gone = rate_per_s * np.minimum(time_s, stands)
+    fallen = -np.expm1(-gone)
+    angle = (start_rad_s * fallen - dry_as_rad_s * _less_its_slope(gone)) / rate_per_s
+    return angle, start_rad_s - (start_rad_s + dry_as_rad_s) * fallen
 
 
 def _less_its_slope(x: Array) -> Array:

@@ -11,6 +11,7 @@ _MOTION = "tests/twin/test_estimated_motion.py"
 _EXPLAIN = "tests/diagnosis/spin/test_explain.py"
 _LEVELS = "tests/diagnosis/discovery/stages/test_recording_levels.py"
 _SIDES = "tests/diagnosis/discovery/search/test_one_sided.py"
+_BENCH = "tests/scenarios/bench/test_spin.py"
 _FRAMES = "tests/diagnosis/discovery/stages/test_repeated_frames.py"
 
 SPINS: tuple[Mutation, ...] = tuple(
@@ -268,6 +269,27 @@ SPINS: tuple[Mutation, ...] = tuple(
             "broken = (np.diff(rows) != 1) | (np.diff(self.stretch[rows]) != 0)",
             "broken = np.diff(self.stretch[rows]) != 0",
             f"{_MOTION}::test_a_stretch_ends_where_rows_are_left_out",
+        ),
+        (
+            "spins.the_benchs_shaft_is_held",
+            "scenarios/bench/world.py",
+            "            if self._let_go:\n",
+            "            if False:\n",
+            f"{_BENCH}::test_a_coast_is_what_the_encoder_reads_of_a_shaft_that_friction_slows",
+        ),
+        (
+            "spins.the_memory_of_a_run_before",
+            "scenarios/bench/hall_node.py",
+            '        if not values["Count"]:\n            self._memory = None\n        elif',
+            "        if",
+            f"{_BENCH}::test_a_bench_that_stays_spins_anew_for_each_run",
+        ),
+        (
+            "spins.the_drive_counts_legs_on",
+            "scenarios/bench/nodes.py",
+            "        self._leg = None\n",
+            "",
+            f"{_BENCH}::test_a_bench_that_stays_spins_anew_for_each_run",
         ),
     )
 )

@@ -82,7 +82,8 @@ def test_a_motion_takes_its_ramps() -> None:
 
 
 def test_the_word_goes_over_spi_under_its_count() -> None:
-    frames = [spi_frame(1.0, 14, count) for count in range(18)]
+    frames = [spi_frame(np.array([1.0]), 14, count) for count in range(18)]
+    np.testing.assert_array_equal(spi_frame(np.ones(3), 14, 15), np.concatenate(frames[15:18]))
     for count, frame in enumerate(frames):
         words, sound, _ = spi_words(frame, 14)
         assert sound[0]

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scenarios.bench.hidden import DEFAULT_TWIN, HIDDEN, hidden_encoder
-from scenarios.bench.spin_options import check_spin, plan_of, refuse_without_spin
+from scenarios.bench.spin_options import COAST, check_spin, refuse_reference, refuse_sweeps
 from scenarios.commands.once import check_once
 from twin.errors import UserError
 
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from scenarios.bench.faults import Fault, Opener
     from scenarios.bench.measure import Measured, Measurement
     from scenarios.bench.readings import Reading
-    from scenarios.bench.spin import Spun
+    from scenarios.bench.sequence import Patience
+    from scenarios.bench.spin import SpinJob, Spun
     from scenarios.commands.outputs import OutputFiles
     from twin.chain import Chain
 
@@ -76,8 +77,7 @@ def run(options: Options) -> None:
 
     if options.fail_on and (options.replay is not None or options.serve is not None or not options.closed_loop):
         raise UserError("--fail-on asks about the closed loop; give --closed-loop")
-    if options.spin is None:
-        refuse_without_spin(options.spin_time_s, options.rate_Hz)
+    check_spin(options.spin, {"--spin-time": options.spin_time_s, "--rate": options.rate_Hz})
     if options.replay is not None:
         _replay(options)
         return
@@ -97,12 +97,10 @@ def _measurement(options: Options, encoder: Chain | None, faults: Sequence[Fault
     from scenarios.bench.bus_log import check_log_name
     from scenarios.bench.measure import Measurement
     from scenarios.bench.plan import Plan
-    from scenarios.bench.sequence import Patience
     from scenarios.commands.protocol import numbers
     from twin.limits import require_within
 
-    require_within("timeout", options.timeout_s, 1e-3, 3600.0, "s")
-    require_within("attempts", options.attempts, 1, 1e6, whole=True)
+    patience = _patience(options)
     require_within("manifest", options.manifest_deg, 0.0, 180.0, "deg")
     if options.record is not None:
         check_log_name(options.record)
@@ -125,7 +123,7 @@ def _measurement(options: Options, encoder: Chain | None, faults: Sequence[Fault
         settings=settings_of(options, encoder, faults),
         channels=options.channels,
         chamber=options.chamber,
-        patience=Patience(timeout_s=options.timeout_s, attempts=options.attempts),
+        patience=patience,
         record=options.record,
         manifest_deg=options.manifest_deg,
         heard=options.heard,
@@ -201,28 +199,60 @@ def _close_loop(options: Options, job: Measurement, own_bus: Opener, words: Sequ
 def _spin(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> None:
     """Spin the shaft of a bench without a reference, and write what the encoder alone says."""
     from scenarios.bench.buses import with_bench_faults
-    from scenarios.bench.sequence import Patience
-    from scenarios.bench.spin import SpinJob, measure_spin
-    from scenarios.bench.written import files_of_spin
+    from scenarios.bench.spin import measure_spin
 
-    check_spin(options, faults)
-    plan = plan_of(options)
-    inputs = [name for name in (options.twin, *options.effect_files) if name is not None]
-    files = files_of_spin(options.output, record=options.record, inputs=inputs, force=options.force)
+    job = _spin_job(options)
     encoder = _encoder(options, faults)
-    job = SpinJob(
-        plan=plan,
-        output=options.output,
-        files=files,
-        channels=options.channels,
-        patience=Patience(timeout_s=options.timeout_s, attempts=options.attempts),
-        record=options.record,
-    )
+    if encoder is not None:
+        refuse_reference(faults)
     with _bench(options, encoder, open_bus, faults, start=0):
         spun = measure_spin(job, with_bench_faults(open_bus, faults, options.seed))
     _report_spin(options.output, spun)
     if options.record is not None:
         print(f"wrote {options.record}")
+
+
+def _spin_job(options: Options) -> SpinJob:
+    from scenarios.bench.spin import SpinJob, SpinPlan
+    from scenarios.bench.written import files_of_spin
+
+    refuse_sweeps(
+        {
+            "--closed-loop": options.closed_loop,
+            "--plot": options.plot is not None,
+            "--points": options.points != Options.points,
+            "--turns": options.turns != Options.turns,
+            "--temperatures": bool(options.temperatures),
+            "--settle": options.settle_s != Options.settle_s,
+            "--restart": options.restart,
+        }
+    )
+    speeds = tuple(options.speeds_rpm)
+    figures = {
+        "time_s": options.spin_time_s,
+        "rate_Hz": options.rate_Hz,
+        "speeds_rpm": None if speeds == Options.speeds_rpm else speeds,
+    }
+    given: dict[str, Any] = {name: value for name, value in figures.items() if value is not None}
+    plan = SpinPlan(coast=options.spin == COAST, both_directions=options.both_directions, **given)
+    inputs = [name for name in (options.twin, *options.effect_files) if name is not None]
+    return SpinJob(
+        plan=plan,
+        output=options.output,
+        files=files_of_spin(options.output, record=options.record, inputs=inputs, force=options.force),
+        channels=options.channels,
+        patience=_patience(options),
+        record=options.record,
+    )
+
+
+def _patience(options: Options) -> Patience:
+    from scenarios.bench.sequence import Patience
+    from twin.limits import require_within
+
+    require_within("timeout", options.timeout_s, 1e-3, 3600.0, "s")
+    require_within("attempts", options.attempts, 1, 1e6, whole=True)
+    return Patience(timeout_s=options.timeout_s, attempts=options.attempts)
 
 
 def _picture(loop: Loop) -> Any:
@@ -310,6 +340,8 @@ def _serve(options: Options, open_bus: Opener, faults: Sequence[Fault]) -> None:
     """Be the bench for another process, for a time; 0: until interrupted."""
     from scenarios.bench.virtual import Setup, running
 
+    if options.spin is not None:
+        raise UserError("--serve is the bench itself, which can spin; give --spin where it is measured")
     if options.interface == "virtual":
         raise UserError("--serve: the virtual interface ends at this process; give another, e.g. udp_multicast, vcan")
     setup = Setup(chain=_chain(options), faults=faults, seed=(options.seed, 0), real_time=options.real_time)

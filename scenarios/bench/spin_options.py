@@ -2,70 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from twin.errors import UserError
 from twin.known_names import nearest
 from twin.shown import shown
 
 if TYPE_CHECKING:
-    from scenarios.bench.command import Options
     from scenarios.bench.faults import Fault
-    from scenarios.bench.spin import SpinPlan
 
 COAST, STEADY = "coast", "steady"
 _HOW = (COAST, STEADY)
 
 
-def refuse_without_spin(spin_time_s: float | None, rate_Hz: float | None) -> None:
-    """Figures of a spin where there is none. Raises UserError."""
-    for name, given in (("--spin-time", spin_time_s), ("--rate", rate_Hz)):
-        if given is not None:
-            raise UserError(f"{name} is of a spin; add --spin coast or --spin steady, or leave it out")
+def check_spin(how: str | None, figures: Mapping[str, float | None]) -> None:
+    """What is asked of a spin, by the names of its options. Raises UserError for figures of a spin without one."""
+    if how is None:
+        for name, given in figures.items():
+            if given is not None:
+                raise UserError(f"{name} is of a spin; add --spin coast or --spin steady, or leave it out")
+    elif how not in _HOW:
+        raise UserError(f"--spin {shown(how)}: unknown{nearest(how, _HOW)}; expected coast or steady")
 
 
-def check_spin(options: Options, faults: Sequence[Fault]) -> None:
-    """Raise UserError for what a spin is not, or has not."""
-    from twin.limits import require_within
-
-    if options.spin not in _HOW:
-        raise UserError(
-            f"--spin {shown(options.spin)}: unknown{nearest(str(options.spin), _HOW)}; expected coast or steady"
-        )
-    of_sweeps = {
-        "--closed-loop": options.closed_loop,
-        "--plot": options.plot is not None,
-        "--points": options.points != type(options).points,
-        "--turns": options.turns != type(options).turns,
-        "--temperatures": bool(options.temperatures),
-        "--settle": options.settle_s != type(options).settle_s,
-        "--restart": options.restart,
-    }
-    for name, given in of_sweeps.items():
+def refuse_sweeps(asked: Mapping[str, bool]) -> None:
+    """Raise UserError for the first of these options that was given: a spin has no reference."""
+    for name, given in asked.items():
         if given:
             raise UserError(f"{name} is of a sweep with a reference, and --spin has none; leave one of them out")
+
+
+def refuse_reference(faults: Sequence[Fault]) -> None:
+    """Raise UserError for a fault that is asked of the reference alone, and not of all nodes."""
     for fault in faults:
-        if fault.node == "reference" and options.interface == "virtual" and _asked_of_one(fault, faults):
+        alone = sum(one.kind == fault.kind for one in faults) == 1
+        if fault.node == "reference" and alone:
             raise UserError(f"--fault {fault.kind}:reference: no reference is on the bus of a spin; leave it out")
-    require_within("timeout", options.timeout_s, 1e-3, 3600.0, "s")
-    require_within("attempts", options.attempts, 1, 1e6, whole=True)
-
-
-def _asked_of_one(fault: Fault, faults: Sequence[Fault]) -> bool:
-    """Whether a fault was asked of its node alone, and not of all."""
-    return sum(one.kind == fault.kind for one in faults) == 1
-
-
-def plan_of(options: Options) -> SpinPlan:
-    """The plan of a spin. Raises UserError."""
-    from scenarios.bench.spin import SpinPlan
-
-    given: dict[str, Any] = {"time_s": options.spin_time_s, "rate_Hz": options.rate_Hz}
-    if tuple(options.speeds_rpm) != type(options).speeds_rpm:
-        given["speeds_rpm"] = tuple(options.speeds_rpm)
-    return SpinPlan(
-        coast=options.spin == COAST,
-        both_directions=options.both_directions,
-        **{name: value for name, value in given.items() if value is not None},
-    )

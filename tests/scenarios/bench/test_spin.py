@@ -112,9 +112,10 @@ def test_a_bench_that_stays_spins_anew_for_each_run(tmp_path: Path, monkeypatch:
         raise NodeGone("gone")
 
     with running(Setup(chain=quiet_encoder()), open_bus):
-        with monkeypatch.context() as broken, pytest.raises(UserError, match="begins anew"):
+        with monkeypatch.context() as broken:
             broken.setattr("scenarios.bench.spin._read_out", gone)
-            measure_spin(job_of(tmp_path / "broken.csv"), open_bus)
+            with pytest.raises(UserError, match="begins anew"):
+                measure_spin(job_of(tmp_path / "broken.csv"), open_bus)
         plan = SpinPlan(coast=True, speeds_rpm=(300.0,), time_s=1.5, rate_Hz=400.0)
         measure_spin(job_of(tmp_path / "coast.csv", plan=plan), open_bus)
     travel = np.ptp(np.unwrap(read_columns(tmp_path / "coast.csv")["measured_deg"], period=360.0))

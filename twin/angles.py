@@ -11,12 +11,19 @@ Array = NDArray[np.float64]
 """Numbers of any shape, in double precision."""
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+_ROUNDING_RAD = 1e-11
+"""Of an angle that has gone round thousands of times."""
 TAU = 2.0 * np.pi
 
 
 def wrap(angle: Any) -> Array:
     """Angle [rad], any shape, brought to [-pi, pi)."""
     return np.asarray((np.asarray(angle) + np.pi) % TAU - np.pi, dtype=np.float64)
+
+
+def within_turn(angle: Array) -> Array:
+    """An angle [rad] in [0, 2 pi), the rounding of a double below a whole turn as 0."""
+    return np.asarray(np.mod(angle + _ROUNDING_RAD, TAU))
 
 
 def wrap_deg(angle: Any) -> Array:

@@ -6,6 +6,7 @@ twin leaves ideal shows as such: without a word length there are no codes.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -149,7 +150,7 @@ def behind(steps: Iterable[Step], stage: str) -> Array:
 def word_bits(chain: Chain) -> int:
     """Length of the angle word on the link; the frame's longest where the twin states none or more."""
     grid = output_grid(chain.effects)
-    stated = 0 if grid is None else int(chain.values.get(grid.name, grid.null()).get("bits", 0))
+    stated = 0 if grid is None else math.ceil(chain.values.get(grid.name, grid.null()).get("bits", 0))
     return stated if 0 < stated <= SPI_WORD_BITS else SPI_WORD_BITS
 
 

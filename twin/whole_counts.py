@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from twin.angles import TAU, Array, IntArray, wrap
+from twin.angles import TAU, Array, IntArray, within_turn, wrap
 from twin.runs import runs
 
 _ROWS = 8
@@ -36,6 +36,8 @@ _LONG = 8 * _ROWS
 _HALVINGS = 50
 """Of the range of a line's slopes, to the precision of a double."""
 _ROUNDING = 1e-9
+_PLACES = 6
+"""Decimals to which counts of a part of a turn are known."""
 _WHOLE = 1e-5
 """Distance from a whole number of decimals that is the rounding of a double."""
 
@@ -46,15 +48,16 @@ class WholeCounts:
 
     Attributes
     ----------
-    counts_per_turn : int
-        Counts of a turn.
+    counts_per_turn : float
+        Counts of a turn; no whole number where a turn has none, as in a file of few decimals of a radian.
     counts : ndarray
-        What it has counted since its first reading, (n,).
+        What it has counted since its first reading, (n,); where a turn has no whole number, not whole from turn to turn
+        either.
     by_stops : bool
         Whether it is from stop to stop that the shaft goes on evenly, with several readings at each.
     """
 
-    counts_per_turn: int
+    counts_per_turn: float
     counts: Array
     by_stops: bool
 
@@ -65,6 +68,13 @@ class WholeCounts:
             return _off(self.counts)
         stops = _stops(self.counts)
         return np.asarray(_off(self.counts[stops])[np.cumsum(stops) - 1])
+
+    def averaged(self, group: IntArray) -> WholeCounts:
+        """The same of means over groups of readings, (n,) numbers from 0 in their order; one stop is one group."""
+        many = np.bincount(group)
+        found = replace(self, counts=np.bincount(group, self.counts) / many, by_stops=False)
+        found.__dict__["off"] = np.bincount(group, self.off) / many
+        return found
 
     def part(self, rows: IntArray) -> WholeCounts:
         """The same at these rows (m,): from all readings, unless the rows themselves lie in long stretches."""
@@ -86,27 +96,41 @@ def whole_counts(shaft_rad: Array) -> WholeCounts | None:
     Returns
     -------
     WholeCounts or None
-        None where they lie on no grid of a whole number of counts a turn, where the shaft did not go on evenly (then
-        nothing tells where between two counts it stood), and where each stood at a count.
+        None where they lie on no grid, neither of a whole number of counts a turn nor of few decimals of a radian,
+        where the shaft did not go on evenly (then nothing tells where between two counts it stood), and where each
+        stood at a count.
     """
-    for counts_per_turn in counts_of_a_turn(shaft_rad):
-        counts = np.round((shaft_rad - shaft_rad[0]) / TAU * counts_per_turn)
+    for counts_per_turn, counts in _grids(shaft_rad):
         # Several readings at one stop are of one angle; a shaft that moves evenly may also stay within a count.
         for by_stops, moving in ((False, counts), (True, counts[_stops(counts)])):
-            if _rounded(moving):
-                return WholeCounts(counts_per_turn, counts, by_stops)
+            if _mostly_straight(moving):
+                found = WholeCounts(counts_per_turn, counts, by_stops)
+                if float(np.sqrt(np.mean(found.off**2))) > _OFF:
+                    return found
     return None
 
 
-def _rounded(counts: Array) -> bool:
-    """Whether most short stretches of counts (n,) are straight, and beside the counts."""
+def _grids(shaft_rad: Array) -> Iterator[tuple[float, Array]]:
+    """Grids on which readings (n,) [rad] lie: counts of a turn, and what was counted since the first reading, (n,)."""
+    if shaft_rad.size < _ROWS:
+        return
+    turned = shaft_rad - shaft_rad[0]
+    for decimal in dict.fromkeys(_last_decimal(values) for values in (shaft_rad, within_turn(shaft_rad))):
+        if decimal is not None and decimal * _MOST_COUNTS > TAU:
+            # A turn is no whole number of these. Equal readings stay equal: the rest is the rounding of a double.
+            yield TAU / decimal, np.round(turned / decimal, _PLACES)
+    for counts_per_turn in counts_of_a_turn(shaft_rad):
+        yield counts_per_turn, np.round(turned / TAU * counts_per_turn)
+
+
+def _mostly_straight(counts: Array) -> bool:
+    """Whether most short stretches of counts (n,) are those of a line, and not all of one and the same step."""
     way = _way(counts)
-    if not np.any(np.diff(counts, 2)[way[2:] == way[:-2]]):
-        # One and the same step all along: each stop is at a count.
+    if not np.any(np.abs(np.diff(counts, 2)[way[2:] == way[:-2]]) > _ROUNDING):
+        # Each stop is at a count.
         return False
     tried = list(_short(counts, way))
-    straight = [_off_line(some) for some in tried if _straight(some)]
-    return 2 * len(straight) > len(tried) and float(np.sqrt(np.mean(np.square(straight)))) > _OFF
+    return 2 * sum(_straight(some) for some in tried) > len(tried)
 
 
 def _stops(counts: Array) -> npt.NDArray[np.bool_]:
@@ -154,15 +178,21 @@ def counts_of_a_turn(shaft_rad: Array) -> Iterator[int]:
 
 def _last_decimals_rad(shaft_rad: Array) -> list[float]:
     """By how much [rad] two steps that are the same differ in a file of few decimals, in degrees or in radians."""
-    found: list[float] = []
-    for unit, values in ((TAU / 360.0, np.degrees(shaft_rad)), (1.0, shaft_rad), (1.0, np.mod(shaft_rad, TAU))):
-        for decimals in (1, 2, 3, 4):
-            places = values * 10.0**decimals
-            if np.max(np.abs(places - np.round(places))) < _WHOLE:
-                # Each of two angles is off by half a decimal at the most, and so is each of two others.
-                found.append(2.0 * unit * 10.0**-decimals)
-                break
-    return found
+    told = (
+        (unit, _last_decimal(values))
+        for unit, values in ((TAU / 360.0, np.degrees(shaft_rad)), (1.0, shaft_rad), (1.0, within_turn(shaft_rad)))
+    )
+    # Each of two angles is off by half a decimal at the most, and so is each of two others.
+    return [2.0 * unit * decimal for unit, decimal in told if decimal is not None]
+
+
+def _last_decimal(values: Array) -> float | None:
+    """The place of the last decimal that numbers (n,) have, of one to five; None where there are more."""
+    for decimals in (1, 2, 3, 4, 5):
+        places = values * 10.0**decimals
+        if np.max(np.abs(places - np.round(places))) < _WHOLE:
+            return float(10.0**-decimals)
+    return None
 
 
 def _counts_by(shaft_rad: Array, sizes: Array, same: float) -> int | None:
@@ -180,7 +210,10 @@ def _counts_by(shaft_rad: Array, sizes: Array, same: float) -> int | None:
         near = np.arange(max(2, int(about - off)), min(_MOST_COUNTS, int(about + off) + 1) + 1)
         if 0 < near.size <= _MOST_TRIED:
             best = int(near[np.argmax(_resultant(few, near[:, None]))])
-            if float(_resultant(shaft_rad, best)) > np.exp(-0.5 * (TAU * _OFF) ** 2):
+            # Rounding to the last decimal spreads the readings evenly over so much of a count; whole, it hides them.
+            decimal = 0.5 * same * best / TAU
+            spread = np.sinc(decimal) * np.exp(-0.5 * (TAU * _OFF) ** 2)
+            if decimal < 1.0 and float(_resultant(shaft_rad, best)) > spread:
                 return best
     return None
 

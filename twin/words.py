@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from twin.angles import TAU, Array, IntArray, wrap
+from twin.angles import TAU, Array, IntArray, within_turn, wrap
 from twin.found_by import BoolArray
 from twin.motion import Motion
 
@@ -29,8 +29,10 @@ NEAR_RAD = np.radians(30.0)
 _PASSES = 6
 _TRIMMED = 5.0
 _MAD = 1.4826
-_DIGITS_RAD = tuple(np.radians((1.2e-6, 6e-4)))
-"""As many digits as files have: six decimals of a degree, or three."""
+_DIGITS_RAD = tuple(np.radians((1.2e-6, 6e-4, 6e-3, 6e-2)))
+"""As many digits as files have: six decimals of a degree, or three, two or one."""
+_LAST_DECIMALS_RAD = tuple(sorted((*np.radians((1.0, 0.1, 0.01)), 0.1, 0.01, 1e-3, 1e-4), reverse=True))
+"""Steps of a file that has few decimals of a degree or of a radian, the coarsest first."""
 _LONGEST_WORD = 20
 
 
@@ -252,6 +254,15 @@ def word_length(read: Array, *, shortest: int) -> int | None:
         off = float(np.max(np.abs(read / step - np.round(read / step)), initial=0.0)) * step
         if any(off < digits < step / 12.0 for digits in _DIGITS_RAD):
             return bits
+    return None
+
+
+def decimal_step(read: Array) -> float | None:
+    """The step [rad] of few decimals on which readings (n,) [rad] lie, each turn from its own zero; None: of many."""
+    turned = within_turn(read)
+    for step in _LAST_DECIMALS_RAD:
+        if np.max(np.abs(turned - np.round(turned / step) * step), initial=0.0) < _DIGITS_RAD[0]:
+            return float(step)
     return None
 
 

@@ -53,7 +53,7 @@ class Discovery:
     fit: Fit
     causes: tuple[Finding, ...]
     masked: BoolArray
-    bits: int | None
+    bits: float | None
     baseline_held_deg: float
     extended_held_deg: float
     noise_floor_deg: float

@@ -62,7 +62,7 @@ class State:
     touched: BoolArray
     fitted: Fit | None = None
     baseline: Fit | None = None
-    bits: int | None = None
+    bits: float | None = None
     keys: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
     looked_at: int = 0

@@ -164,11 +164,18 @@ def _sweep(found: Discovery) -> dict[str, Any]:
         "columns": recorded_columns(sweep),
         **how_read(sweep),
         **facts(found),
-        "output_bits": found.bits,
+        **_output_grid(found.bits),
         "wild": len(numbers),
         "wild_rows": numbers[:MOST_LISTED],
         "wild_rows_left_out": max(len(numbers) - MOST_LISTED, 0),
     }
+
+
+def _output_grid(bits: float | None) -> dict[str, Any]:
+    """The grid on which all readings lie, of a word of so many bits or of few decimals, as plain values."""
+    if bits is None:
+        return {"output_bits": None, "output_step_deg": None}
+    return {"output_bits": int(bits) if bits.is_integer() else None, "output_step_deg": 360.0 / 2.0**bits}
 
 
 def baseline_parameters(fit: Fit) -> dict[str, dict[str, Any]]:

@@ -117,6 +117,8 @@ def _measured(answer: Mapping[str, Any], said: Mapping[str, Any], read: Readings
             cards.append((key.partition("_")[0], low if low == high else f"{low} to {high}", unit))
     if sweep["output_bits"] is not None:
         cards.append(("grid of the output", number(sweep["output_bits"]), "bits"))
+    elif sweep["output_step_deg"] is not None:
+        cards.append(("grid of the output", plain(sweep["output_step_deg"]), "deg"))
     columns = ", ".join(f"<code>{escape(column)}</code>" for column in sweep["columns"])
     facts_said = f"{', '.join(sweep_words.sweep_facts(sweep))}; {explained_rows(sweep)}"
     words = (

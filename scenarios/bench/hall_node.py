@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -34,7 +35,7 @@ def check_playable(chain: Chain) -> None:
 def word_bits(chain: Chain) -> int:
     """Length of the sensor's angle word: what the twin says, else the link's."""
     grid = output_grid(chain.effects)
-    bits = 0 if grid is None else int(float(chain.values.get(grid.name, {}).get(grid.roles("level")[0], 0)))
+    bits = 0 if grid is None else math.ceil(chain.values.get(grid.name, {}).get(grid.roles("level")[0], 0))
     return bits if 0 < bits <= SPI_WORD_BITS else SPI_WORD_BITS
 
 

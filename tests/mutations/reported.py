@@ -27,6 +27,33 @@ REPORTED = (
         (f"{_CASES}::test_a_sweep_of_the_kind_is_answered_rightly[field_of_drag]",),
     ),
     Mutation(
+        "whole_counts.decimals_of_a_radian",
+        "twin/whole_counts.py",
+        "if decimal is not None and decimal * _MOST_COUNTS > TAU:",
+        "if False:",
+        (
+            f"{_COUNTS}::test_decimals_of_a_radian_are_counts_of_which_a_turn_has_no_whole_number",
+            f"{_CASES}::test_a_sweep_of_the_kind_is_answered_rightly[printed]",
+        ),
+    ),
+    Mutation(
+        "whole_counts.decimals_spread_a_count",
+        "twin/whole_counts.py",
+        "spread = np.sinc(decimal) * np.exp(",
+        "spread = np.exp(",
+        (f"{_COUNTS}::test_an_encoder_of_which_few_decimals_are_printed_is_told_by_its_counts",),
+    ),
+    Mutation(
+        "quantisation.each_turn_from_its_own_zero",
+        "twin/link/output_quantisation.py",
+        "< _WHOLE * count, 0.0, np.floor(signal / TAU) * TAU)",
+        "< np.inf, 0.0, np.floor(signal / TAU) * TAU)",
+        (
+            "tests/diagnosis/discovery/marks/test_quantisation.py"
+            "::test_hundredths_of_a_radian_are_a_grid_from_each_turns_zero",
+        ),
+    ),
+    Mutation(
         "whole_counts.stretches_overlap",
         "twin/whole_counts.py",
         "first += max(many // 2, 1)",

@@ -10,7 +10,7 @@ import numpy as np
 
 from tests.hidden.period_causes import MOTORS
 from tests.reported_cases.bench import Array, Case, Sensor, a_turn, case, some_sensor, words
-from tests.reported_cases.counted import coarse_reference, hand_turned
+from tests.reported_cases.counted import coarse_reference, hand_turned, printed
 from tests.reported_cases.driven import field_of_drag
 
 Answer = Mapping[str, Any]
@@ -278,6 +278,14 @@ def _right_drag(drawn: Case, answer: Answer) -> bool:
     return _alone(answer, "motor_field") and bool(_values(answer, "motor_field", "bx_mT_per_krpm"))
 
 
+def _right_decimals(drawn: Case, answer: Answer) -> bool:
+    """Both roundings and nothing else, the output's by its step."""
+    told = {one["name"]: one for one in answer["causes"]}
+    if set(told) != {"reference_quantisation", WORD}:
+        return False
+    return bool(np.isclose(told[WORD]["parameters"]["step_deg"]["value"], drawn.truth["step_deg"], rtol=1e-6))
+
+
 def axial_magnet(rng: np.random.Generator) -> Case:
     """The reading swings by less than half a turn while the shaft goes round."""
     shaft = a_turn(rng, points=int(rng.integers(60, 361)), turns=float(rng.choice([1.0, 2.0])))
@@ -309,4 +317,5 @@ KINDS: dict[str, Kind] = {
     "coarse_reference": Kind(coarse_reference, _only("reference_quantisation", "counts_per_turn", within=0.0)),
     "hand_turned": Kind(hand_turned, _nothing),
     "field_of_drag": Kind(field_of_drag, _right_drag),
+    "printed": Kind(printed, _right_decimals),
 }

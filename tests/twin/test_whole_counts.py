@@ -79,6 +79,28 @@ def test_a_files_last_decimal_is_not_taken_for_a_count(counts: int, decimals: in
     assert found.counts_per_turn == counts
 
 
+@pytest.mark.parametrize("wrapped", [True, False])
+@pytest.mark.parametrize("decimals", [2, 3, 5])
+def test_decimals_of_a_radian_are_counts_of_which_a_turn_has_no_whole_number(decimals: int, wrapped: bool) -> None:
+    # One reading of each turn is 0.
+    shaft = np.radians(np.arange(-350, 350) * 360.0 / 351.0)
+    step = 10.0**-decimals
+    read = np.round(np.mod(shaft, 2.0 * np.pi) if wrapped else shaft, decimals)
+    found = Motion.from_angle(read).whole_counts
+    assert found is not None
+    assert found.counts_per_turn == pytest.approx(2.0 * np.pi / step, rel=1e-12)
+    truly = (read - (np.mod(shaft, 2.0 * np.pi) if wrapped else shaft)) / step
+    # As above, of one run of 700 rows; the parabola of each stretch may take up as much again.
+    assert float(np.std(found.off - truly)) < 2.0 * 0.58 / np.sqrt(700)
+
+
+def test_an_encoder_of_which_few_decimals_are_printed_is_told_by_its_counts() -> None:
+    """At a tenth of a degree 0.36 deg are 0.3 or 0.4; none of its readings lies on its counts."""
+    found = whole_counts(read(0.3 + np.arange(700) * 360.0 / 351.0, 1000, decimals=1))
+    assert found is not None
+    assert found.counts_per_turn == 1000
+
+
 def test_a_shaft_that_speeds_up_is_followed() -> None:
     """What lines leave of its bends would follow the acceleration, as a torsion of the shaft does."""
     time = np.linspace(0.0, 6.0, 3000)

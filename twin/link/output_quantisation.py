@@ -1,4 +1,4 @@
-"""output_quantisation: the angle word has b bits."""
+"""output_quantisation: the angle word has b bits; the 3600 steps of one decimal of a degree are 11.81 bits."""
 
 from __future__ import annotations
 
@@ -10,17 +10,24 @@ from twin.angles import TAU, Array
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
+_WHOLE = 1e-12
+"""Share of a number of steps that is the rounding of its logarithm."""
+
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:
     bits = np.asarray(values["bits"], dtype=np.float64)
-    step = TAU / 2.0**bits
-    return np.where(bits > 0, np.round(signal / step) * step, signal)
+    count = 2.0**bits
+    step = TAU / count
+    # Few decimals of a radian: a turn is no whole number of steps, and each is counted from its own zero.
+    turns = np.where(np.abs(count - np.round(count)) < _WHOLE * count, 0.0, np.floor(signal / TAU) * TAU)
+    return np.where(bits > 0, np.round((signal - turns) / step) * step + turns, signal)
 
 
 def attainable(values: Parameters) -> Array:
-    """All angles [rad] in [-pi, pi) of a word of this many bits."""
-    count = 2 ** int(values["bits"])
-    return np.asarray(np.arange(-count // 2, count // 2) * (TAU / count))
+    """All angles [rad] in a turn of a word of this many bits, or of this many steps."""
+    count = 2.0 ** float(values["bits"])
+    steps = np.arange(int(np.ceil(count * (1.0 - _WHOLE))))
+    return np.asarray(np.where(steps < np.ceil(0.5 * count), steps, steps - count) * (TAU / count))
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
@@ -48,7 +55,9 @@ OUTPUT_QUANTISATION = Effect(
     stage="link",
     acts_on="angle",
     params={
-        "bits": Param(unit="bit", null=0, lower=0, upper=40, doc="angle word; 0: continuous", role="level", counts=True)
+        "bits": Param(
+            unit="bit", null=0, lower=0, upper=40, doc="angle word, whole or not; 0: continuous", role="level"
+        )
     },
     forward=forward,
     footprint="values",
@@ -60,5 +69,5 @@ OUTPUT_QUANTISATION = Effect(
     derived=derived,
     needs=frozenset({"one turn"}),
     source="definition; noise of step/sqrt(12)",
-    signature="every reading on a grid of 360/2^b degrees",
+    signature="every reading on a grid of 360/2^b degrees, or of few decimals",
 )

@@ -26,13 +26,14 @@ def _off(motion: Motion, counts_per_turn: Array) -> Array:
     recorded = motion.whole_counts
     if recorded is not None and np.all(counts_per_turn == recorded.counts_per_turn):
         return recorded.off
-    turned = motion.recorded_rad * (counts_per_turn / TAU)
+    # In a file of few decimals of a radian each turn is counted from its own zero.
+    turned = np.mod(motion.recorded_rad, TAU) * (counts_per_turn / TAU)
     return np.asarray(np.round(turned) - turned)
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
     recorded = motion.whole_counts
-    return [] if recorded is None else [{"counts_per_turn": float(recorded.counts_per_turn)}]
+    return [] if recorded is None else [{"counts_per_turn": recorded.counts_per_turn}]
 
 
 def drawing(strength_deg: Array, uniform: Array, motion: Motion) -> Mapping[str, Array]:
@@ -61,7 +62,6 @@ REFERENCE_QUANTISATION = Effect(
             upper=1e6,
             doc="counts of the reference, as its values show them",
             role="shape",
-            counts=True,
         ),
     },
     forward=forward,

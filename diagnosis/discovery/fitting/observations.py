@@ -215,7 +215,7 @@ def _averaged(motion: Motion, group: IntArray, count: IntArray, first: IntArray)
     def mean(values: Array) -> Array:
         return np.asarray(np.bincount(group, values) / count)
 
-    return replace(
+    found = replace(
         motion,
         shaft_rad=mean(motion.shaft_rad),
         time_s=mean(motion.time_s),
@@ -227,3 +227,6 @@ def _averaged(motion: Motion, group: IntArray, count: IntArray, first: IntArray)
         estimated=None if motion.estimated is None else motion.estimated.averaged(group),
         recordings=None if motion.recordings is None else motion.recordings.part(first),
     )
+    whole = None if motion.whole_counts is None else motion.whole_counts.averaged(group)
+    found.__dict__.update(recorded_rad=mean(motion.recorded_rad), whole_counts=whole)
+    return found

@@ -20,19 +20,26 @@ from twin.catalogue import output_grid
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.sweep import Sweep
-from twin.words import word_length
+from twin.words import decimal_step, word_length
 
 CELLS_OFF = (np.array([0]), np.array([-1, 0, 1]))
 """Cells of the output's grid that a word may be off its angle: none, or one where it was cut off or rounded twice."""
 
 
-def grid_bits(measured: Array, settings: DiscoverySettings) -> int | None:
-    """The smallest word length (6 to 20 bits) on whose grid all readings (n,) [rad] lie; None: no such grid."""
+def grid_bits(measured: Array, settings: DiscoverySettings) -> float | None:
+    """The smallest word length (6 to 20 bits) on whose grid all readings (n,) [rad] lie; None: no such grid.
+
+    The grid of a file with few decimals has no whole number of bits: 0.1 deg are 11.81.
+    """
     words = np.unique(np.round(measured % TAU, 9)).size
     if words < settings.fewest_words:
         # A few angles lie on a coarse grid by the bench's choice, not by the word's length.
         return None
-    return word_length(measured, shortest=6)
+    word = word_length(measured, shortest=6)
+    if word is not None:
+        return float(word)
+    step = decimal_step(measured)
+    return None if step is None else float(np.log2(TAU / step))
 
 
 def rounded(fit: Fit, sweep: Sweep, step: float) -> bool:
@@ -88,7 +95,7 @@ def finite_set(
 
 
 def with_stairs(
-    fit: Fit, sweep: Sweep, effects: Sequence[Effect], *, bits: int | None, family: int
+    fit: Fit, sweep: Sweep, effects: Sequence[Effect], *, bits: float | None, family: int
 ) -> tuple[Fit, tuple[Finding, ...]]:
     """The fit with the stairs that the set of values shows, and those of them that are causes by that alone.
 
@@ -111,7 +118,7 @@ def with_stairs(
     if grid is not None and bits is not None and grid.name not in chain.values:
         sigma = local_rms(fit.residual[0])
         if step / np.sqrt(12.0) > settings.stairs_in_noise * sigma:
-            chain = chain.with_values({grid.name: {grid.roles("level")[0]: float(bits)}})
+            chain = chain.with_values({grid.name: {grid.roles("level")[0]: bits}})
     return _blurred(fit, chain), tuple(found)
 
 

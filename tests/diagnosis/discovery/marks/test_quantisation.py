@@ -12,6 +12,7 @@ from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import TAU, Array
 from twin.cordic.cordic_truncation import CORDIC_TRUNCATION, attainable
 from twin.effect import Effect
+from twin.link.output_quantisation import OUTPUT_QUANTISATION
 from twin.motion import Motion
 
 LIMITS = DiscoverySettings()
@@ -24,7 +25,7 @@ class Grid:
     """A word of so many bits, written with so many decimals of a degree; what is seen of it."""
 
     bits: int
-    seen: int | None
+    seen: float | None
     decimals: int = 9
     off_deg: float = 0.0
     words: int = 200
@@ -40,7 +41,10 @@ GRIDS = {
     "three decimals": Grid(bits=14, seen=14, decimals=3),
     # The last digit is as coarse as a twelfth of the step: anything would lie on such a grid.
     "three decimals of a fine word": Grid(bits=18, seen=None, decimals=3),
-    "two decimals": Grid(bits=12, seen=None, decimals=2),
+    "two decimals": Grid(bits=12, seen=12, decimals=2),
+    "two decimals of a fine word": Grid(bits=16, seen=np.log2(36_000.0), decimals=2),
+    "one decimal": Grid(bits=12, seen=np.log2(3600.0), decimals=1),
+    "no decimal": Grid(bits=12, seen=np.log2(360.0), decimals=0, words=2000),
     "one reading off": Grid(bits=12, seen=None, off_deg=0.01),
 }
 
@@ -51,7 +55,20 @@ def test_the_word_length_is_that_of_the_coarsest_grid_that_holds_all(case: Grid)
     words = rng.choice(2**case.bits, size=case.words, replace=False)
     measured_deg = np.round(words * 360.0 / 2**case.bits, case.decimals)
     measured_deg[17] += case.off_deg
-    assert grid_bits(np.radians(measured_deg), LIMITS) == case.seen
+    found = grid_bits(np.radians(measured_deg), LIMITS)
+    assert found == (None if case.seen is None else pytest.approx(case.seen, rel=1e-12))
+
+
+def test_hundredths_of_a_radian_are_a_grid_from_each_turns_zero() -> None:
+    turned = np.round(np.mod(np.random.default_rng(4).uniform(0.0, 30.0, 300), TAU), 2)
+    assert grid_bits(turned, LIMITS) == pytest.approx(np.log2(TAU / 0.01), rel=1e-12)
+    read = OUTPUT_QUANTISATION.forward(turned + TAU, Motion.from_angle(turned), {"bits": np.log2(TAU / 0.01)}, None)
+    np.testing.assert_allclose(read, turned + TAU, rtol=0.0, atol=1e-12)
+    angles = OUTPUT_QUANTISATION.attainable
+    assert angles is not None
+    # 628 steps and a part of one.
+    assert angles({"bits": np.log2(TAU / 0.01)}).size == 629
+    assert angles({"bits": np.log2(3600.0)}).size == 3600
 
 
 def holding(share: float) -> Effect:

@@ -376,13 +376,15 @@ class Chain:
             channels=channels if "vx" in motion.columns else None,
         )
 
-    def error(self, motion: Motion) -> Array:
+    def error(self, motion: Motion, readings: Array | None = None) -> Array:
         """The angle error that is expected: reading minus reference, in the sense that the two count together.
 
         Parameters
         ----------
         motion : Motion
             Conditions of n readings.
+        readings : ndarray, optional
+            :meth:`readings` of this motion, where they are known.
 
         Returns
         -------
@@ -390,4 +392,4 @@ class Chain:
             [rad], (n,), or ``(batch, n)`` as :meth:`readings`.
         """
         slope = self.sensor_sense * self.output_sense
-        return wrap(self.readings(motion) - slope * self.reference(motion))
+        return wrap((self.readings(motion) if readings is None else readings) - slope * self.reference(motion))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -41,17 +41,23 @@ class Example:
         return {**moved, **self.shapes}
 
 
-def full_motion(points: int = 120) -> Motion:
-    """Two turns in both directions at two speeds and two temperatures, everything recorded: all effects can be seen.
+def full_motion(
+    points: int = 120,
+    *,
+    temperatures_c: Sequence[float] = (20.0, 60.0),
+    speeds_rpm: Sequence[float] = (60.0, 300.0),
+    currents_a: Sequence[float] = (1.0, 2.0, 3.0),
+) -> Motion:
+    """Two turns in both directions at each speed and temperature, everything recorded: all effects can be seen.
 
-    The drive pulls unevenly: within each turn the speed is up to a fifth higher and lower.
+    The drive pulls unevenly: within each turn the speed is up to a fifth higher and lower. The currents take turns.
     """
     steps = np.arange(2 * points)
     angle = TAU / points * steps
     rows: dict[str, list[Array]] = {}
     clock, leg = 0.0, 0
-    for temperature in (20.0, 60.0):
-        for rpm in (60.0, 300.0):
+    for temperature in temperatures_c:
+        for rpm in speeds_rpm:
             for way in (1.0, -1.0):
                 path = angle if way > 0 else angle[::-1]
                 pace = rpm * TAU / 60.0 * (1.0 + 0.2 * np.cos(path))
@@ -63,7 +69,7 @@ def full_motion(points: int = 120) -> Motion:
                     "speed_rad_s": way * pace,
                     "turn": 2 * leg + steps // points,
                     "temperature_c": np.full(steps.size, temperature),
-                    "current_a": np.full(steps.size, 1.0 + leg % 3),
+                    "current_a": np.full(steps.size, currents_a[leg % len(currents_a)]),
                 }
                 for name, values in one.items():
                     rows.setdefault(name, []).append(values)

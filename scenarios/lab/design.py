@@ -150,7 +150,10 @@ def at_once(chain: Chain, asked: Asked) -> dict[str, Any]:
     own = in_designs(chain, designs)
     motion = _turns(asked, points=ANGLES, also_c=NOMINAL_C)
     here = motion.temperature_c == asked.temperature_c
-    error = zeroed_deg(own.error(motion), motion)[0][here]
+    # One run for both the channels and what is read of them: the hand waits for it.
+    *steps, last = own.steps(motion)
+    channels = next(step.before for step in steps if step.key == "after channels")[0][:, here]
+    error = zeroed_deg(own.error(motion, last.after[..., 0, :]), motion)[0][here]
     turn = _turns(asked, points=ANGLES, both_directions=False)
     field_mT = designs.channels(np.broadcast_to(turn.shaft_rad, (2, ANGLES)), turn)[0] * designs.nominal_mT[0]
     size_mT = np.hypot(*field_mT)
@@ -163,7 +166,7 @@ def at_once(chain: Chain, asked: Asked) -> dict[str, Any]:
         "backward_deg": _rounded(error[ANGLES:][::-1]),
         "orders": {"order": np.round(order[whole]).tolist(), "amplitude_deg": _rounded(amplitude[whole])},
         "field": {"x_mT": _rounded(field_mT[0]), "y_mT": _rounded(field_mT[1]), "size_mT": _rounded(size_mT)},
-        "signals": dict(zip(("x", "y"), map(_rounded, own.channels(turn)[0]), strict=True)),
+        "signals": dict(zip(("x", "y"), map(_rounded, channels[:, :ANGLES]), strict=True)),
         "figures": {
             "error_deg": _largest(error),
             "rms_deg": float(np.sqrt(np.mean(error**2))),

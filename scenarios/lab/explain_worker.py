@@ -18,6 +18,8 @@ from pathlib import Path
 from typing import Any
 
 _TOLD_EVERY_S = 0.2
+SO_FAR = "the answer so far follows; stop again to have none"
+"""What comes of a search that is stopped once."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +41,8 @@ ANSWER, REPORT, EXTENDED = "answer.json", "report.html", "extended.toml"
 def work(line: Connection, question: Question) -> None:
     """Explain, then answer to looks until the other end hangs up.
 
-    Sent are pairs: ``progress`` with words, ``error`` with a line, ``answer`` with plain values, ``look`` likewise.
+    Sent are pairs: ``progress`` with words, ``computed`` with seconds, ``error`` with a line, ``answer`` with plain
+    values, ``look`` likewise.
     """
     if hasattr(os, "setsid"):
         # Ctrl-C in the terminal is the server's to answer.
@@ -69,10 +72,12 @@ def work(line: Connection, question: Question) -> None:
 
 
 class _Telling:
-    """Hands on where the search stands, a few times a second."""
+    """Hands on where the search stands and what it has computed, a few times a second."""
 
     def __init__(self, line: Connection) -> None:
         self._line, self._told_s = line, 0.0
+        # As the budget counts: of this thread alone, and no waiting for a busy machine.
+        self._began_s = time.thread_time()
 
     def __call__(self, progress: Any) -> None:
         from diagnosis.report.stage_words import progress_words
@@ -80,9 +85,8 @@ class _Telling:
         now = time.monotonic()
         if now - self._told_s > _TOLD_EVERY_S or progress.stopped:
             self._told_s = now
-            self._line.send(
-                ("progress", "finishing the answer so far" if progress.stopped else progress_words(progress))
-            )
+            self._line.send(("computed", time.thread_time() - self._began_s))
+            self._line.send(("progress", f"finishing: {SO_FAR}" if progress.stopped else progress_words(progress)))
 
 
 def _explained(question: Question, listener: Callable[[Any], None]) -> Any:

@@ -8,7 +8,7 @@ import signal
 from pathlib import Path
 from typing import Any
 
-from scenarios.lab.explain_worker import Question, work
+from scenarios.lab.explain_worker import SO_FAR, Question, work
 from scenarios.lab.process_job import ProcessJob
 from twin.errors import UserError
 
@@ -24,13 +24,22 @@ class Explaining(ProcessJob):
         super().__init__(work)
         self._question: Question | None = None
         self._stops = 0
+        self._computed_s = 0.0
 
     def _begun(self, question: Question) -> None:
-        self._question, self._stops = question, 0
+        self._question, self._stops, self._computed_s = question, 0, 0.0
+
+    def _heard(self, kind: str, found: Any) -> None:
+        if kind == "computed":
+            self._computed_s = found
+        else:
+            super()._heard(kind, found)
 
     def _more(self) -> dict[str, Any]:
-        """Of the computing that the search may take."""
-        return {} if self._question is None else {"budget_s": self._question.budget_s}
+        """What it has computed, and what the search may."""
+        if self._question is None:
+            return {}
+        return {"computed_s": round(self._computed_s, 1), "budget_s": self._question.budget_s}
 
     def stop(self) -> None:
         """End the search where it stands, as Ctrl-C does: once for the answer so far, twice for none."""
@@ -45,7 +54,7 @@ class Explaining(ProcessJob):
             elif self._process.pid is not None:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(self._process.pid, signal.SIGINT)
-                self._words = "stopping: the answer so far follows; stop again to have none"
+                self._words = f"stopping: {SO_FAR}"
 
     def look(self, content: Any) -> dict[str, Any]:
         """The residual as it is asked for. Raises UserError."""

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from io import BufferedIOBase
+from io import BufferedIOBase, BytesIO
 from typing import Any
 from urllib.parse import unquote
 
@@ -150,24 +150,32 @@ class _Handler(BaseHTTPRequestHandler):
         return int(told)
 
     def _send(self, reply: Reply) -> None:
+        """Send head and content in one piece: two would wake the browser twice."""
+        line, whole = self.wfile, BytesIO()
+        self.wfile = whole
+        self._write(reply)
+        self.wfile = line
         try:
-            self.send_response(reply.status)
-            for name, value in HEADERS.items():
-                self.send_header(name, value)
-            self.send_header("Content-Type", reply.kind)
-            self.send_header("Content-Length", str(len(reply.content)))
-            if reply.download is not None:
-                self.send_header("Content-Disposition", f'attachment; filename="{reply.download}"')
-            if reply.to is not None:
-                self.send_header("Location", reply.to)
-            if self.close_connection:
-                self.send_header("Connection", "close")
-            self.end_headers()
-            self.wfile.write(reply.content)
+            line.write(whole.getvalue())
         except OSError as gone:
             # The page was closed meanwhile.
             LOG.info("lab: %s", gone)
             self.close_connection = True
+
+    def _write(self, reply: Reply) -> None:
+        self.send_response(reply.status)
+        for name, value in HEADERS.items():
+            self.send_header(name, value)
+        self.send_header("Content-Type", reply.kind)
+        self.send_header("Content-Length", str(len(reply.content)))
+        if reply.download is not None:
+            self.send_header("Content-Disposition", f'attachment; filename="{reply.download}"')
+        if reply.to is not None:
+            self.send_header("Location", reply.to)
+        if self.close_connection:
+            self.send_header("Connection", "close")
+        self.end_headers()
+        self.wfile.write(reply.content)
 
     def log_message(self, format: str, *args: Any) -> None:
         """Requests are no news; the secret in their paths belongs into no log."""

@@ -109,4 +109,32 @@ LAB: tuple[Mutation, ...] = (
         "values[first]",
         (f"{_EXPLAIN_TESTS}::test_of_many_readings_each_column_keeps_its_extremes",),
     ),
+    Mutation(
+        "lab.one_piece",
+        _SERVER,
+        "line.write(whole.getvalue())",
+        "[line.write(whole.getvalue()[k : k + 64]) for k in range(0, len(whole.getvalue()), 64)]",
+        (f"{_GUARD_TESTS}::test_an_answer_comes_in_one_piece",),
+    ),
+    Mutation(
+        "lab.signals_of_the_temperature",
+        _DESIGN,
+        '"after channels")[0][:, here]',
+        '"after channels")[0]',
+        (f"{_DESIGN_TESTS}::test_the_channels_are_those_of_the_temperature_looked_at",),
+    ),
+    Mutation(
+        "lab.asked_first_is_answered_first",
+        "scenarios/lab/session.py",
+        "with self._at_hand:",
+        "with threading.Lock():",
+        (f"{_DESIGN_TESTS}::test_one_design_is_computed_at_a_time",),
+    ),
+    Mutation(
+        "lab.computing_not_the_clock",
+        "scenarios/lab/explain_worker.py",
+        '("computed", time.thread_time() - self._began_s)',
+        '("computed", time.monotonic())',
+        (f"{_EXPLAIN_TESTS}::test_a_search_is_stopped_with_the_answer_so_far",),
+    ),
 )

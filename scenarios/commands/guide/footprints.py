@@ -6,19 +6,19 @@ from html import escape
 
 import numpy as np
 
-from twin.angles import TAU, Array, wrap
+from twin.angles import Array, wrap
 from twin.catalogue import CATALOGUE, in_order
 from twin.chain import Chain
 from twin.drawing import drawn
 from twin.effect import Effect
-from twin.motion import RPM, Motion
+from twin.example import full_motion
+from twin.motion import Motion
 
 WIDTH, HEIGHT = 640, 240
 """Of the picture, in units so small that whole ones draw it."""
 _INSIDE = 16
 _POINTS = 120
-_RPM, _PULL, _WARM_C, _CURRENT_A = 300.0, 0.2, 60.0, 1.0
-"""A shaft that turns, unevenly by a fifth, warm, with a motor that draws current: what needs one of these shows."""
+_RPM, _WARM_C, _CURRENT_A = 300.0, 60.0, 1.0
 _STRENGTH_DEG = 0.1
 _MIDDLE = np.full((1, 4), 0.5)
 _SHARE_PERCENT = 97.0
@@ -26,21 +26,8 @@ _SHARE_PERCENT = 97.0
 
 
 def motion() -> Motion:
-    """Two turns there and two back."""
-    steps = np.arange(2 * _POINTS)
-    angle, there = TAU / _POINTS * steps, np.ones(steps.size)
-    way, shaft = np.concatenate([there, -there]), np.concatenate([angle, angle[::-1]])
-    pace = _RPM * RPM * (1.0 + _PULL * np.cos(shaft))
-    return Motion.from_angle(
-        shaft,
-        time_s=np.concatenate([[0.0], np.cumsum(TAU / _POINTS / np.sqrt(pace[1:] * pace[:-1]))]),
-        direction=way,
-        speed_rad_s=way * pace,
-        turn=np.concatenate([steps // _POINTS, 2 + steps // _POINTS]),
-        temperature_c=np.full(shaft.size, _WARM_C),
-        current_a=np.full(shaft.size, _CURRENT_A),
-        has_channels=True,
-    )
+    """Two turns there and two back, warm, with a motor that draws current: what needs one of these shows."""
+    return full_motion(_POINTS, temperatures_c=(_WARM_C,), speeds_rpm=(_RPM,), currents_a=(_CURRENT_A,))
 
 
 def error_deg(effect: Effect, moved: Motion) -> Array:

@@ -52,25 +52,34 @@ export async function handOver(path, file) {
   return (await answered(fetch(path, { method: "POST", headers, body: file }))).json();
 }
 
-/** A function that does one thing at a time: of what is asked meanwhile only the latest is done. */
-export function latest(work) {
-  let running = false;
+/**
+ * A function that does one thing at a time, or so many: of what is asked meanwhile only the latest is done. What is
+ * overtaken by a later one is told so, and leaves the page to it.
+ */
+export function latest(work, atATime = 1) {
+  let running = 0;
+  let begun = 0;
+  let ended = 0;
   let waiting = null;
   async function next() {
-    running = true;
+    running += 1;
     while (waiting) {
       const arguments_ = waiting;
       waiting = null;
+      begun += 1;
+      const own = begun;
+      const overtaken = () => own < ended;
       try {
-        await work(...arguments_);
+        await work(...arguments_, overtaken);
       } catch (error) {
-        complain(error.message);
+        if (!overtaken()) complain(error.message);
       }
+      ended = Math.max(ended, own);
     }
-    running = false;
+    running -= 1;
   }
   return (...arguments_) => {
     waiting = arguments_;
-    if (!running) next();
+    if (running < atATime) next();
   };
 }

@@ -7,6 +7,8 @@ import { become, element, given, Plot, put, shown } from "./plot.js";
 import { picture, save, showCommand } from "./save.js";
 import { Side, Top } from "./scene.js";
 
+/** Questions that may be underway at a time: the next one need not wait until the last has come back. */
+const UNDERWAY = 2;
 const AT_PAUSE_MS = 60;
 const AT_REST_MS = 180;
 /** As the program has it: `_MAP_MOUNTINGS`. */
@@ -26,7 +28,7 @@ export class DesignView {
       orders: new Plot(by("orders-plot"), { span: [-0.7, 12.7], marks: [0, 2, 4, 6, 8, 10, 12], x: "order / cycles a turn", y: "amplitude / deg", words: "Error by order" }),
       signals: new Plot(by("signals-plot"), { ...TURN, y: "signal / nominal amplitude", words: "The two channels over the turn" }),
     };
-    this.atOnce = latest((design, when) => this.askAtOnce(design, when));
+    this.atOnce = latest((design, when, overtaken) => this.askAtOnce(design, when, overtaken), UNDERWAY);
     this.study = latest((design) => this.askStudy(design));
     this.causes = latest(async (design) => {
       this.alone = (await ask("design/causes", design)).alone_deg;
@@ -61,7 +63,7 @@ export class DesignView {
     this.asked = null;
     this.show();
     this.rest();
-    this.atOnce(this.design);
+    this.atOnce(this.design, undefined);
   }
 
   sized(size) {
@@ -74,9 +76,10 @@ export class DesignView {
       const { remanence_T: _, percent_per_K: __, ...magnet } = this.design.magnet;
       this.design = { ...this.design, magnet };
     }
+    // The question is on its way while the drawing follows the hand.
+    this.atOnce(this.design, when);
     this.show();
     by("figures").classList.add("waiting");
-    this.atOnce(this.design, when);
     // The hand comes first: the causes follow where it pauses, the study and the map where it rests.
     clearTimeout(this.pause);
     this.pause = setTimeout(() => this.causes(this.design), AT_PAUSE_MS);
@@ -103,8 +106,10 @@ export class DesignView {
     this.noteMap();
   }
 
-  async askAtOnce(design, when) {
-    this.told = await ask("design/at-once", design);
+  async askAtOnce(design, when, overtaken) {
+    const told = await ask("design/at-once", design);
+    if (overtaken()) return;
+    this.told = told;
     complain(null);
     this.drawTold(design);
     if (when !== undefined) performance.measure("drag to redraw", { start: when, end: performance.now() });

@@ -83,13 +83,17 @@ export class ExplainView {
     by("open-sweep").disabled = working;
     if (working) {
       by("answer-verdict").textContent = `${this.sweep} is searched`;
-      by("answer-words").textContent = `A thousand readings take seconds, long logs with channels and temperatures minutes. After ${stand.budget_s} s of computing the search ends by itself with what it has.`;
+      by("answer-words").textContent = `How long it takes depends on what is in the sweep: a bench sweep takes seconds, a log with channels, temperatures and many causes minutes. After ${stand.budget_s} s of computing the search ends by itself, and finishes the answer with what it has; Stop does so now.`;
       this.waited(stand);
       this.timer = setTimeout(() => this.trying(async () => this.show(await got("explain"))), WATCHED_EVERY_MS);
       return;
     }
     this.waited(null);
-    if (stand.state === "failed") complain(stand.words);
+    if (stand.state === "failed") {
+      by("answer-verdict").textContent = `${this.sweep} was not explained`;
+      by("answer-words").textContent = `${capital(stand.words)}.`;
+      complain(stand.words);
+    }
     if (stand.state === "done") this.take(stand.answer);
   }
 
@@ -97,8 +101,10 @@ export class ExplainView {
   waited(stand) {
     by("elapsed").hidden = !stand;
     by("seconds").textContent = stand ? `${Math.floor(stand.elapsed_s)} s:` : "";
-    put(by("progress"), stand ? stand.words : "");
-    if (stand) Object.assign(by("elapsed"), { max: stand.budget_s, value: stand.elapsed_s });
+    // Of the computing, which a busy machine keeps waiting, and not of the clock: the bar tells when the search ends.
+    const spent = stand && stand.computed_s >= stand.budget_s ? `the ${stand.budget_s} s of computing are spent, the answer is being finished: ` : "";
+    put(by("progress"), stand ? spent + stand.words : "");
+    if (stand) Object.assign(by("elapsed"), { max: stand.budget_s, value: Math.min(stand.computed_s, stand.budget_s), title: `${Math.round(stand.computed_s)} of ${stand.budget_s} s of computing` });
   }
 
   take(answer) {

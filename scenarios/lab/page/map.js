@@ -56,11 +56,13 @@ export class ErrorMap {
     const px = (value) => frame.left + ((value - span[0][0]) / (span[0][1] - span[0][0])) * (frame.right - frame.left);
     const py = (value) => frame.bottom - ((value - span[1][0]) / (span[1][1] - span[1][0])) * (frame.bottom - frame.top);
     const [w, h] = [px(sizes[1]) - px(sizes[0]), py(gaps[0]) - py(gaps[1])];
-    const cells = element("g", { "shape-rendering": "crispEdges" });
+    // One path a class: hundreds of squares of their own would be laid out and painted with every move of the hand.
+    const cells = new Map(classes.map(({ colour }) => [colour, ""]));
     let [weak, strong] = ["", ""];
     gaps.forEach((gap, row) => sizes.forEach((size, column) => {
       const [x, y] = [px(size) - w / 2, py(gap) - h / 2];
-      cells.append(element("rect", { class: classes.find((one) => one.has(values[row][column])).colour, x, y, width: w + 0.5, height: h + 0.5 }));
+      const { colour } = classes.find((one) => one.has(values[row][column]));
+      cells.set(colour, `${cells.get(colour)}M${x.toFixed(1)} ${y.toFixed(1)}h${(w + 0.5).toFixed(1)}v${(h + 0.5).toFixed(1)}h${(-w - 0.5).toFixed(1)}z`);
       if (low[row][column] < window_[0]) weak += `M${x.toFixed(1)} ${(y + h).toFixed(1)}L${(x + w).toFixed(1)} ${y.toFixed(1)}`;
       if (high[row][column] > window_[1]) strong += `M${x.toFixed(1)} ${y.toFixed(1)}L${(x + w).toFixed(1)} ${(y + h).toFixed(1)}`;
     }));
@@ -75,7 +77,8 @@ export class ErrorMap {
     axes.push(text("air gap / mm", { class: "label", x: 2, y: legend.height + 12 }), text(name, { class: "label", x: (frame.left + frame.right) / 2, y: frame.bottom + 32, "text-anchor": "middle" }));
     this.place = { frame, span, width };
     set(this.svg, { viewBox: `0 0 ${width} ${frame.bottom + 38}` });
-    this.svg.replaceChildren(legend.group, cells, element("path", { class: "hatch weak", d: weak }), element("path", { class: "hatch strong", d: strong }), ...axes, this.point);
+    const areas = [...cells].map(([colour, d]) => element("path", { class: colour, d }));
+    this.svg.replaceChildren(legend.group, element("g", { "shape-rendering": "crispEdges" }, ...areas), element("path", { class: "hatch weak", d: weak }), element("path", { class: "hatch strong", d: strong }), ...axes, this.point);
     this.scale = { px, py };
     this.here(design);
   }

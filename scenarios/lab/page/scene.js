@@ -184,6 +184,11 @@ export class Top extends View {
   draw(design) {
     this.design = design;
     const { magnet, placement, demand } = design;
+    // Of the gap, the temperature and the rest nothing is seen along the shaft.
+    const { air_gap_mm: _, ...place } = placement;
+    const seen = JSON.stringify([magnet, place, demand.tolerance.off_axis, this.width, Boolean(this.held)]);
+    if (seen === this.seen) return;
+    this.seen = seen;
     const { width } = this;
     const height = Math.min(270, Math.max(200, width * 0.6));
     const [wide, deep] = extent(magnet);

@@ -5,13 +5,16 @@ from __future__ import annotations
 import csv
 import json
 import shlex
+import time
 import tomllib
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from scenarios.lab import session
 from scenarios.lab.design import asked_of
 from scenarios.lab.twins import named
 from tests.command_line import halltwin
@@ -97,6 +100,35 @@ def test_what_follows_the_pointer_is_the_chains_own_error(client: Client, begun:
     mean = 0.5 * (error[:360] + error[:359:-1])
     second = 2.0 * abs(np.fft.rfft(mean)[2]) / 360.0
     assert told["orders"]["amplitude_deg"][2] == pytest.approx(second, rel=0.05)
+
+
+def test_the_channels_are_those_of_the_temperature_looked_at(client: Client, begun: dict[str, Any]) -> None:
+    """Of the turn at 25 C, which sets the zero, nothing is shown: a warm magnet's channels are smaller."""
+    cold, warm = (
+        client.ask("design/at-once", changed(begun, temperature_c=at)).json["signals"]["x"] for at in (25.0, 125.0)
+    )
+    assert len(cold) == len(warm) == 360
+    assert max(warm) < 0.95 * max(cold)
+
+
+def test_one_design_is_computed_at_a_time(
+    client: Client, begun: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two questions of the same drag that shared the time would both be late."""
+    inside, most = [0], [0]
+
+    def counted(*_: object) -> dict[str, Any]:
+        inside[0] += 1
+        most[0] = max(most[0], inside[0])
+        time.sleep(0.05)
+        inside[0] -= 1
+        return {}
+
+    monkeypatch.setattr(session, "at_once", counted)
+    with ThreadPoolExecutor(3) as pool:
+        told = list(pool.map(lambda _: client.ask("design/at-once", begun).status, range(3)))
+    assert told == [200] * 3
+    assert most == [1]
 
 
 def test_an_offset_in_volts_counts_more_in_a_weaker_field(client: Client, begun: dict[str, Any]) -> None:

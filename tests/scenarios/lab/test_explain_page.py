@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from tests.command_line import halltwin
+from tests.command_line import csv_text, halltwin, sweep_angles
 from tests.scenarios.lab.browser import BROWSER, WHY_SKIPPED, Page, complaints, cut_off, file_in, unnamed
 from tests.scenarios.lab.test_explain import TWIN
 
@@ -111,4 +112,24 @@ def test_a_hostile_sweep_is_shown_as_what_it_says(explained: Page, saved: Path) 
     assert said.startswith("evil.csv: ")
     assert explained.of("document.querySelector('img')") is None
     assert explained.of("document.getElementById('answer').hidden")
+    assert explained.of("document.getElementById('answer-verdict').textContent") == "evil.csv was not explained"
     assert complaints(explained.browser) == []
+
+
+def test_a_search_is_stopped_on_the_page_and_says_what_becomes_of_it(explained: Page, saved: Path) -> None:
+    """Once for the answer so far, twice for none; the bar shows computing, not the clock."""
+    angle = np.concatenate([np.arange(0.0, 7200.0, 0.5), np.arange(7200.0, 0.0, -0.5)])
+    reading = sweep_angles(angle, noise_deg=0.01, seed=2) + 0.05 * np.sin(np.radians(7.3 * angle))
+    (saved / "long.csv").write_text(csv_text({"reference_deg": angle, "measured_deg": reading % 360.0}))
+    explained.drop(saved / "long.csv")
+    explained.until("document.getElementById('progress').textContent.includes('search')", within_s=60.0)
+    computed, clock = explained.of(
+        "[document.getElementById('elapsed').value, parseFloat(document.getElementById('seconds').textContent)]"
+    )
+    assert 0.0 < computed < clock + 1.0
+    explained.of("document.getElementById('stop').click()")
+    explained.until("document.getElementById('progress').textContent.includes('the answer so far follows')")
+    explained.of("document.getElementById('stop').click()")
+    explained.until("document.getElementById('answer-verdict').textContent === 'long.csv was not explained'")
+    assert explained.of("document.getElementById('answer-words').textContent") == "Stopped; nothing is kept."
+    assert explained.of("document.getElementById('elapsed').hidden && document.getElementById('stop').hidden")

@@ -229,3 +229,13 @@ def test_a_hostile_twin_is_one_line_that_names_it(client: Client, text: bytes, s
     assert got.status == 400
     assert "my twin.toml" in got.error
     assert said in got.error
+
+
+def test_an_answer_comes_in_one_piece(client: Client) -> None:
+    """Head and content: a browser that gets them apart is woken twice, and the hand waits."""
+    guard = client.server.guard
+    with socket.create_connection((ADDRESS, guard.port)) as line:
+        line.sendall(f"GET /{guard.token}/icon.svg HTTP/1.1\r\nHost: {ADDRESS}:{guard.port}\r\n\r\n".encode())
+        head, _, content = line.recv(1 << 20).partition(b"\r\n\r\n")
+    assert head.startswith(b"HTTP/1.1 200")
+    assert content == client.ask("icon.svg").content

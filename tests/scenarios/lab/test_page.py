@@ -194,6 +194,51 @@ def test_it_asks_nobody_but_the_program(page: Page, client: Client) -> None:
     assert {url[: len(client.server.guard.url)] for url in asked} == {client.server.guard.url}
 
 
+LATEST = """(async () => {
+    const { latest } = await import("./ask.js");
+    const [ends, begun, done] = [{}, [], []];
+    const ask = latest(async (name, overtaken) => {
+        begun.push(name);
+        await new Promise((end) => { ends[name] = end; });
+        if (!overtaken()) done.push(name);
+    }, 2);
+    const turn = () => new Promise((next) => setTimeout(next));
+    for (const name of ["a", "b", "c", "d"]) ask(name);
+    ends.b();
+    await turn();
+    ends.a();
+    await turn();
+    ends.d();
+    await turn();
+    return [begun.join(""), done.join("")];
+})()"""
+"""Four questions at once: b is answered before a, on which d begins, the latest of those that waited."""
+
+
+def test_two_questions_are_underway_and_a_late_answer_is_not_drawn(page: Page) -> None:
+    assert page.of(LATEST) == ["abd", "bd"]
+
+
+def test_along_the_shaft_is_drawn_anew_where_something_is_seen_to_change(page: Page) -> None:
+    """A gap is not seen along the shaft, a sensor off the axis is."""
+    page.of("""document.querySelector("#top svg [data-part=sensor]").dataset.kept = "yes" """)
+    page.of(SET_GAP.format("2.2"))
+    assert page.of("""document.querySelector("#top svg [data-part=sensor]").dataset.kept""") == "yes"
+    drag(page, "#side [data-part=sensor] .hit", by=(24.0, 0.0), steps=2)
+    assert page.of("""document.querySelector("#top svg [data-part=sensor]").dataset.kept""") is None
+    page.until(AT_REST)
+
+
+def test_the_map_is_one_path_a_class(page: Page) -> None:
+    """Of 576 squares of their own each would be laid out and painted with every move."""
+    areas = page.of("[...document.querySelectorAll('#map-plot svg > g:nth-child(2) > *')].map((one) => one.tagName)")
+    assert areas == ["path"] * 7
+    counted = (
+        "[...document.querySelectorAll('#map-plot svg > g:nth-child(2) > path')].map((one) => one.getAttribute('d'))"
+    )
+    assert sum(path.count("M") for path in page.of(counted)) == 24 * 24
+
+
 def test_what_is_dragged_is_redrawn_while_it_is_dragged(page: Page) -> None:
     """How fast is measured by ``python -m tests.benchmarks.lab``; here every redraw follows within a glance."""
     drag(page, "#side [data-part=magnet] .south", by=(0.0, -40.0), steps=20)

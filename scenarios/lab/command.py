@@ -33,12 +33,17 @@ def run(sweep: str | None, *, twin: str | None, port: int, browser: bool) -> Non
             contextlib.suppress(KeyboardInterrupt),
             _ended_by(signal.SIGTERM),
         ):
-            print(f"the page is at {server.guard.url}\nonly this machine can open it; Ctrl-C ends it", flush=True)
+            print(started(server.guard.url), flush=True)
             if browser and _has_screen():
                 # Not the secret itself: what a command is given, all users of the machine can list.
                 address = f"{server.guard.origin}{server.door.path}"
                 threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
             server.serve_forever(poll_interval=0.2)
+
+
+def started(url: str) -> str:
+    """What is printed once the page is served."""
+    return f"the page is at {url}\nonly this machine can open it; Ctrl-C ends it"
 
 
 @contextlib.contextmanager

@@ -179,7 +179,7 @@ function figures(answer) {
     ["Error as measured", one.measured_deg, "deg RMS", "its zero taken off"],
     [`Left by ${model}`, one.baseline_held_out_deg, "deg RMS", "on readings it never saw"],
     ["Left by the extended twin", one.extended_held_out_deg, "deg RMS", "on readings it never saw"],
-    ["Closer by", one.gain, "times", "extended twin over that before"],
+    ["Closer by", one.gain, "times", `the extended twin than ${model}`],
     ["Noise floor", one.noise_floor_deg, "deg RMS", one.noise_floor_deg === null ? "no angle was read several times in a row" : "from repeated readings"],
   ];
   const figure = (value, unit) => (value === null ? node("dd", { className: "value words", textContent: "not known" }) : node("dd", { className: "value" }, `${shown(value)} `, node("small", { textContent: unit })));

@@ -6,6 +6,7 @@ import base64
 import contextlib
 import itertools
 import json
+import math
 import os
 import select
 import shutil
@@ -72,6 +73,7 @@ class Page:
 
     browser: Browser
     session: str
+    size: tuple[int, int] = (1280, 900)
 
     def call(self, method: str, **params: Any) -> dict[str, Any]:
         """See :meth:`Browser.call`."""
@@ -93,16 +95,26 @@ class Page:
 
     def resize(self, width: int, height: int = 900, *, dark: bool = False) -> None:
         """A screen of this size, light or dark."""
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.size = (width, height)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", features=[scheme])
+        self._screen(width, height)
+
+    def _screen(self, width: int, height: int) -> None:
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         self.of("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
 
     def picture(self, path: Path, *, height: float | None = None) -> None:
-        """The page as PNG, whole or from the top."""
-        size = self.call("Page.getLayoutMetrics")["cssContentSize"]
-        clip = {"x": 0, "y": 0, "width": size["width"], "height": height or size["height"], "scale": 1}
-        shot = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=True, clip=clip)
+        """The page as PNG, whole or from the top.
+
+        On a screen as high as the picture: to capture beyond it makes the browser lay the page out one pixel wide.
+        """
+        whole = self.call("Page.getLayoutMetrics")["cssContentSize"]["height"]
+        high = math.ceil(height or whole)
+        self._screen(self.size[0], high)
+        clip = {"x": 0, "y": 0, "width": self.size[0], "height": high, "scale": 1}
+        shot = self.call("Page.captureScreenshot", format="png", clip=clip)
+        self._screen(*self.size)
         path.write_bytes(base64.b64decode(shot["data"]))
 
     def mouse(self, kind: str, x: float, y: float) -> None:

@@ -5,14 +5,18 @@ python -m tests.scenarios.lab.pictures
 
 from __future__ import annotations
 
+import json
 import tempfile
 from pathlib import Path
 
+from scenarios.lab.command import started
+from tests.command_line import halltwin
 from tests.scenarios.lab.browser import BROWSER, WHY_SKIPPED, Page, browsing, opened
 from tests.scenarios.lab.serving import serving
 
 DATA = Path(__file__).parents[3] / "scenarios" / "data"
-PICTURES = ("lab_begins.png", "lab_chosen.png", "lab_explains.png")
+PICTURES = ("lab_installed.png", "lab_begins.png", "lab_chosen.png", "lab_explains.png", "lab_report.png")
+INSTALL = "python3 -m venv .venv && .venv/bin/pip install -q . && .venv/bin/halltwin lab"
 AT_REST = "!!document.querySelector('#map-plot rect') && !document.querySelector('#figures.waiting')"
 HIGH = 905.0
 _PLACE = """(() => {
@@ -27,10 +31,34 @@ _PLACE = """(() => {
 """Where the ticks of the map stand on the screen: value and pixel of each, across and up."""
 
 
+_TERMINAL = """(() => {
+    document.body.replaceChildren(Object.assign(document.createElement("pre"), { textContent: %s }));
+    const style = { margin: 0, padding: "14px 18px", background: "#1b1f24", color: "#e8eaed", whiteSpace: "pre-wrap",
+        font: "15px/1.5 ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace", overflowWrap: "anywhere" };
+    Object.assign(document.body.style, { margin: 0, background: style.background });
+    Object.assign(document.body.firstChild.style, style);
+})()"""
+"""A blank page as a terminal with some text."""
+
+
+def installed(page: Page, folder: Path, said: str) -> None:
+    """The terminal: what installs and starts it, and what that prints."""
+    page.call("Page.navigate", url="about:blank")
+    page.of(_TERMINAL % json.dumps(f"$ {INSTALL}\n{said}"))
+    page.picture(folder / PICTURES[0], height=150.0)
+
+
+def reported(page: Page, folder: Path, report: Path) -> None:
+    """The report that the command line writes of the same sweep."""
+    page.call("Page.navigate", url=report.as_uri())
+    page.until("location.protocol === 'file:' && document.readyState === 'complete'")
+    page.picture(folder / PICTURES[4], height=HIGH)
+
+
 def begins(page: Page, folder: Path) -> None:
     """The page as it begins."""
     page.until(AT_REST)
-    page.picture(folder / PICTURES[0], height=HIGH)
+    page.picture(folder / PICTURES[1], height=HIGH)
 
 
 def chosen(page: Page, folder: Path) -> None:
@@ -41,7 +69,7 @@ def chosen(page: Page, folder: Path) -> None:
         page.mouse(kind, x, y)
     page.until(f"document.getElementById('verdict').textContent.includes(' in 100 % ') && {AT_REST}")
     page.of("scrollTo(0, 0)")
-    page.picture(folder / PICTURES[1], height=HIGH)
+    page.picture(folder / PICTURES[2], height=HIGH)
 
 
 def _pixel(ticks: list[list[float]], value: float) -> float:
@@ -57,7 +85,7 @@ def explains(page: Page, folder: Path) -> None:
     page.until("!!document.querySelector('#spectrum-plot path.line')", within_s=120.0)
     page.of("document.querySelector('#layers li:nth-child(3) input').click()")
     page.until("document.getElementById('residual-title').textContent.includes('without hysteresis')")
-    page.picture(folder / PICTURES[2], height=HIGH)
+    page.picture(folder / PICTURES[3], height=HIGH)
 
 
 def main() -> None:
@@ -71,6 +99,10 @@ def main() -> None:
             page = opened(browser, client.server.guard.url, folder)
             for step in (begins, chosen, explains):
                 step(page, DATA)
+            installed(page, DATA, started(client.server.guard.url))
+            report = folder / "report.html"
+            assert halltwin("explain", DATA / "bench_sweep.csv", "--report", report).code == 0
+            reported(page, DATA, report)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ from pathlib import Path
 
 import pytest
 
+from scenarios.lab.command import started
 from tests.pages import ROOT
 from tests.scenarios.lab import pictures
 from tests.scenarios.lab.browser import BROWSER, WHY_SKIPPED, Page, browsing, complaints, file_in, opened
@@ -64,6 +65,7 @@ def lab(commands: Path, folder: Path) -> Iterator[str]:
         assert served.stdout is not None
         line = served.stdout.readline()
         assert line.startswith("the page is at http://127.0.0.1:"), line
+        assert "Ctrl-C ends it" in served.stdout.readline()
         yield line.split()[-1]
         served.send_signal(signal.SIGINT)
         assert served.wait(30.0) == 0
@@ -111,15 +113,17 @@ def test_from_nothing_to_an_answer(installed: Path, tmp_path: Path) -> None:
         pictures.explains(page, tmp_path)
         page.of("document.getElementById('save-json').click()")
         answer = file_in(saved, "answer.json")
+        # The same without the page.
+        shutil.copy(DATA / "bench_sweep.csv", work)
+        said = run(installed, work, "explain", "bench_sweep.csv", "--json", "answer.json", "--report", "report.html")
+        pictures.installed(page, tmp_path, started(url))
+        pictures.reported(page, tmp_path, work / "report.html")
         assert complaints(browser) == []
     for name in pictures.PICTURES:
         seen, kept = (folder / name for folder in (tmp_path, DATA))
         # The size in the head of a PNG: the picture of the guide is one of this page.
         assert seen.read_bytes()[16:24] == kept.read_bytes()[16:24]
         assert seen.stat().st_size == pytest.approx(kept.stat().st_size, rel=0.25)
-    # The same without the page.
-    shutil.copy(DATA / "bench_sweep.csv", work)
-    said = run(installed, work, "explain", "bench_sweep.csv", "--json", "answer.json", "--report", "report.html")
     assert "1  hysteresis" in said
     assert (work / "answer.json").read_bytes() == answer
     _, *words = shlex.split(command)

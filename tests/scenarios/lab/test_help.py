@@ -52,7 +52,7 @@ def test_pages_fit_the_screen(page: Page, client: Client, width: int, dark: bool
 def test_it_asks_nobody_but_the_program(page: Page, client: Client) -> None:
     read(page, client, "first_walk.html")
     asked: list[str] = page.of("performance.getEntriesByType('resource').map((one) => one.name)")
-    assert len(asked) == 4
+    assert len(asked) == 6
     assert {url[: len(client.server.guard.url)] for url in asked} == {client.server.guard.url}
     assert page.of("[...document.images].every((one) => one.naturalWidth > 600)")
 

@@ -321,6 +321,13 @@ _STAIRS = "tests/diagnosis/discovery/fitting/test_blurred_stairs.py"
 
 FITTING: tuple[Mutation, ...] = (
     Mutation(
+        "joint_fit.every_trial_has_its_jacobian",
+        "diagnosis/discovery/fitting/joint_fit.py",
+        "    r = fit.whitened_residual()\n",
+        "    r, _ = fit.whitened()\n",
+        ("tests/diagnosis/discovery/fitting/test_joint_fit.py::test_a_step_taken_back_costs_no_derivatives",),
+    ),
+    Mutation(
         "bounded_step.others_go_as_if_no_bound_were_there",
         "diagnosis/discovery/fitting/bounded_step.py",
         "        step, free = within, free & ~beyond\n",
@@ -345,8 +352,8 @@ FITTING: tuple[Mutation, ...] = (
     Mutation(
         "linearised_chain.sensor_sense_left_out",
         _LINEAR,
-        "sense = self.chain.sensor_sense * sense",
-        "pass",
+        'self.chain.sensor_sense if step.key == "after shaft"',
+        '1 if step.key == "after shaft"',
         (f"{_DERIVATIVE}[backlash.half_width_deg-behind_others]",),
         short=True,
     ),

@@ -189,6 +189,14 @@ FORMS: tuple[Mutation, ...] = tuple(
             "tests/twin/test_by_itself.py::test_a_stage_that_is_off_acts_alone",
         ),
         (
+            "exchange.asked_again_in_the_same_fit",
+            "diagnosis/discovery/search/exchange.py",
+            " and stands_in.get(key) is not fit",
+            "",
+            "tests/diagnosis/discovery/search/test_exchange.py"
+            "::test_a_cause_that_stood_its_ground_is_not_asked_again_in_the_same_fit",
+        ),
+        (
             "forms.no_detail_is_freed",
             "diagnosis/discovery/search/exchange.py",
             "detailed(retuned(fit, held), held, plan.threshold, plan.effects)",

@@ -10,6 +10,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.bounded_step import eased, step_within
 from diagnosis.discovery.fitting.coefficients import observables_to_cosine, to_rows
+from diagnosis.discovery.fitting.columns import Columns
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import NoiseFamily
 from diagnosis.discovery.fitting.nuisance import without_nuisance
@@ -73,8 +74,8 @@ class Weighting:
 class Fit:
     """A chain fitted to observations.
 
-    ``residual`` (O, n) over the rows, ``jacobian`` (P, O, n) there too; ``cosine_residual`` and ``cosine_jacobian``
-    their coefficients (O, n) and (P, O, n). ``strengths`` (P,) are those of the priors.
+    ``residual`` (O, n) over the rows and ``cosine_residual`` (O, n) its coefficients. ``strengths`` (P,) are those of
+    the priors.
     """
 
     chain: Chain
@@ -82,15 +83,24 @@ class Fit:
     observations: Observations
     weighting: Weighting
     linear: Linear
+    columns: Columns
     residual: Array
-    jacobian: Array
     cosine_residual: Array
-    cosine_jacobian: Array
     strengths: Array
 
     def __repr__(self) -> str:
         left = np.degrees(np.sqrt(np.mean(self.residual[0][self.observations.usable] ** 2)))
         return f"Fit({self.chain!r}, {len(self.free)} free parameters, {self.rows} rows, {left:.4g} deg RMS)"
+
+    @property
+    def jacobian(self) -> Array:
+        """What each free parameter does to the observables (P, O, n), over the rows."""
+        return self.columns.rows
+
+    @property
+    def cosine_jacobian(self) -> Array:
+        """The same as cosine coefficients (P, O, n)."""
+        return self.columns.cosine
 
     @property
     def settings(self) -> DiscoverySettings:
@@ -133,9 +143,13 @@ class Fit:
     def whitened(self, member: int | None = None) -> tuple[Array, Array]:
         """Residual (N,) and Jacobian (P, N) whitened by a family member (the one in force if not given)."""
         root = root_weights(self.weighting, self.observations.observables, member)
-        r = (self.cosine_residual * root).ravel()
-        j = (self.cosine_jacobian * root).reshape(len(self.free), r.size)
-        return np.concatenate([r, self.prior_residual]), np.concatenate([j, self.prior_jacobian], axis=1)
+        j = (self.cosine_jacobian * root).reshape(len(self.free), root.size)
+        return self.whitened_residual(member), np.concatenate([j, self.prior_jacobian], axis=1)
+
+    def whitened_residual(self, member: int | None = None) -> Array:
+        """The residual (N,) alone."""
+        root = root_weights(self.weighting, self.observations.observables, member)
+        return np.concatenate([(self.cosine_residual * root).ravel(), self.prior_residual])
 
     def covariance(self) -> Array:
         """Covariance (P, P) of the free parameters in their own units; a direction without information is infinite."""
@@ -192,35 +206,27 @@ def evaluate(
     weighting: Weighting,
     strengths: Array | None = None,
 ) -> Fit:
-    """Residual and Jacobian of a chain at its present parameters.
+    """A chain at its present parameters.
 
     ``strengths`` (P,) are those with which priors hold them; not given, they follow from what the chain leaves.
     """
-    observables = observations.observables
-    linear = Linear(chain, observations.motion, blur=weighting.blur, observables=observables, slopes=weighting.slopes)
-    residual = np.empty((observations.observables, len(observations)))
+    seen = observations.observables
+    linear = Linear(chain, observations.motion, blur=weighting.blur, observables=seen, slopes=weighting.slopes)
+    residual = np.empty((seen, len(observations)))
     residual[0] = wrap(observations.measured - linear.angle)
     if observations.log_radius is not None:
         residual[1] = observations.log_radius - linear.log_radius
-    jacobian = np.empty((len(free), observations.observables, len(observations)))
-    for key in dict.fromkeys(f.key for f in free):
-        own = [place for place, f in enumerate(free) if f.key == key]
-        moved = [(free[place].name, free[place].turn) for place in own]
-        jacobian[own] = linear.derivatives(key, find(key, chain.effects), moved)
-    residual, jacobian = without_nuisance(observations, residual), without_nuisance(observations, jacobian)
-    fit = Fit(
-        chain=chain,
-        free=free,
-        observations=observations,
-        weighting=weighting,
-        linear=linear,
-        residual=residual,
-        jacobian=jacobian,
-        cosine_residual=observables_to_cosine(observations, residual),
-        cosine_jacobian=observables_to_cosine(observations, jacobian),
-        strengths=np.zeros(len(free)) if strengths is None else strengths,
-    )
-    return fit if strengths is not None else replace(fit, strengths=_prior_strengths(fit))
+    residual = without_nuisance(observations, residual)
+    columns = Columns(linear, tuple((f.key, f.name, f.turn) for f in free), observations)
+    cosine = observables_to_cosine(observations, residual)
+    held = np.zeros(len(free)) if strengths is None else strengths
+    fit = Fit(chain, free, observations, weighting, linear, columns, residual, cosine, held)
+    return fit if strengths is not None else held_anew(fit)
+
+
+def held_anew(fit: Fit) -> Fit:
+    """The fit as priors hold it that follow from what its chain leaves, whichever held it on the way there."""
+    return replace(fit, strengths=_prior_strengths(replace(fit, strengths=np.zeros(len(fit.free)))))
 
 
 def _prior_strengths(fit: Fit) -> Array:
@@ -349,7 +355,7 @@ def _bounds(effect: Effect, param: Param) -> tuple[float, float]:
 
 def cost_of(fit: Fit) -> float:
     """Sum of the whitened squares that a fit leaves."""
-    r, _ = fit.whitened()
+    r = fit.whitened_residual()
     return float(r @ r)
 
 

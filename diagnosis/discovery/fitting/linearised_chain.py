@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -55,52 +56,58 @@ class Linear:
         self.slopes = slopes
         self.motion = chain.shaft(recorded)
         self.observables = observables
-        self._order = chain.places()
-        self._points: list[tuple[float, Insertion]] = []
         self.stair_variance: Array | None = None
-        self._run(blur)
+        self._steps = list(chain.steps(self.motion))
+        computed = next(step for step in self._steps if step.key == "after channels")
+        self._channels = computed.before
+        self.sensor_angle = computed.after[0]
+        self.angle = self._blurred(computed.after, blur) if blur > 0.0 else self._steps[-1].after[0]
 
-    def _run(self, blur: float) -> None:
+    @cached_property
+    def log_radius(self) -> Array:
+        return np.asarray(np.log(np.hypot(self._channels[0], self._channels[1])))
+
+    @cached_property
+    def _order(self) -> dict[tuple[str, str], float]:
+        return self.chain.places()
+
+    @cached_property
+    def _points(self) -> list[tuple[float, Insertion]]:
+        """Backward: sensitivity of angle and log radius to the signal after each step, by its place in the chain.
+
+        A fit asks for it only where it goes on from: a step that it takes back costs the forward run alone.
+        """
         n = len(self.motion)
-        steps = list(self.chain.steps(self.motion))
-        channels = next(step.before for step in steps if step.key == "after channels")
-        self.log_radius = np.log(np.hypot(channels[0], channels[1]))
-        computed = next(step.after for step in steps if step.key == "after channels")
-        self.sensor_angle = computed[0]
-        self.angle = self._blurred(computed, blur) if blur > 0.0 else steps[-1].after[0]
-        # Backward: sensitivity of (angle, log radius) to the signal after each step.
         sense = np.zeros((self.observables, 1, n))
         sense[0] = 1.0
         bounds = _last_places(self.chain)
         points: list[tuple[float, Insertion]] = []
-        for step in reversed(steps):
+        for step in reversed(self._steps):
             place = (
                 bounds[step.key.removeprefix("after ")] + 0.5 if step.effect is None else self._place_of(step.effect)
             )
-            if step.effect is None and step.key == "after channels":
-                points.append((place, Insertion(step.after, sense)))
-                x, y = step.before
-                square = x * x + y * y
-                here = np.empty((self.observables, 2, n))
-                here[0] = sense[0, 0] * np.stack([-y, x]) / square
-                if self.observables == 2:
-                    here[1] = np.stack([x, y]) / square
-                sense = here
-            elif step.effect is None:
-                points.append((place, Insertion(step.after, sense)))
-                if step.key == "after field":
-                    sense = sense * _slope_of_channels(self.chain, step.before, self.motion)
-                elif step.key == "after shaft":
-                    sense = self.chain.sensor_sense * sense
-                else:
-                    sense = self.chain.output_sense * sense
-            else:
-                points.append((place, Insertion(step.after, sense)))
-                # A quantiser's edges are no slopes: it passes changes on as they are.
-                if step.effect.acts_on != "angle" and (self.slopes or not is_staircase(step.effect)):
-                    sense = _through(step, self.motion, sense)
+            points.append((place, Insertion(step.after, sense)))
+            sense = self._ahead_of(step, sense)
         points.append((-1.0, Insertion(np.broadcast_to(self.motion.shaft_rad, (2, n)), sense)))
-        self._points = sorted(points, key=lambda item: item[0])
+        return sorted(points, key=lambda item: item[0])
+
+    def _ahead_of(self, step: Step, sense: Array) -> Array:
+        """Sensitivity to the signal ahead of a step, from that to the signal behind it."""
+        if step.effect is not None:
+            # A quantiser's edges are no slopes: it passes changes on as they are.
+            passed_on = step.effect.acts_on == "angle" or (is_staircase(step.effect) and not self.slopes)
+            return sense if passed_on else _through(step, self.motion, sense)
+        if step.key == "after channels":
+            x, y = step.before
+            square = x * x + y * y
+            here = np.empty((self.observables, 2, len(self.motion)))
+            here[0] = sense[0, 0] * np.stack([-y, x]) / square
+            if self.observables == 2:
+                here[1] = np.stack([x, y]) / square
+            return here
+        if step.key == "after field":
+            return np.asarray(sense * _slope_of_channels(self.chain, step.before, self.motion))
+        return (self.chain.sensor_sense if step.key == "after shaft" else self.chain.output_sense) * sense
 
     def _blurred(self, computed: Array, blur: float) -> Array:
         """Expected reading where stairs follow: the angle's steps averaged over Gaussian noise of RMS ``blur``.

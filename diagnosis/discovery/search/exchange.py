@@ -64,12 +64,15 @@ class Search:
 def improve(fit: Fit, keys: Sequence[str], plan: Search) -> tuple[Fit, list[str]]:
     """Remove what no longer pays, exchange what another explains better; repeat while anything changes."""
     held = list(keys)
+    stands_in: dict[str, Fit] = {}
     for _ in range(fit.settings.most_rounds):
         before = list(held)
         fit = detailed(retuned(fit, held), held, plan.threshold, plan.effects)
         for key in before:
-            if key in held and len(held) > 1:
+            # In a fit in which a cause stood its ground already it would do so again.
+            if key in held and len(held) > 1 and stands_in.get(key) is not fit:
                 fit, held, plan = _held_or_exchanged(fit, key, held, plan)
+                stands_in[key] = fit
         if held == before:
             break
     return fit, held

@@ -6,7 +6,8 @@ several turns it can be told from noise without naming it: it is projected out, 
 
 from __future__ import annotations
 
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,18 +28,52 @@ def plausible_members(fit: Fit) -> tuple[int, ...]:
     motion = fit.observations.motion
     if motion.turns < fit.settings.noise_turns:
         return everyone
-    aside = _set_aside(fit.observations)
-    if fit.rows < 4 * (len(aside) + len(fit.free)):
+    aside = _locked(fit.observations, fit.weighting.family)
+    if fit.rows < 4 * (len(aside.shapes) + len(fit.free)):
         return everyone
-    columns = np.concatenate([fit.cosine_jacobian[:, 0], aside])
-    score, _ = _scores(fit.cosine_residual[0], columns, fit.weighting.family, fit.rows)
+    score, _ = _scores(fit.cosine_residual[0], aside, fit.cosine_jacobian[:, 0], fit.rows)
     return tuple(int(k) for k in np.flatnonzero(score > score.max() - fit.settings.noise_reach))
 
 
-@lru_cache(maxsize=2)
-def _set_aside(observations: Observations) -> Array:
-    """The locked shapes as cosine coefficients (q, n): the same for all fits to these observations."""
-    return to_cosine(observations, locked_shapes(observations.motion))
+@dataclass(frozen=True, eq=False)
+class _Aside:
+    """Shapes (q, n) set aside, as cosine coefficients of unit length, and their Gram matrices (members, q, q).
+
+    The same for all fits to one set of observations: made once.
+    """
+
+    shapes: Array
+    family: NoiseFamily
+
+    @classmethod
+    def of(cls, columns: Array, family: NoiseFamily) -> _Aside:
+        """Set these columns (q, n) aside."""
+        return cls(_unit(columns), family)
+
+    @cached_property
+    def grams(self) -> Array:
+        """By the family's member that whitens them."""
+        return np.stack([(self.shapes * weight) @ self.shapes.T for weight in self.family.weights])
+
+
+def _unit(columns: Array) -> Array:
+    """Columns (q, n) of unit length."""
+    return np.asarray(columns / np.maximum(np.linalg.norm(columns, axis=1, keepdims=True), 1e-300))
+
+
+@lru_cache(maxsize=4)
+def _locked(observations: Observations, family: NoiseFamily) -> _Aside:
+    """What could be locked to the angle, of the angle."""
+    return _Aside.of(to_cosine(observations, locked_shapes(observations.motion)), family)
+
+
+@lru_cache(maxsize=4)
+def _locked_in_radius(observations: Observations, family: NoiseFamily) -> _Aside:
+    """The same of the radius, which is free of a common size and of the lowest orders."""
+    motion = observations.motion
+    low = [turned(k * motion.shaft_rad) for k in (1, 2) for turned in (np.cos, np.sin)]
+    columns = np.concatenate([np.stack([np.ones(len(motion)), *low]), locked_shapes(motion)])
+    return _Aside.of(radius_to_cosine(observations, columns), family)
 
 
 def either(*members: tuple[int, ...]) -> tuple[int, ...]:
@@ -51,30 +86,30 @@ def radius_noise(fit: Fit) -> tuple[int, float] | None:
 
     None where there are too few rows to set it aside.
     """
-    motion = fit.observations.motion
-    low = [turned(k * motion.shaft_rad) for k in (1, 2) for turned in (np.cos, np.sin)]
-    aside = np.concatenate([np.stack([np.ones(len(motion)), *low]), locked_shapes(motion)])
-    if fit.rows < 2 * len(aside):
+    aside = _locked_in_radius(fit.observations, fit.weighting.family)
+    if fit.rows < 2 * len(aside.shapes):
         return None
-    score, variance = _scores(
-        fit.cosine_residual[1], radius_to_cosine(fit.observations, aside), fit.weighting.family, fit.rows
-    )
+    score, variance = _scores(fit.cosine_residual[1], aside, np.zeros((0, len(fit.observations))), fit.rows)
     best = int(np.argmax(score))
     return best, float(variance[best])
 
 
-def _scores(residual: Array, columns: Array, family: NoiseFamily, rows: int) -> tuple[Array, Array]:
-    """Restricted log likelihood and variance of each family member, the columns (q, n) projected out."""
-    columns = columns / np.maximum(np.linalg.norm(columns, axis=1, keepdims=True), 1e-300)
-    dof = rows - len(columns)
+def _scores(residual: Array, aside: _Aside, columns: Array, rows: int) -> tuple[Array, Array]:
+    """Restricted log likelihood and variance of each family member, columns (p, n) projected out beside the shapes."""
+    own, family, count = _unit(columns), aside.family, len(aside.shapes) + len(columns)
+    dof = rows - count
     score, variance = np.empty(len(family.members)), np.empty(len(family.members))
     cost = family.cost(rows)
+    gram, along = np.empty((count, count)), np.empty(count)
     for member, weight in enumerate(family.weights):
-        white = columns * weight
-        gram = white @ columns.T
-        gram += 1e-9 * np.trace(gram) / len(columns) * np.eye(len(columns))
-        along = white @ residual
-        left = float(residual @ (weight * residual) - along @ np.linalg.solve(gram, along))
+        white, weighted = own * weight, weight * residual
+        across = white @ aside.shapes.T
+        gram[: len(own), : len(own)] = white @ own.T
+        gram[: len(own), len(own) :], gram[len(own) :, : len(own)] = across, across.T
+        gram[len(own) :, len(own) :] = aside.grams[member]
+        gram += 1e-9 * np.trace(gram) / count * np.eye(count)
+        along[: len(own)], along[len(own) :] = own @ weighted, aside.shapes @ weighted
+        left = float(residual @ weighted - along @ np.linalg.solve(gram, along))
         _, log_det = np.linalg.slogdet(gram)
         score[member] = -0.5 * (dof * np.log(max(left, 1e-300)) + cost[member] + log_det)
         variance[member] = left / dof

@@ -17,6 +17,7 @@ from diagnosis.discovery.fitting.joint_fit import (
     Fit,
     Free,
     Weighting,
+    cost_of,
     evaluate,
     free_of,
     solve,
@@ -160,6 +161,17 @@ def test_the_optimum_is_that_of_least_squares(case: Case) -> None:
     away = np.abs((found - start) / deviation - oracle.x)
     assert np.max(np.abs(oracle.x)) > 0.5 * AWAY
     assert np.max(away) < np.sqrt(SMALL_GAIN) + case.neglected
+
+
+def test_a_step_taken_back_costs_no_derivatives() -> None:
+    """Only a fit that a search goes on from is asked for them."""
+    fit, _ = started(CASES["saturation and hysteresis"])
+    trial = evaluate(fit.chain, fit.free, fit.observations, fit.weighting)
+    assert cost_of(trial) == pytest.approx(float(np.sum(trial.whitened()[0] ** 2)))
+    trial = evaluate(fit.chain, fit.free, fit.observations, fit.weighting)
+    cost_of(trial)
+    assert not vars(trial.columns).keys() & {"rows", "cosine"}
+    assert "_points" not in vars(trial.linear)
 
 
 def test_what_is_likely_beforehand_pulls_as_one_more_reading_would() -> None:

@@ -51,6 +51,8 @@ def test_the_scatter_is_the_most_likely() -> None:
 def test_zeros_that_no_reading_tells_stay_as_they_are() -> None:
     """As of a recording without rows in use."""
     fit = fitted()
-    blind = replace(fit, cosine_jacobian=np.zeros_like(fit.cosine_jacobian))
+    away = replace(fit.observations, usable=np.zeros_like(fit.observations.usable))
+    blind = replace(fit, columns=replace(fit.columns, observations=away))
+    assert not blind.cosine_jacobian.any()
     turns = [place for place, one in enumerate(fit.free) if one.turn is not None]
     assert _scatter(blind, turns, 1.0) == pytest.approx(np.std(zeros_deg(fit), ddof=1))

@@ -25,6 +25,7 @@ from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.sweeps import Made, before
+from twin.angles import Array
 from twin.catalogue import find
 
 LIMITS = DiscoverySettings()
@@ -38,6 +39,13 @@ def handed() -> State:
     state = before(held_out_selection, Made(causes=((SATURATION, 0.08),), points=96))
     assert state.keys == (SATURATION,)
     return state
+
+
+@dataclass(frozen=True, eq=False)
+class _Given:
+    """A Jacobian (P, O, n) over the rows that is not the chain's."""
+
+    rows: Array
 
 
 def proof_of(log_p: float, weighed_deg: Sequence[float], family: FamilyWise | None = None) -> Proof:
@@ -148,7 +156,7 @@ def test_rows_are_held_out_singly_where_a_block_as_a_whole_is_lost(
     column = np.where(fold == 1, np.sqrt((1.0 - share) / np.sum(fold == 1)), np.sqrt(share / np.sum(fold != 1)))
     jacobian = np.zeros_like(fit.jacobian)
     jacobian[[free.key == SATURATION for free in fit.free]] = column
-    fit = replace(fit, jacobian=jacobian, weighting=replace(fit.weighting, member=member))
+    fit = replace(fit, columns=_Given(jacobian), weighting=replace(fit.weighting, member=member))
     assert selection.least_seen(fit, [SATURATION], fold) == pytest.approx(share)
     monkeypatch.setattr(selection, "_held_out", lambda *_, **__: ([], [0.02, 0.01]))
     monkeypatch.setattr(selection, "_calibrated", lambda *_: None)
@@ -209,7 +217,7 @@ def test_a_step_is_seen_by_the_rows_on_its_shorter_side(first: int, seen: float)
     jacobian[[free.key == SATURATION for free in fit.free]] = step
     jacobian[[free.key == "zero" for free in fit.free]] = 1.0
     fold = np.arange(n) * 4 // n if first == 12 else np.arange(n) % 4
-    found = selection.least_seen(replace(fit, jacobian=jacobian), [SATURATION], fold)
+    found = selection.least_seen(replace(fit, columns=_Given(jacobian)), [SATURATION], fold)
     assert found == pytest.approx(seen, abs=0.02)
 
 
@@ -220,4 +228,4 @@ def test_what_the_others_do_wholly_is_no_evidence_of_either() -> None:
     jacobian = np.array(fit.jacobian)
     own = np.array([free.key == SATURATION for free in fit.free])
     jacobian[own] = np.tensordot(rng.standard_normal(np.count_nonzero(~own)), jacobian[~own], axes=1)
-    assert selection.least_seen(replace(fit, jacobian=jacobian), [SATURATION], folds(fit)) == 1.0
+    assert selection.least_seen(replace(fit, columns=_Given(jacobian)), [SATURATION], folds(fit)) == 1.0

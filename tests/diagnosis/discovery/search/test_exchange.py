@@ -102,6 +102,25 @@ def test_what_becomes_of_the_causes_held(case: Case) -> None:
     assert (fit is state.fit) == (case.then == state.keys)
 
 
+def test_a_cause_that_stood_its_ground_is_not_asked_again_in_the_same_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first is exchanged, the second kept in what comes of it: a second round asks for the new one alone."""
+    state = plain(BACK)
+    state = holding(
+        reading(state, (0.03, order(4, state.fit)), (0.05, order(5, state.fit, 1.0))), (_AS_FOURTH, _AS_FIFTH)
+    )
+    asked: list[str] = []
+    of = Removal.of
+
+    def counted(fit: Fit, key: str) -> Removal:
+        asked.append(key)
+        return of(fit, key)
+
+    monkeypatch.setattr(Removal, "of", counted)
+    _, held = improve(state.fit, state.keys, Search.among(state.searched, state.fit))
+    assert held == [state.keys[1], SATURATION]
+    assert asked == [*state.keys, SATURATION]
+
+
 def test_only_those_are_tried_that_contended_for_its_place() -> None:
     state = plain(BACK)
     state = reading(state, (0.03, order(4, state.fit)), (0.05, order(5, state.fit, 1.0)))

@@ -84,12 +84,15 @@ def simulate_block(recipe: Recipe, numbers: range) -> Block:
 def recipe_of(twin: str, *, protocol: Protocol, ranges: Ranges, causes: Sequence[str] = (), seed: int = 0) -> Recipe:
     """The recipe for a twin or preset; without ``causes`` all that the protocol can show. Raises UserError."""
     effects = effects_with()
-    visible = drawable(protocol.motion(), effects)
+    motion = protocol.motion()
+    visible, provides = drawable(motion, effects), motion.provides
     for name in causes:
         if name not in visible:
             meant = nearest(name, (effect.name for effect in effects))
+            lacks = [need for effect in effects if effect.name == name for need in effect.missing(provides)]
+            shows = f" (it needs {', '.join(need.replace('|', ' or ') for need in lacks)})" if lacks else ""
             raise UserError(
-                f"cause {name!r}{meant} cannot be drawn with this protocol; expected among {', '.join(visible)}"
+                f"cause {name!r}{meant} cannot be drawn with this protocol{shows}; expected among {', '.join(visible)}"
             )
     check_once("--cause", causes)
     chosen = tuple(name for name in visible if name in causes) if causes else visible

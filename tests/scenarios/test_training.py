@@ -146,5 +146,6 @@ def test_the_store_is_the_same_for_one_and_two_workers_and_a_cluster(tmp_path: P
 
 
 def test_a_cause_the_protocol_cannot_show_is_refused() -> None:
-    with pytest.raises(UserError, match="'gain_drift' cannot be drawn with this protocol .it needs temperature_c, two temperatures\)"):
+    said = r"'gain_drift' cannot be drawn with this protocol \(it needs temperature_c, two temperatures\)"
+    with pytest.raises(UserError, match=said):
         training(causes=("gain_drift",))

@@ -6,7 +6,6 @@ twin leaves ideal shows as such: without a word length there are no codes.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -148,10 +147,13 @@ def behind(steps: Iterable[Step], stage: str) -> Array:
 
 
 def word_bits(chain: Chain) -> int:
-    """Length of the angle word on the link; the frame's longest where the twin states none or more."""
+    """Length of the angle word on the link: the frame's longest where the twin states none, more, or no whole one.
+
+    Steps of a decimal are no word's: they are rounded once more, to the finest word that there is.
+    """
     grid = output_grid(chain.effects)
-    stated = 0 if grid is None else math.ceil(chain.values.get(grid.name, grid.null()).get("bits", 0))
-    return stated if 0 < stated <= SPI_WORD_BITS else SPI_WORD_BITS
+    stated = 0.0 if grid is None else float(chain.values.get(grid.name, {}).get(grid.roles("level")[0], 0.0))
+    return int(stated) if 0.0 < stated <= SPI_WORD_BITS and stated.is_integer() else SPI_WORD_BITS
 
 
 def _codes(chain: Chain, channels: Array) -> Codes | None:

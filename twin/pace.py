@@ -75,10 +75,12 @@ def speed_over_time(shaft_rad: Array, time_s: Array, direction: Array) -> Array:
     speed = np.empty(ticks.time.size)
     for a, b in itertools.pairwise(cuts):
         changing = _changing(ticks.angle[a : b + 1], ticks.time[a : b + 1])
+        # The reading at which the pace changes has the one by which it was reached: late, it reads where that led from.
+        new = slice(min(a, 1), None)
         if changing is None:
-            speed[a : b + 1] = _mean_pace(ticks, a, b) if jitters else np.median(rate[a:b])
+            speed[a : b + 1][new] = _mean_pace(ticks, a, b) if jitters else np.median(rate[a:b])
         else:
-            speed[a : b + 1] = changing
+            speed[a : b + 1][new] = changing[new]
     return np.asarray(np.abs(speed[ticks.of_row]) * direction)
 
 

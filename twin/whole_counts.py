@@ -115,7 +115,9 @@ def _grids(shaft_rad: Array) -> Iterator[tuple[float, Array]]:
     if shaft_rad.size < _ROWS:
         return
     turned = shaft_rad - shaft_rad[0]
-    for decimal in dict.fromkeys(_last_decimal(values) for values in (shaft_rad, within_turn(shaft_rad))):
+    for decimal in dict.fromkeys(
+        _last_decimal(values) for values in (shaft_rad, within_turn(shaft_rad), wrap(shaft_rad))
+    ):
         if decimal is not None and decimal * _MOST_COUNTS > TAU:
             # A turn is no whole number of these. Equal readings stay equal: the rest is the rounding of a double.
             yield TAU / decimal, np.round(turned / decimal, _PLACES)

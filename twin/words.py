@@ -31,8 +31,11 @@ _TRIMMED = 5.0
 _MAD = 1.4826
 _DIGITS_RAD = tuple(np.radians((1.2e-6, 6e-4, 6e-3, 6e-2)))
 """As many digits as files have: six decimals of a degree, or three, two or one."""
-_LAST_DECIMALS_RAD = tuple(sorted((*np.radians((1.0, 0.1, 0.01)), 0.1, 0.01, 1e-3, 1e-4), reverse=True))
-"""Steps of a file that has few decimals of a degree or of a radian, the coarsest first."""
+_DECIMALS_OF_A_TURN = 360_000
+"""Thousandths of a degree."""
+_DECIMAL_RAD = 1e-4
+_HALF_A_TENTH = 0.05
+"""Of a radian, the coarsest decimal: a reading just below the turn may be rounded to as much beyond it."""
 _LONGEST_WORD = 20
 
 
@@ -258,11 +261,16 @@ def word_length(read: Array, *, shortest: int) -> int | None:
 
 
 def decimal_step(read: Array) -> float | None:
-    """The step [rad] of few decimals on which readings (n,) [rad] lie, each turn from its own zero; None: of many."""
-    turned = within_turn(read)
-    for step in _LAST_DECIMALS_RAD:
-        if np.max(np.abs(turned - np.round(turned / step) * step), initial=0.0) < _DIGITS_RAD[0]:
-            return float(step)
+    """The step [rad] of few decimals on which readings (n,) [rad] lie, in each turn from its zero; None: of many.
+
+    The coarsest whole number of thousandths of a degree of which a turn has a whole number, or of ten-thousandths of a
+    radian. The last of these may lie beyond the turn: 6.2832 is the reading of one that is just below it.
+    """
+    turned = read if np.all((read >= 0.0) & (read < TAU + _HALF_A_TENTH)) else within_turn(read)
+    for decimal, turn in ((TAU / _DECIMALS_OF_A_TURN, _DECIMALS_OF_A_TURN), (_DECIMAL_RAD, 0)):
+        places = np.round(turned / decimal)
+        if np.max(np.abs(turned - places * decimal), initial=0.0) < _DIGITS_RAD[0]:
+            return float(np.gcd.reduce(places.astype(np.int64), initial=turn) * decimal) or None
     return None
 
 

@@ -28,6 +28,8 @@ def sweep_facts(sweep: Mapping[str, Any]) -> list[str]:
         said.append(f"{speeds_shown(sweep['speed_rpm'])} by {TIME_AND_REFERENCE}")
     if sweep["output_bits"] is not None:
         said.append(f"output on a {sweep['output_bits']}-bit grid")
+    elif sweep.get("output_step_deg") is not None:
+        said.append(f"output in steps of {plain(sweep['output_step_deg'])} deg")
     return said
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -15,9 +14,10 @@ from scenarios.bench.messages import CHANNEL_LIMIT, HALL_CLOCK_S, Frame
 from scenarios.bench.node import Node
 from scenarios.bench.world import World
 from twin.angles import TAU, Array
-from twin.catalogue import find, output_grid
+from twin.catalogue import find
 from twin.chain import Chain
 from twin.errors import UserError
+from twin.hardware import word_bits
 from twin.link.frames import COUNT_BITS, SPI_WORD_BITS, Bytes, angle_words, spi_frames, spi_words, word_angles
 
 
@@ -30,13 +30,6 @@ def check_playable(chain: Chain) -> None:
                 f"{key}: is defined over a whole record, which a node on the bus does not know; "
                 "leave it out of the twin (faults of the bus: --fault)"
             )
-
-
-def word_bits(chain: Chain) -> int:
-    """Length of the sensor's angle word: what the twin says, else the link's."""
-    grid = output_grid(chain.effects)
-    bits = 0 if grid is None else math.ceil(chain.values.get(grid.name, {}).get(grid.roles("level")[0], 0))
-    return bits if 0 < bits <= SPI_WORD_BITS else SPI_WORD_BITS
 
 
 TAKING, TAKEN = 1, 2

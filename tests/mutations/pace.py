@@ -22,6 +22,12 @@ _OF_PACE: tuple[Mutation, ...] = tuple(
             "test_stamps_that_jitter_tell_the_speed",
         ),
         (
+            "a_reading_at_a_change_has_the_new_pace",
+            "new = slice(min(a, 1), None)",
+            "new = slice(None)",
+            "test_where_the_pace_changes_a_reading_has_the_one_by_which_it_was_reached",
+        ),
+        (
             "pauses_count",
             "    ticks = _without_pauses(ticks)\n",
             "",

@@ -27,6 +27,16 @@ REPORTED = (
         (f"{_CASES}::test_a_sweep_of_the_kind_is_answered_rightly[field_of_drag]",),
     ),
     Mutation(
+        "stale_frames.a_count_is_a_movement",
+        "twin/link/stale_frames.py",
+        "np.maximum(move - TAU / motion.whole_counts.counts_per_turn, 0.0)",
+        "move",
+        (
+            "tests/diagnosis/discovery/stages/test_repeated_frames.py"
+            "::test_two_counts_of_a_coarse_reference_may_be_a_movement_of_one",
+        ),
+    ),
+    Mutation(
         "whole_counts.decimals_of_a_radian",
         "twin/whole_counts.py",
         "if decimal is not None and decimal * _MOST_COUNTS > TAU:",
@@ -46,8 +56,8 @@ REPORTED = (
     Mutation(
         "quantisation.each_turn_from_its_own_zero",
         "twin/link/output_quantisation.py",
-        "< _WHOLE * count, 0.0, np.floor(signal / TAU) * TAU)",
-        "< np.inf, 0.0, np.floor(signal / TAU) * TAU)",
+        "np.where(_is_whole(count), 0.0, np.floor(signal / TAU) * TAU)",
+        "0.0",
         (
             "tests/diagnosis/discovery/marks/test_quantisation.py"
             "::test_hundredths_of_a_radian_are_a_grid_from_each_turns_zero",

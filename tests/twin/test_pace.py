@@ -93,6 +93,13 @@ def test_steady_speeds_stay_what_they_are(tick_s: float) -> None:
     assert np.count_nonzero(away) <= (6 if tick_s == 0.0 else 6 * 12)
 
 
+def test_where_the_pace_changes_a_reading_has_the_one_by_which_it_was_reached() -> None:
+    """One that is late reads where that led from: by the new pace it would be off by the delay times the change."""
+    reached = np.repeat([10.0, 50.0, 20.0], 400)
+    found = of(np.arange(1201) * 2e-3, np.concatenate([[0.0], np.cumsum(2e-3 * reached)]))
+    np.testing.assert_allclose(found, np.concatenate([reached[:1], reached]), rtol=1e-9)
+
+
 def test_one_even_speed_is_one_speed() -> None:
     time = TIME + np.random.default_rng(3).normal(0.0, 0.05 / RATE_HZ, TIME.size)
     found = of(time, 20.0 * TIME)

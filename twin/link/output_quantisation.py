@@ -19,15 +19,20 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     count = 2.0**bits
     step = TAU / count
     # Few decimals of a radian: a turn is no whole number of steps, and each is counted from its own zero.
-    turns = np.where(np.abs(count - np.round(count)) < _WHOLE * count, 0.0, np.floor(signal / TAU) * TAU)
+    turns = np.where(_is_whole(count), 0.0, np.floor(signal / TAU) * TAU)
     return np.where(bits > 0, np.round((signal - turns) / step) * step + turns, signal)
 
 
+def _is_whole(count: Array | float) -> Array:
+    return np.asarray(np.abs(count - np.round(count)) < _WHOLE * count)
+
+
 def attainable(values: Parameters) -> Array:
-    """All angles [rad] in a turn of a word of this many bits, or of this many steps."""
+    """All angles [rad] of a turn: from -pi on where it has a whole number of steps, else from 0 to beyond its end."""
     count = 2.0 ** float(values["bits"])
-    steps = np.arange(int(np.ceil(count * (1.0 - _WHOLE))))
-    return np.asarray(np.where(steps < np.ceil(0.5 * count), steps, steps - count) * (TAU / count))
+    whole = round(count)
+    first, last = (-(whole // 2), whole - whole // 2) if _is_whole(count) else (0, whole + 1)
+    return np.asarray(np.arange(first, last) * (TAU / count))
 
 
 def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:

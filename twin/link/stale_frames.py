@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from twin.angles import Array, wrap
+from twin.angles import TAU, Array, wrap
 from twin.drawing import span
 from twin.effect import BoolArray, Effect, Marks, Param, Parameters
 from twin.motion import Motion
@@ -35,6 +35,9 @@ def marks(
     repeat = np.concatenate([[False], np.abs(wrap(np.diff(measured))) < 1e-9])
     on = (np.diff(motion.direction) == 0) & (np.diff(motion.turn) == 0)
     move = np.concatenate([[0.0], np.where(on, np.abs(np.diff(motion.shaft_rad)), 0.0)])
+    if motion.whole_counts is not None:
+        # Each of two readings of the reference is off by half a count at the most.
+        move = np.maximum(move - TAU / motion.whole_counts.counts_per_turn, 0.0)
     if motion.estimated is not None:
         move = np.minimum(move, _moved_about(measured, repeat))
     grid = max(step, 1e-6)

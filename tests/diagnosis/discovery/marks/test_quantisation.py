@@ -14,6 +14,7 @@ from twin.cordic.cordic_truncation import CORDIC_TRUNCATION, attainable
 from twin.effect import Effect
 from twin.link.output_quantisation import OUTPUT_QUANTISATION
 from twin.motion import Motion
+from twin.words import decimal_step
 
 LIMITS = DiscoverySettings()
 CELLS = 1024
@@ -40,7 +41,7 @@ GRIDS = {
     "six decimals": Grid(bits=14, seen=14, decimals=6),
     "three decimals": Grid(bits=14, seen=14, decimals=3),
     # The last digit is as coarse as a twelfth of the step: anything would lie on such a grid.
-    "three decimals of a fine word": Grid(bits=18, seen=None, decimals=3),
+    "three decimals of a fine word": Grid(bits=18, seen=np.log2(360_000.0), decimals=3),
     "two decimals": Grid(bits=12, seen=12, decimals=2),
     "two decimals of a fine word": Grid(bits=16, seen=np.log2(36_000.0), decimals=2),
     "one decimal": Grid(bits=12, seen=np.log2(3600.0), decimals=1),
@@ -66,9 +67,22 @@ def test_hundredths_of_a_radian_are_a_grid_from_each_turns_zero() -> None:
     np.testing.assert_allclose(read, turned + TAU, rtol=0.0, atol=1e-12)
     angles = OUTPUT_QUANTISATION.attainable
     assert angles is not None
-    # 628 steps and a part of one.
+    # 628 steps and a part of one; of 0.1 rad 6.3 is read just below the end of the turn.
     assert angles({"bits": np.log2(TAU / 0.01)}).size == 629
-    assert angles({"bits": np.log2(3600.0)}).size == 3600
+    assert angles({"bits": np.log2(TAU / 0.1)})[-1] == pytest.approx(6.3)
+    np.testing.assert_allclose(np.degrees(angles({"bits": np.log2(3600.0)})), np.arange(-1800, 1800) / 10.0)
+
+
+@pytest.mark.parametrize("step_deg", [0.5, 0.25, 0.02, 1.0])
+def test_the_coarsest_step_of_the_decimals_is_told(step_deg: float) -> None:
+    read = np.radians(np.random.default_rng(4).choice(round(360.0 / step_deg), size=200) * step_deg)
+    assert decimal_step(read) == pytest.approx(np.radians(step_deg), rel=1e-12)
+
+
+@pytest.mark.parametrize("decimals", [1, 2, 3, 4])
+def test_the_last_decimal_of_a_radian_may_lie_beyond_the_turn(decimals: int) -> None:
+    read = np.round(np.append(np.random.default_rng(4).uniform(0.0, TAU, 300), TAU - 1e-5), decimals)
+    assert decimal_step(read) == pytest.approx(10.0**-decimals, rel=1e-12)
 
 
 def holding(share: float) -> Effect:

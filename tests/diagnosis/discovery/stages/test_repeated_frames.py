@@ -84,6 +84,19 @@ def test_a_repeat_that_the_expected_reading_repeats_is_none() -> None:
     assert log_p == 0.0
 
 
+def test_two_counts_of_a_coarse_reference_may_be_a_movement_of_one() -> None:
+    """In hundredths of a radian: an equal word where the reference went on by two of them is no frame sent again."""
+    motion = Motion.from_angle(np.round(np.mod(np.arange(700) * 0.0123, TAU), 2))
+    (two, *_) = np.flatnonzero(np.diff(motion.shaft_rad) > 0.015) + 1
+    measured = motion.shaft_rad + 0.004
+    measured[two] = measured[two - 1]
+    off = np.where(np.arange(700) == two, 0.012, 0.0)
+    assert not marks(measured, off, 1e-3, 0.01, motion)[0].any()
+    # Of a reference that reads exactly it would be one.
+    exact = Motion.from_angle(motion.shaft_rad + 1e-5 * np.random.default_rng(1).standard_normal(700))
+    assert np.flatnonzero(marks(measured, off, 1e-3, 0.01, exact)[0]).tolist() == [two]
+
+
 def test_loud_noise_may_cancel_the_movement() -> None:
     """Two readings alike, two degrees apart: among readings of 1 deg by chance, among those of 0.02 deg hardly ever."""
     state = before(repeated_frames, CLEAN)

@@ -137,9 +137,18 @@ def may_be_torque(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
 
 
 def _orders_beyond(fit: Fit, keys: Sequence[str]) -> list[int]:
-    """Whole orders of a cause's own waves above those that torques are looked for at."""
-    lines = [(find(key, fit.chain.effects).line, fit.chain.values[key]) for key in keys]
-    own = {round(float(values[line.param])) for line, values in lines if line is not None and line.clock == "shaft"}
+    """Whole orders of a cause's own waves above those that torques are looked for at.
+
+    Of periods within a turn, as of teeth, also what comes of two of their orders together.
+    """
+    own: set[int] = set()
+    for key in keys:
+        effect, values = find(key, fit.chain.effects), fit.chain.values[key]
+        if effect.line is not None and effect.line.clock == "shaft":
+            own.add(round(float(values[effect.line.param])))
+        if effect.comb is not None:
+            orders = [round(order) for order in effect.comb.orders(values)]
+            own.update(orders, (one + other for one in orders for other in orders))
     return sorted(order for order in own if order > HIGHEST_ORDER)
 
 

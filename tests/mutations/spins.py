@@ -67,6 +67,13 @@ SPINS: tuple[Mutation, ...] = tuple(
             f"{_EXPLAIN}::test_a_cogging_of_a_higher_order_than_is_looked_for_may_be_a_torque_too",
         ),
         (
+            "spins.the_double_of_a_tooth_is_no_torque",
+            "diagnosis/report/motion.py",
+            "        if effect.comb is not None:\n",
+            "        if False:\n",
+            f"{_EXPLAIN}::test_a_cogging_and_its_double_may_be_a_torque_too",
+        ),
+        (
             "spins.all_logs_are_one",
             "diagnosis/spin/of_log.py",
             "    own = None if len(logs) == 1 else ",

@@ -67,6 +67,15 @@ def test_a_cogging_of_a_higher_order_than_is_looked_for_may_be_a_torque_too() ->
     assert "second speed" in cause["to_tell_apart"]
 
 
+def test_a_cogging_and_its_double_may_be_a_torque_too() -> None:
+    """Of 18 teeth: to the sensor it is one of 18 periods, whose double lies above the orders that are looked for."""
+    log, angle = even(9.0, order=18, error_deg=0.4), 360.0 * 9.0 * TIME
+    log["measured_deg"] = np.mod(log["measured_deg"] + 0.1 * np.cos(36.0 * np.radians(angle)), 360.0)
+    causes = explain(log).to_dict()["causes"]
+    assert causes[0]["name"] == "multipole"
+    assert all("torque_ripple" in cause["indistinguishable_from"] for cause in causes)
+
+
 def test_at_one_speed_a_ripple_of_the_reference_is_two_waves_in_time() -> None:
     answer = at_one_speed().to_dict()
     assert answer["not_visible"]["reference_ripple"] == ["a reference|two speeds|vx"]

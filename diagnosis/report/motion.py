@@ -13,11 +13,12 @@ from diagnosis.discovery.result import Discovery
 from diagnosis.report.sweep_words import speeds_shown
 from diagnosis.report.wording import plain
 from diagnosis.spin.smoother import HIGHEST_ORDER
+from diagnosis.spin.speeds import two_speeds_alone
 from twin.angles import TAU, Array
 from twin.catalogue import find
 from twin.confidence import Z95
 from twin.estimated_motion import EstimatedMotion, Torque
-from twin.pace import LEAST_SPEEDS, STOP_AND_MEASURE_S
+from twin.pace import STOP_AND_MEASURE_S
 
 TORQUE = "torque_ripple"
 """What a torque locked to the angle is called where a cause may as well be one."""
@@ -84,10 +85,7 @@ def _of_one_piece(estimated: EstimatedMotion, speed: Array) -> list[int]:
 
     Where a belt or a coupling resonates at the order's frequency, the rotor answers by more, by less, or the other way.
     """
-    rising = np.sort(speed)
-    between = 1 + int(np.argmax(rising[1:] / rising[:-1]))
-    two = all(group[-1] - group[0] < LEAST_SPEEDS * group[-1] for group in (rising[:between], rising[between:]))
-    return [one.order for one in _listed(estimated)] if two else []
+    return [one.order for one in _listed(estimated)] if two_speeds_alone(speed) else []
 
 
 def _listed(estimated: EstimatedMotion) -> list[Torque]:

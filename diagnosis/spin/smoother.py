@@ -16,12 +16,12 @@ from functools import cached_property
 import numpy as np
 
 from diagnosis.spin.problem import Own, Problem, Reduced, degrees_of_freedom, held_at, knee, likeliest
+from diagnosis.spin.speeds import several_speeds, two_speeds_alone
 from diagnosis.spin.spline import Spline, rate
 from diagnosis.spin.variance_components import Drawn, drawn, solved
 from twin.angles import Array
 from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import response
-from twin.pace import LEAST_SPEEDS
 
 HIGHEST_ORDER = 32
 """Of the sensor's error and of the torques: the second harmonic of a cogging by sixteen teeth."""
@@ -119,14 +119,12 @@ class _Estimate:
         )
         reduced = made.problem.reduced(log_penalty)
         separable = _separable(reduced, variance, usual, self.largest_rad_s2)
-        both_ways = bool(np.ptp(np.sign(self.rates[0])) > 0.0)
         terms, growing = _drawn(
             reduced,
             made.sd,
             variance,
-            usual,
+            self.rates[0],
             separable,
-            both_ways=both_ways,
             most_growing=self.most_growing,
             rows=degrees_of_freedom(made.problem, made.sd),
         )
@@ -193,7 +191,7 @@ def fitted_motion(
     found = _set_out(readings_rad, time_s, stretches, own, most_growing)
     # The first round finds the motion and its speed, which what torques do follows.
     found = found.next()
-    if _several_speeds(found.rates[0]):
+    if several_speeds(found.rates[0]):
         found = replace(found, sd=np.concatenate([found.sd, np.ones(_OF_FRICTION + 2 - _OF_ERROR)]))
         found = replace(found, log_penalty=None)
     for _ in range(_ROUNDS - 1):
@@ -246,12 +244,6 @@ def _set_out(
     )
 
 
-def _several_speeds(speed_rad_s: Array) -> bool:
-    """Whether a motion (n,) has speeds so far apart that what follows them may show."""
-    slow, fast = np.quantile(np.abs(speed_rad_s), [0.1, 0.9])
-    return bool(fast - slow > LEAST_SPEEDS * fast)
-
-
 def _seen(reduced: Reduced, variance: float) -> Array:
     """Amplitude [rad] of each order (orders,): without any torque, all of it is the sensor's."""
     own = slice(_OF_ERROR)
@@ -292,24 +284,26 @@ def _drawn(
     reduced: Reduced,
     sd: Array,
     variance: float,
-    usual_rad_s: float,
+    speed_rad_s: Array,
     separable: BoolArray,
     *,
-    both_ways: bool,
     most_growing: Array,
     rows: float,
 ) -> tuple[Drawn, Array]:
     """The coefficients, each order's torque by a scatter of its own; none where it would not be told.
 
     A torque that grows with the speed, as a modulated viscous friction does, is told from a constant one by three
-    speeds or more. Where it is not, it is taken to be there, half as large, but no larger than it is known to be at
-    most, nor than those of the orders 1 and 2: a torque of a higher order is a cogging, which does not grow. One that
-    reverses with the speed, as a modulated dry friction does, is told by a log of ``both_ways``. An error of order 2
-    that grows with the speed, as of a channel that is read late, is told by three speeds; where it is not, or where
-    torques alone are about as likely, none is taken to be there.
+    speeds or more: at two alone it would be by how each of them wavers, which a drive that holds it answers to in its
+    own way. Where it is not told, it is taken to be there, half as large in the mean square over the readings, but no
+    larger than it is known to be at most, nor than those of the orders 1 and 2: a torque of a higher order is a
+    cogging, which does not grow. One that reverses with the speed, as a modulated dry friction does, is told by a log
+    that has both directions. An error of order 2 that grows with the speed, as of a channel that is read late, is told
+    by three speeds; where it is not, or where torques alone are about as likely, none is taken to be there.
     """
     if len(sd) <= _OF_ERROR:
         return solved(reduced.normal, reduced.gradient, variance, sd), ANY_GROWTH
+    usual_rad_s = float(np.median(np.abs(speed_rad_s)))
+    both_ways, third_speed = bool(np.ptp(np.sign(speed_rad_s)) > 0.0), not two_speeds_alone(speed_rad_s)
     pairs = [np.arange(place, place + 2) for place in range(_OF_ERROR, len(sd), 2)]
     growing = pairs[HIGHEST_ORDER:][:HIGHEST_OF_FRICTION]
     reversing = pairs[HIGHEST_ORDER + HIGHEST_OF_FRICTION : -1] if both_ways else []
@@ -319,7 +313,7 @@ def _drawn(
     sd[_OF_FRICTION:] = 1e-9 / usual_rad_s
     sd[np.concatenate([np.zeros(0, dtype=np.int64), *groups])] = usual_rad_s**2
     found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
-    if _late_channel_told(reduced, variance, usual_rad_s):
+    if third_speed and _late_channel_told(reduced, variance, usual_rad_s):
         sd[pairs[-1]] = 1.0 / usual_rad_s
         late = drawn(reduced.normal, reduced.gradient, variance, groups=[*groups, pairs[-1]], sd=sd)
         # Between two speeds it does what a torque of order 2 does, and would put another error in the sensor.
@@ -327,14 +321,14 @@ def _drawn(
         if likelier > _SURELY:
             found, groups = late, [*groups, pairs[-1]]
     sd = found.sd.copy()
-    half = 0.5 * sd[[pair[0] for pair in pairs[: len(growing)]]] / usual_rad_s
+    half = 0.5 * sd[[pair[0] for pair in pairs[: len(growing)]]] / float(np.sqrt(np.mean(speed_rad_s**2)))
     if separable[:_OF_RUN_OUT].any():
         beyond = half[_OF_RUN_OUT:]
         half[_OF_RUN_OUT:] = np.clip(np.max(half[:_OF_RUN_OUT]), np.minimum(1e-9, beyond), beyond)
     for group, size in zip(growing, np.minimum(half, most_growing), strict=True):
         sd[group] = size
     found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
-    told = np.array([bool(np.mean(found.told[group]) > _TOLD) for group in growing])
+    told = np.array([third_speed and bool(np.mean(found.told[group]) > _TOLD) for group in growing])
     more = [group for group, is_told in zip(growing, told, strict=True) if is_told]
     if more:
         found = drawn(reduced.normal, reduced.gradient, variance, groups=[*groups, *more], sd=found.sd)

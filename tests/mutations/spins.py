@@ -34,7 +34,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.a_late_channel_is_a_torque",
             "diagnosis/spin/smoother.py",
-            "    if _late_channel_told(reduced, variance, usual_rad_s):\n",
+            "    if third_speed and _late_channel_told(reduced, variance, usual_rad_s):\n",
             "    if False:\n",
             f"{_SMOOTHER}::test_an_error_that_grows_with_the_speed_is_no_torque",
         ),
@@ -65,6 +65,20 @@ SPINS: tuple[Mutation, ...] = tuple(
             "        open_orders += _orders_beyond(fit, keys)\n",
             "        pass\n",
             f"{_EXPLAIN}::test_a_cogging_of_a_higher_order_than_is_looked_for_may_be_a_torque_too",
+        ),
+        (
+            "spins.two_speeds_tell_what_grows",
+            "diagnosis/spin/smoother.py",
+            "not two_speeds_alone(speed_rad_s)",
+            "True",
+            f"{_SMOOTHER}::test_what_grows_with_the_speed_takes_a_third_one",
+        ),
+        (
+            "spins.what_grows_does_so_by_half_at_the_median",
+            "diagnosis/spin/smoother.py",
+            "float(np.sqrt(np.mean(speed_rad_s**2)))",
+            "usual_rad_s",
+            f"{_SMOOTHER}::test_what_is_not_told_to_grow_is_taken_to_by_about_half_in_the_mean_square",
         ),
         (
             "spins.the_double_of_a_tooth_is_no_torque",

@@ -173,6 +173,29 @@ def test_each_of_two_logs_has_a_noise_and_a_motion_of_its_own() -> None:
     assert torque.separable
 
 
+def two_speeds(*, slow: float = 12.0, fast: float = 120.0) -> MotionFit:
+    """Two stretches that waver by a twentieth, the slow one the longer; torques of order 2 grow with the speed."""
+    times, angles, begins = [], [], 0.0
+    for speed, rows in ((slow, TIME), (fast, TIME[:4000])):
+        angle = speed * (rows + 0.05 * np.sin(rows))
+        rate = np.gradient(angle, rows)
+        angles.append(angle - (20.0 + rate) * np.cos(2.0 * angle) / (2.0 * rate) ** 2)
+        times.append(rows + begins)
+        begins = float(times[-1][-1]) + 1.0
+    return fitted_motion(read(np.concatenate(angles)), np.concatenate(times), [slice(0, 6000), slice(6000, 10000)])
+
+
+def test_what_grows_with_the_speed_takes_a_third_one() -> None:
+    assert np.all(np.isinf(two_speeds().growing))
+
+
+def test_what_is_not_told_to_grow_is_taken_to_by_about_half_in_the_mean_square() -> None:
+    """By half at the slow speed would be five times as much as does not grow at the fast one."""
+    fit = two_speeds()
+    torque, growing = fit.terms.sd[2 * HIGHEST_ORDER + 2], fit.terms.sd[4 * HIGHEST_ORDER + 2]
+    assert 0.3 * torque < growing * np.sqrt(np.mean(fit.speed_rad_s**2)) < torque
+
+
 def test_two_logs_of_one_speed_each_tell_together_what_neither_tells() -> None:
     slow, fast = 40.0 * TIME, 100.0 * TIME
     logs = [

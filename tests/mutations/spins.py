@@ -20,7 +20,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.torques_are_the_sensors",
             "diagnosis/spin/smoother.py",
-            "    if _several_speeds(found.rates[0]):\n",
+            "    if several_speeds(found.rates[0]):\n",
             "    if False:\n",
             f"{_SMOOTHER}::test_a_coast_tells_the_sensor_from_a_torque_of_the_same_order",
         ),
@@ -48,7 +48,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.three_speeds_take_the_rotor_for_one_piece",
             "diagnosis/report/motion.py",
-            "if two else []",
+            "if two_speeds_alone(speed) else []",
             "if True else []",
             f"{_EXPLAIN}::test_what_two_speeds_tell_takes_the_rotor_for_one_piece",
         ),
@@ -195,7 +195,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         ),
         (
             "spins.each_log_alone",
-            "diagnosis/spin/smoother.py",
+            "diagnosis/spin/speeds.py",
             "return bool(fast - slow > LEAST_SPEEDS * fast)",
             "return False",
             f"{_SMOOTHER}::test_two_logs_of_one_speed_each_tell_together_what_neither_tells",
@@ -203,7 +203,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.a_swing_within_a_turn_is_a_second_speed",
             "diagnosis/spin/smoother.py",
-            "    if _several_speeds(found.rates[0]):\n",
+            "    if several_speeds(found.rates[0]):\n",
             "    if _several_speeds(np.diff(readings_rad) / np.diff(time_s)):\n",
             f"{_SMOOTHER}::test_a_torque_that_speeds_the_shaft_up_and_slows_it_down_makes_no_second_speed",
         ),

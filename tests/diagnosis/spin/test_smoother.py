@@ -237,4 +237,5 @@ def test_what_is_known_to_grow_no_more_leaves_an_error_better_known() -> None:
     stretches = [slice(0, first), slice(first, time.size)]
     free, held = (fitted_motion(readings, time, stretches, **most) for most in ({}, {"most_growing": np.full(4, 1e-4)}))
     assert np.isinf(free.growing).all()
-    assert held.terms.covariance[0, 0] < 0.25 * free.terms.covariance[0, 0]
+    # Not told, it is taken to be there: the most of what then is open. Without the limit both are the same.
+    assert held.terms.covariance[0, 0] < 0.5 * free.terms.covariance[0, 0]

@@ -270,9 +270,15 @@ LOGS: tuple[Mutation, ...] = (
         "tests/untidy/test_untidy.py",
         (
             "logs.a_last_separator_begins_a_cell",
-            "    rows = _without_empty_ends(rows)\n",
-            "",
+            "    rows, empty = _without_empty_ends(rows)\n",
+            "    empty = []\n",
             "::test_lines_that_end_with_the_separator_have_no_further_column",
+        ),
+        (
+            "logs.an_empty_column_is_not_told",
+            "for name in empty))",
+            "for name in []))",
+            "::test_a_last_column_that_nobody_filled_in_is_told",
         ),
     ),
 )

@@ -64,6 +64,25 @@ def test_lines_that_end_with_the_separator_have_no_further_column(tmp_path: Path
     assert told(read_log(written(WAYS["lines that end with the separator"], tmp_path))) == ""
 
 
+def test_a_last_column_that_nobody_filled_in_is_told(tmp_path: Path) -> None:
+    rows = "".join(f"{shaft};{shaft + 0.1:.1f};\n" for shaft in range(360))
+    log = tmp_path / "log.csv"
+    log.write_text(f"Test bench 4;;\nshaft [deg];sensor [deg];remark\n{rows}")
+    found = read_log(log)
+    assert "column 'remark' is empty" in found.table.notes
+    np.testing.assert_allclose(found.columns["measured_deg"] - found.columns["reference_deg"], 0.1)
+
+
+@pytest.mark.parametrize(("chip", "bits"), [("AS5600", 12), ("as5047p raw", 14), ("TLE5012B", 15)])
+def test_a_parts_register_has_as_many_counts_as_its_data_sheet_says(chip: str, bits: int, tmp_path: Path) -> None:
+    """Ten readings of a turn, of which the highest word may as well be of another number of counts."""
+    shaft = np.arange(0.0, 350.0, 35.0)
+    words = np.round(shaft / 360.0 * 2**bits).astype(int)
+    log = tmp_path / "log.csv"
+    log.write_text(f"protractor,{chip}\n" + "".join(f"{a:.0f},{b}\n" for a, b in zip(shaft, words, strict=True)))
+    assert np.max(np.abs(read_log(log).columns["measured_deg"] - shaft)) <= 180.0 / 2**bits + 1e-9
+
+
 @pytest.mark.parametrize("name", READ)
 def test_the_printed_guess_reads_the_same(name: str, tmp_path: Path) -> None:
     """By ``--columns`` in any command the file is the very sweep that was guessed, bit for bit."""

@@ -41,6 +41,8 @@ _DRIFT_ON_A_PART, _LEAST_ON_A_PART_DEG = 10.0, 4.0
 """The same on a part of a turn, where errors of orders 1 and 2 seem to drift, too."""
 _SMALL_STEP_DEG = 90.0
 """Rows that are typically closer than this follow one another round the turn."""
+_DEGREES_OF_TURNS = 400.0
+"""Whole numbers from 0 on that go beyond it are no degrees of one turn."""
 _FULL_SHARE = 0.9
 """Share of a turn that wrapped counts fill at least."""
 _DIGITS, _WHOLE = 6, 1e-9
@@ -226,6 +228,8 @@ def options_of(values: Array, said: Meaning) -> list[AngleUnit]:
         return [AngleUnit(said.unit.name)]
     if said.turns:
         return [AngleUnit(counts=n) for n in said.turns]
+    if _of_chip(values, said.of_chip):
+        return [AngleUnit(counts=said.of_chip)]
     # "raw" says counts, and stands over parts of a turn too.
     called_counts = said.counts and not bool(np.any(values % 1.0 != 0.0))
     counts = _counts(values, stated=called_counts)
@@ -238,6 +242,12 @@ def options_of(values: Array, said: Meaning) -> list[AngleUnit]:
     named = [AngleUnit("deg")] if span > _LEAST_DEG else []
     named += [AngleUnit("rad"), AngleUnit("rev")] if np.any(values % 1.0 != 0.0) else []
     return named + counts
+
+
+def _of_chip(values: Array, a_turn: int) -> bool:
+    """Whether values (n,) may be words of a part: whole numbers beyond degrees of a turn that fit in its register."""
+    whole = bool(np.all(values == np.round(values)))
+    return whole and float(np.min(values)) >= 0.0 and _DEGREES_OF_TURNS < float(np.max(values)) < a_turn
 
 
 def _counts(values: Array, *, stated: bool) -> list[AngleUnit]:

@@ -12,11 +12,26 @@ from twin.sweep_columns import COLUMNS
 _CHIP = re.compile(
     r"as5\d{3}|tle5\d{3}|tli\d{4}|ma[3-7]\d\d|mt6\d{3}|mlx\d+|a133\d|aeat\d*|kmz\d*|tmag\d*|mag(?=_|\d|$)"
 )
+_COUNTS_OF_CHIP = {
+    "as5040": 2**10,
+    "as5045": 2**12,
+    "as5600": 2**12,
+    "as5047": 2**14,
+    "as5048": 2**14,
+    "as5147": 2**14,
+    "as5247": 2**14,
+    "mt6701": 2**14,
+    "mt6816": 2**14,
+    "tle5012": 2**15,
+    "mt6835": 2**21,
+}
+"""Counts of a turn that a part's register of the angle has, by its data sheet."""
 _WORDS = {
     "reference": "ref reference true truth soll referenz nominal ideal expected heidenhain autocollimator "
-    "goniometer theodolite "
+    "goniometer theodolite protractor winkelmesser "
     "consigne theorique referencia riferimento nominale vero vera verdadero",
-    "driven": "enc encoder stage stepper step steps motor cmd commanded command target setpoint desired demand "
+    "driven": "enc encoder stage stepper step steps microstep microsteps motor "
+    "cmd commanded command target setpoint desired demand "
     "demanded wanted vorgabe mech mechanical shaft "
     "actual table rotary position_ref dividing index_table drehgeber welle moteur motore codeur codificador",
     "sensor": "meas measured measurement sensor dut hall magnetic magnet ist gemessen mess messung sensed tmr amr gmr "
@@ -70,7 +85,8 @@ class Meaning:
 
     ``reference`` and ``sensor`` weigh how much speaks for either side of an angle. ``unit`` is the stated one,
     ``counts`` whether it is a count of steps, ``turns`` which numbers of them may make a turn, if that is known;
-    ``own`` the column of a sweep whose name it is, large or small.
+    ``own`` the column of a sweep whose name it is, large or small; ``of_chip`` how many counts make a turn of the part
+    that it names, 0 for none that is known.
     """
 
     role: str
@@ -80,6 +96,7 @@ class Meaning:
     counts: bool = False
     own: str | None = None
     turns: tuple[int, ...] = ()
+    of_chip: int = 0
 
 
 def meaning_of(name: str) -> Meaning:
@@ -97,7 +114,8 @@ def _of_words(name: str) -> Meaning:
     roles = {_MEANING[word] for word in words if word in _MEANING}
     if words and words[-1] in _AXES and unit is None and "read" not in roles:
         return Meaning(_AXES[words[-1]])
-    if _CHIP.search(bare.lower()):
+    chip = _CHIP.search(bare.lower())
+    if chip:
         roles.add("sensor")
     quantity = unit.quantity if unit else None
     if "current" in roles and _MEANING.get(words[-1]) != "current" and quantity != "current":
@@ -115,7 +133,8 @@ def _of_words(name: str) -> Meaning:
     if roles & _ANGLES or quantity == "angle" or counts:
         reference = SURE if "reference" in roles else _LIKELY if "driven" in roles else 0
         sensor = SURE if "sensor" in roles else _LIKELY if "read" in roles and not reference else 0
-        return Meaning("angle", reference, sensor, unit if quantity == "angle" else None, counts)
+        of_chip = _COUNTS_OF_CHIP.get(chip[0], 0) if chip else 0
+        return Meaning("angle", reference, sensor, unit if quantity == "angle" else None, counts, of_chip=of_chip)
     return Meaning(_BY_QUANTITY.get(quantity or "", ""), unit=unit)
 
 

@@ -53,8 +53,9 @@ def read_rows(text: str, encoding: str, *, file: str) -> Table:
         for k, line in told
         if line.lstrip().startswith(_COMMENTS)
     ]
-    rows = _without_empty_ends(rows)
-    notes = (encoding, "each number behind its name" if labelled else f"cells parted by {_SEPARATORS[separator]}")
+    rows, empty = _without_empty_ends(rows)
+    parted = "each number behind its name" if labelled else f"cells parted by {_SEPARATORS[separator]}"
+    notes = (encoding, parted, *(f"column {shown(name)} is empty" for name in empty))
     if len(rows) <= _FEW_ROWS and len(rows[-1].cells) >= _WIDE_ROW:
         listed = _entries([cell for row in rows for cell in row.cells], "entry", file=file, notes=notes)
         if listed is not None:
@@ -129,10 +130,14 @@ def _by_blanks(line: str) -> list[str]:
     return [cell.replace("\0", " ") for cell in joined.split()]
 
 
-def _without_empty_ends(rows: list[Row]) -> list[Row]:
-    """The rows without their last cell where it is empty in all that have as many: lines that end with a separator."""
+def _without_empty_ends(rows: list[Row]) -> tuple[list[Row], list[str]]:
+    """The rows without their last cell where it is empty in all that have as many: lines that end with a separator.
+
+    Where it has a name it is a column that nobody filled in, and the name is given back.
+    """
     width = Counter(len(row.cells) for row in rows).most_common(1)[0][0]
     full = [row for row in rows if len(row.cells) == width]
     if width < 3 or any(row.cells[-1] for row in full if is_number(row.cells[0], comma_parts=False)):
-        return rows
-    return [Row(row.number, row.cells[:-1]) if len(row.cells) == width and not row.cells[-1] else row for row in rows]
+        return rows, []
+    names = [row.cells[-1] for row in full if row.cells[-1]]
+    return [Row(row.number, row.cells[:-1]) if len(row.cells) == width else row for row in rows], names

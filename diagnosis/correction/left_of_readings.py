@@ -94,7 +94,7 @@ def _noise_and_rest(error_rad: Array, apart_deg: float, noise_deg: float) -> lis
         NotRemoved(
             "else",
             rms_deg=float(np.sqrt(rest)),
-            at="no noise, and no function of the reading: current, time, turn or other",
+            at="no noise, and not in the correction: an order beyond its own, current, time, turn or other",
         ),
     ]
 

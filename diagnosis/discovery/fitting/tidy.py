@@ -10,9 +10,8 @@ from twin.chain import Chain
 
 
 def tidy(chain: Chain) -> Chain:
-    """Amplitudes made positive, phases and zeros brought to (-180, 180]; the very chain where all of them are."""
+    """Amplitudes made positive, phases and zeros brought to (-180, 180]."""
     values = {key: dict(params) for key, params in chain.values.items()}
-    changed = False
     for key, params in values.items():
         effect = find(key, chain.effects)
         phases = effect.roles("phase")
@@ -22,9 +21,6 @@ def tidy(chain: Chain) -> Chain:
                 for turned in effect.roles("strength"):
                     params[turned] = -float(params[turned])
                 params[phases[0]] = float(params[phases[0]]) + 180.0
-                changed = True
         for name in (*phases, *((ZERO_ANGLE.name,) if key == ZERO_ANGLE.key else ())):
-            if not -180.0 < float(params[name]) <= 180.0:
-                params[name] = float(-((-float(params[name]) + 180.0) % 360.0 - 180.0))
-                changed = True
-    return replace(chain, values=values) if changed else chain
+            params[name] = float(-((-float(params[name]) + 180.0) % 360.0 - 180.0))
+    return replace(chain, values=values)

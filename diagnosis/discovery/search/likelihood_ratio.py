@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, free_of, held_anew, solve
+from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, free_of, solve
 from diagnosis.discovery.fitting.noise.plausible import plausible_members, radius_noise
 from diagnosis.discovery.fitting.tidy import tidy
 from diagnosis.discovery.search.screening import Base, Candidate
@@ -77,8 +77,7 @@ def refit(chain: Chain, free: Sequence[Free], like: Fit, *, iterations: int = 12
 def solve_tidy(fit: Fit, *, iterations: int = 12) -> Fit:
     """The fit at its optimum, phases and signs made tidy."""
     fit = solve(fit, iterations=iterations)
-    chain = tidy(fit.chain)
-    return held_anew(fit) if chain is fit.chain else replace_chain(fit, chain)
+    return replace_chain(fit, tidy(fit.chain))
 
 
 def replace_chain(fit: Fit, chain: Chain) -> Fit:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,19 @@ import numpy as np
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from twin.effect import Effect
 
+
+def _cached(thing: Any, name: str) -> bool:
+    return isinstance(getattr(type(thing), name, None), cached_property)
+
+
 _HELD: tuple[tuple[Any, Callable[[Any], Any]], ...] = (
     (Effect, lambda effect: effect.name),
     (np.ndarray, lambda array: (array.shape, str(array.dtype), array.tobytes())),
     (np.random.Generator, lambda generator: repr(generator.bit_generator.state)),
-    (Linear, lambda linear: content(vars(linear))),
+    (
+        Linear,
+        lambda linear: {name: content(value) for name, value in vars(linear).items() if not _cached(linear, name)},
+    ),
     (Mapping, lambda mapping: {key: content(value) for key, value in mapping.items()}),
     ((list, tuple), lambda several: tuple(content(one) for one in several)),
 )

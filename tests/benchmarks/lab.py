@@ -3,8 +3,8 @@
     python -m tests.benchmarks.lab [moves]
 
 A headless Chromium drags the magnet of the page; the page itself notes when the pointer moved and when everything that
-follows from it was drawn; and so when a layer of a sweep of 100,080 readings is switched. Beside it, the time that the
-program alone takes for an answer, and for the picture of that sweep with one of its causes off, spectrum included.
+follows from it was drawn. Beside it, the time that the program alone takes for an answer, and for the picture of a
+sweep of 100,080 readings with one of its causes off, spectrum included.
 """
 
 from __future__ import annotations
@@ -25,13 +25,9 @@ from tests.scenarios.lab.browser import BROWSER, WHY_SKIPPED, browsing, opened
 from tests.scenarios.lab.dragging import DRAG_TIMES
 from tests.scenarios.lab.serving import Client, serving
 from twin.files import read_twin
-from twin.sweep import Sweep
 
 DATA = Path(__file__).parents[2] / "scenarios" / "data"
 _FRAME_S = 1.0 / 60.0
-_SEARCH_S = 300.0
-LOOK_TIMES = "performance.getEntriesByName('look to redraw').map((one) => one.duration)"
-"""Milliseconds from each switch or move of a number to the redraw that follows it, in the page's own clock."""
 
 
 def dragged(client: Client, folder: Path, moves: int) -> list[float]:
@@ -64,31 +60,11 @@ def answered(client: Client, times: int) -> list[float]:
     return taken
 
 
-def long_sweep() -> Sweep:
-    """100,080 readings."""
-    motion = Protocol(turns=139, points=360, both_directions=True, channels=False).motion()
-    return read_twin(DATA / "bench_twin.toml").simulate(motion, seed=1)
-
-
-def switched(client: Client, folder: Path, times: int) -> list[float]:
-    """Milliseconds from the switch of a layer of the long sweep to the redraw, in the browser."""
-    long_sweep().write(folder / "long.csv")
-    with browsing(folder) as browser:
-        page = opened(browser, client.server.guard.url, folder)
-        page.until("document.querySelector('#map-plot rect') && !document.querySelector('#figures.waiting')")
-        page.drop(folder / "long.csv")
-        page.until("document.querySelectorAll('#layers li input').length > 2", within_s=_SEARCH_S)
-        page.until("performance.getEntriesByName('look to redraw').length > 0", within_s=_SEARCH_S)
-        for done in range(1, times + 1):
-            page.of("document.querySelector('#layers li:nth-child(3) input').click()")
-            page.until(f"performance.getEntriesByName('look to redraw').length > {done}")
-        taken: list[float] = page.of(LOOK_TIMES)
-        return taken[1:]
-
-
 def looked(times: int) -> list[float]:
     """Milliseconds for the picture of a long sweep, whose search is stopped once it holds its cause."""
-    layers = Layers(explain(long_sweep(), budget_s=60.0))
+    twin = read_twin(DATA / "bench_twin.toml")
+    motion = Protocol(turns=139, points=360, both_directions=True, channels=False).motion()
+    layers = Layers(explain(twin.simulate(motion, seed=1), budget_s=60.0))
     print(f"of 100,080 readings {len(layers.read.error_deg):,} are drawn")
     taken = []
     for step in range(times):
@@ -112,7 +88,6 @@ def main() -> None:
                 print(WHY_SKIPPED)
             else:
                 rows["drag to redraw"] = dragged(client, folder, moves)
-                rows["a layer of 100,080 readings switched, to the redraw"] = switched(client, folder, 40)
     rows["a look at 100,080 readings"] = looked(40)
     for what, taken in rows.items():
         median, high = np.quantile(taken, [0.5, 0.95])

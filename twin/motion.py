@@ -172,6 +172,30 @@ class Motion:
         found.__dict__.update(recorded_rad=self.recorded_rad[rows], whole_counts=whole)
         return found
 
+    def averaged(self, group: IntArray) -> Motion:
+        """Means over groups of rows, (n,) numbers from 0 in their order; what is no quantity is that of the first."""
+        many = np.bincount(group)
+        first = np.searchsorted(group, np.arange(many.size)).astype(np.int64)
+
+        def mean(values: Array) -> Array:
+            return np.asarray(np.bincount(group, values) / many)
+
+        found = replace(
+            self,
+            shaft_rad=mean(self.shaft_rad),
+            time_s=mean(self.time_s),
+            direction=self.direction[first],
+            speed_rad_s=mean(self.speed_rad_s),
+            turn=self.turn[first],
+            temperature_c=mean(self.temperature_c),
+            current_a=mean(self.current_a),
+            estimated=None if self.estimated is None else self.estimated.averaged(group),
+            recordings=None if self.recordings is None else self.recordings.part(first),
+        )
+        whole = None if self.whole_counts is None else self.whole_counts.averaged(group)
+        found.__dict__.update(recorded_rad=mean(self.recorded_rad), whole_counts=whole)
+        return found
+
     def at(self, shaft_rad: Array) -> Motion:
         """The same record, of a shaft that stood at other angles (n,) than the reference reads."""
         return self._with(shaft_rad=shaft_rad)

@@ -30,7 +30,10 @@ def replay(
     files = OutputFiles.checked([(output, MEASURED)], inputs=[log], force=force)
     if not log.is_file():
         raise UserError(f"{log}: no such file; give a log that --record wrote, or another of python-can's formats")
-    if any(messages().name_of(message) == SpinAssembler.request for message in _frames(log)):
+    # What a run asks for first tells which it was: no need to read on.
+    names = (messages().name_of(message) for message in _frames(log))
+    first = next((name for name in names if name in (SpinAssembler.request, Assembler.request)), None)
+    if first == SpinAssembler.request:
         spun = SpinAssembler(channels=channels)
         _feed(spun, log, "--no-channels, where these")
         files.write({output: spin_text(spun.readings)})

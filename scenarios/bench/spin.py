@@ -163,23 +163,31 @@ def _take(plan: SpinPlan, sequence: Sequence) -> None:
 
 def _drive(sequence: Sequence, speed_rpm: float, *, let_go: bool, leg: int) -> None:
     done = LET_GO if let_go else TURNING
-    sequence.ask(
-        "SpinCommand",
-        "MotionStatus",
-        {"Speed": speed_rpm, "Release": let_go, "Leg": leg % 256},
-        lambda frame: frame.values["State"] == done,
-        busy=lambda frame: frame.values["State"] == MOVING,
-    )
+    values = {"Speed": speed_rpm, "Release": let_go, **_of_leg(leg)}
+    _ask_until(sequence, "SpinCommand", "MotionStatus", values, done=done, busy=MOVING)
 
 
 def _capture(sequence: Sequence, *, period_us: int, count: int, leg: int) -> None:
+    values = {"Period": period_us, "Count": count, **_of_leg(leg)}
+    _ask_until(sequence, "CaptureCommand", "CaptureStatus", values, done=TAKEN, busy=TAKING)
+
+
+def _ask_until(
+    sequence: Sequence, command: str, status: str, values: Mapping[str, float], *, done: int, busy: int
+) -> None:
+    """Send a command and wait until its node says that it is done, as long as it says that it is busy."""
     sequence.ask(
-        "CaptureCommand",
-        "CaptureStatus",
-        {"Period": period_us, "Count": count, "Leg": leg % 256},
-        lambda frame: frame.values["State"] == TAKEN,
-        busy=lambda frame: frame.values["State"] == TAKING,
+        command,
+        status,
+        values,
+        lambda frame: frame.values["State"] == done,
+        busy=lambda frame: frame.values["State"] == busy,
     )
+
+
+def _of_leg(leg: int) -> dict[str, float]:
+    """The number of a leg as a message holds it, in one byte."""
+    return {"Leg": leg % 256}
 
 
 def _read_out(sequence: Sequence, index: int, *, leg: int) -> None:
@@ -187,6 +195,6 @@ def _read_out(sequence: Sequence, index: int, *, leg: int) -> None:
     found = sequence.assembler
     before = len(found.readings), found.counts["fault flag"]
     sequence.request_reading(
-        {"Index": index, "Leg": leg % 256},
+        {"Index": index, **_of_leg(leg)},
         lambda: (len(found.readings), found.counts["fault flag"]) != before,
     )

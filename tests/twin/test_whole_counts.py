@@ -127,3 +127,12 @@ def test_a_motion_found_from_what_was_read_keeps_what_that_told() -> None:
     moved = motion.at(motion.shaft_rad + 1e-4)
     assert moved.whole_counts is motion.whole_counts
     np.testing.assert_array_equal(moved.recorded_rad, motion.shaft_rad)
+
+
+def test_means_of_readings_know_what_the_readings_told() -> None:
+    motion = Motion.from_angle(read(THERE, 4000))
+    mean = motion.averaged(np.arange(THERE.size) // 2)
+    assert motion.whole_counts is not None
+    assert mean.whole_counts is not None
+    np.testing.assert_allclose(mean.whole_counts.off, motion.whole_counts.off.reshape(-1, 2).mean(axis=1))
+    np.testing.assert_allclose(mean.recorded_rad, motion.shaft_rad.reshape(-1, 2).mean(axis=1))

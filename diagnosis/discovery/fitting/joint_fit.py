@@ -221,12 +221,7 @@ def evaluate(
     cosine = observables_to_cosine(observations, residual)
     held = np.zeros(len(free)) if strengths is None else strengths
     fit = Fit(chain, free, observations, weighting, linear, columns, residual, cosine, held)
-    return fit if strengths is not None else held_anew(fit)
-
-
-def held_anew(fit: Fit) -> Fit:
-    """The fit as priors hold it that follow from what its chain leaves, whichever held it on the way there."""
-    return replace(fit, strengths=_prior_strengths(replace(fit, strengths=np.zeros(len(fit.free)))))
+    return fit if strengths is not None else replace(fit, strengths=_prior_strengths(fit))
 
 
 def _prior_strengths(fit: Fit) -> Array:

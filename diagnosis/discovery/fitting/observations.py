@@ -107,7 +107,7 @@ def collect(sweep: Sweep) -> Observations:
         deviation = wrap(measured - measured[first][group])
         mean = np.bincount(group, deviation) / count
         raw = motion.shaft_rad
-        motion = _averaged(motion, group, count, first)
+        motion = motion.averaged(group)
         sense = np.sign(np.sum(wrap(np.diff(measured)) * np.diff(raw)))
         ahead = sense * (raw - motion.shaft_rad[group])
         off = deviation - mean[group] - ahead
@@ -209,24 +209,3 @@ def _sure_of_direction(motion: Motion, sweep: Sweep) -> BoolArray:
         for first, _, _ in motion.segments[1:]:
             usable[max(first - 1, 0) : first + 1] = False
     return usable
-
-
-def _averaged(motion: Motion, group: IntArray, count: IntArray, first: IntArray) -> Motion:
-    def mean(values: Array) -> Array:
-        return np.asarray(np.bincount(group, values) / count)
-
-    found = replace(
-        motion,
-        shaft_rad=mean(motion.shaft_rad),
-        time_s=mean(motion.time_s),
-        direction=motion.direction[first],
-        speed_rad_s=mean(motion.speed_rad_s),
-        turn=motion.turn[first],
-        temperature_c=mean(motion.temperature_c),
-        current_a=mean(motion.current_a),
-        estimated=None if motion.estimated is None else motion.estimated.averaged(group),
-        recordings=None if motion.recordings is None else motion.recordings.part(first),
-    )
-    whole = None if motion.whole_counts is None else motion.whole_counts.averaged(group)
-    found.__dict__.update(recorded_rad=mean(motion.recorded_rad), whole_counts=whole)
-    return found

@@ -34,7 +34,7 @@ def require_within(name: str, value: Any, lower: float, upper: float, unit: str 
 
 
 def _plainly_within(value: Any, lower: float, upper: float, *, whole: bool) -> bool:
-    """Whether it is a single number in range: most are, and arrays of one cost twenty times as much."""
+    """Whether it is a single number in range: most are, and an array of one costs fifteen times as much."""
     if not isinstance(value, int | float) or not lower <= value <= min(upper, sys.float_info.max):
         return False
     return not whole or value == round(value)

@@ -15,7 +15,7 @@ export class ExplainView {
     by("held").checked = start.held;
     this.residual = new Plot(by("residual-plot"), { span: [0, 360], x: "", y: "error left / deg", height: 260, words: "What is left of each reading's error" });
     this.spectrum = new Plot(by("spectrum-plot"), { span: [0, 1], x: "order / cycles a turn", y: "amplitude / deg", height: 170, words: "Spectrum of what is left" });
-    this.look = latest((whole) => this.askLook(whole));
+    this.look = latest((whole, when) => this.askLook(whole, when));
     by("open-sweep").addEventListener("click", () => by("sweep-file").click());
     by("sweep-file").addEventListener("change", (event) => {
       const [file] = event.target.files;
@@ -24,11 +24,11 @@ export class ExplainView {
     });
     by("begin").addEventListener("click", () => this.begin());
     by("stop").addEventListener("click", () => this.trying(async () => this.show(await ask("explain/stop", {}))));
-    by("over").addEventListener("change", () => this.changed());
-    by("all-on").addEventListener("click", () => {
+    by("over").addEventListener("change", (event) => this.changed(event.timeStamp));
+    by("all-on").addEventListener("click", (event) => {
       this.layers.allOn();
       this.numbers.fitted();
-      this.changed();
+      this.changed(event.timeStamp);
     });
     by("copy-explain").addEventListener("click", async () => {
       await navigator.clipboard.writeText(by("explain-command").textContent);
@@ -113,8 +113,8 @@ export class ExplainView {
     by("answer-verdict").textContent = `${answer.verdict[0].toUpperCase()}${answer.verdict.slice(1)}${names.length ? `: ${names.join(", ")}` : ""}`;
     by("answer-words").textContent = `${signed(answer.verdict_words)} ${answer.name}: ${answer.sweep_words}.${answer.read_words}`;
     become(by("answer-figures"), figures(answer));
-    this.layers = new Layers(by("layers"), answer, () => this.changed());
-    this.numbers = new Numbers(by("factors"), answer, () => this.changed());
+    this.layers = new Layers(by("layers"), answer, (when) => this.changed(when));
+    this.numbers = new Numbers(by("factors"), answer, (when) => this.changed(when));
     const names_ = { angle: "shaft angle", clock: answer.across.clock.split(" / ")[0], temperature: "temperature", speed: "speed" };
     by("over").replaceChildren(...Object.keys(answer.across).map((key) => node("option", { value: key, textContent: names_[key] })));
     document.querySelector("#answer .found").classList.toggle("many", answer.causes.length > 3);
@@ -128,22 +128,21 @@ export class ExplainView {
     say(by("answer-verdict").textContent);
   }
 
-  /** Something was switched or moved: what is left follows at once, its spectrum when all rests. */
-  changed() {
-    this.look(false);
+  /** Something was switched or moved at a time: what is left follows at once, its spectrum when all rests. */
+  changed(when) {
+    this.look(false, when);
     clearTimeout(this.rest);
     this.rest = setTimeout(() => this.look(true), AT_REST_MS);
   }
 
-  async askLook(whole) {
-    const start = performance.now();
+  async askLook(whole, when) {
     const width = Math.round(Math.max(this.residual.host.clientWidth - 54, 50));
     const told = await ask("explain/look", { off: [...this.layers.off], values: this.numbers.values, over: by("over").value, width, spectrum: whole });
     complain(null);
     this.layers.show(told.rms_deg);
     this.drawResidual(told);
     if (told.spectrum) this.drawSpectrum(told.spectrum);
-    performance.measure("look to redraw", { start, end: performance.now() });
+    if (when !== undefined) performance.measure("switch to redraw", { start: when, end: performance.now() });
   }
 
   drawResidual(told) {

@@ -13,7 +13,7 @@ export function layerName(name, answer) {
   return answer.layers.find((one) => one.name === name)?.title ?? name.replaceAll("_", " ");
 }
 
-/** The list of layers; `changed()` hears of each switch. */
+/** The list of layers; `changed(when)` hears of each switch. */
 export class Layers {
   constructor(host, answer, changed) {
     this.off = new Set();
@@ -27,10 +27,10 @@ export class Layers {
 
   row({ name, without_deg: without, fixed }, answer, changed) {
     const box = node("input", { type: "checkbox", checked: true, disabled: Boolean(fixed) });
-    box.addEventListener("change", () => {
+    box.addEventListener("change", (event) => {
       if (box.checked) this.off.delete(name);
       else this.off.add(name);
-      changed();
+      changed(event.timeStamp);
     });
     const cause = answer.causes.find((one) => one.name === name);
     const gain = fixed ? `always on: ${fixed}` : `without it ${shown(without)} deg are left, with it ${shown(answer.all_deg)}`;
@@ -48,7 +48,7 @@ export class Layers {
   }
 }
 
-/** Sliders on every fitted number; `changed()` hears of each move. */
+/** Sliders on every fitted number; `changed(when)` hears of each move. */
 export class Numbers {
   constructor(form, answer, changed) {
     this.values = {};
@@ -71,19 +71,19 @@ export class Numbers {
       range.setAttribute("aria-valuetext", `${given(+told.toFixed(digits))} ${unit}`);
       reset.hidden = !(name in this.values);
     };
-    range.addEventListener("input", () => {
+    range.addEventListener("input", (event) => {
       this.values[name] = range.valueAsNumber;
       tell(range.valueAsNumber);
-      changed();
+      changed(event.timeStamp);
     });
     const back = () => {
       delete this.values[name];
       range.value = value;
       tell(value);
     };
-    reset.addEventListener("click", () => {
+    reset.addEventListener("click", (event) => {
       back();
-      changed();
+      changed(event.timeStamp);
     });
     this.rows.push(back);
     tell(value);

@@ -8,6 +8,13 @@ from tests.scenarios.lab.browser import Page
 
 DRAG_TIMES = "performance.getEntriesByName('drag to redraw').map((one) => one.duration)"
 """Milliseconds from each move of the pointer to the redraw that follows it, in the page's own clock."""
+SWITCH_TIMES = "performance.getEntriesByName('switch to redraw').map((one) => one.duration)"
+"""The same of each layer switched and each slider moved that shows in a picture of readings."""
+PAINTED = """(() => { window.painted = [];
+    new PerformanceObserver((list) => list.getEntriesByName("switch to redraw").forEach((one) =>
+        requestAnimationFrame(() => setTimeout(() => window.painted.push(performance.now() - one.startTime)))
+    )).observe({ entryTypes: ["measure"] }); })()"""
+"""From here on ``window.painted`` notes the milliseconds from each of these to the end of the frame that shows it."""
 _FRAME_S = 1.0 / 60.0
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from tests.command_line import csv_text, halltwin, sweep_angles
 from tests.scenarios.lab.browser import BROWSER, WHY_SKIPPED, Page, complaints, cut_off, file_in, unnamed
+from tests.scenarios.lab.dragging import PAINTED, SWITCH_TIMES
 from tests.scenarios.lab.test_explain import TWIN
 
 pytestmark = pytest.mark.skipif(BROWSER is None, reason=WHY_SKIPPED)
@@ -71,6 +72,19 @@ def test_a_number_is_moved_and_put_back(explained: Page) -> None:
     explained.of("[...document.querySelectorAll('#factors .reset')].find((one) => !one.hidden).click()")
     explained.until(f"{LEFT} === {on}")
     assert explained.of("[...document.querySelectorAll('#factors .reset')].every((one) => one.hidden)")
+
+
+def test_switches_and_moves_are_timed_to_the_frame_that_shows_them(explained: Page) -> None:
+    """What the benchmark of a long sweep reads."""
+    explained.of(f"{PAINTED}; performance.clearMeasures()")
+    box = "document.querySelector('#layers li:nth-child(3) input').click()"
+    for done, doing in enumerate(
+        (box, box, MOVE.format("offset-x_percent", 1.2), "document.getElementById('all-on').click()")
+    ):
+        explained.of(doing)
+        explained.until(f"{SWITCH_TIMES}.length === {done + 1} && window.painted.length === {done + 1}")
+    drawn, painted = explained.of(f"[{SWITCH_TIMES}, window.painted]")
+    assert all(0.0 < first < then for first, then in zip(drawn, painted, strict=True))
 
 
 def test_it_is_drawn_over_time(explained: Page) -> None:

@@ -85,6 +85,7 @@ class Session:
                 "twin/save": self._save,
                 "bench/begin": self._begin_bench,
                 "bench/stop": self._stop_bench,
+                "sweep/example": self._open_example,
                 "explain/begin": self._begin,
                 "explain/stop": self._stop,
                 "explain/look": lambda content: Reply.of(self._explaining.look(content)),
@@ -168,6 +169,11 @@ class Session:
             # What explains the sweep before reads the file that the new one takes the place of.
             self._explaining.close()
             self._sweep = sweeps.dropped(upload, self._folder)
+        return Reply.of({"name": self._sweep.name})
+
+    def _open_example(self, content: Any) -> Reply:
+        with self._lock:
+            self._sweep = sweeps.example()
         return Reply.of({"name": self._sweep.name})
 
     def _begin(self, content: Any) -> Reply:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +11,8 @@ from scenarios.lab.dropped import kept
 from scenarios.lab.server import Upload
 from twin.errors import UserError
 from twin.shown_name import shown_name, shown_path
+
+_EXAMPLE = Path(__file__).parents[1] / "data" / "bench_sweep.csv"
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,13 @@ def named(name: str) -> Recording:
         raise UserError(f"{name}: stands for {len(found)} sweeps; the page explains one: give one file")
     SweepFiles([name]).recording(found[0])
     return Recording(found[0], shown_name(found[0]), shown_path(found[0]))
+
+
+def example() -> Recording:
+    """The sweep of the worked example, which comes with the program."""
+    here = Path.cwd()
+    path = Path(os.path.relpath(_EXAMPLE, here)) if _EXAMPLE.is_relative_to(here) else _EXAMPLE
+    return Recording(_EXAMPLE, _EXAMPLE.name, shown_path(path))
 
 
 def dropped(upload: Upload, folder: Path) -> Recording:

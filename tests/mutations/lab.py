@@ -137,4 +137,11 @@ LAB: tuple[Mutation, ...] = (
         '("computed", time.monotonic())',
         (f"{_EXPLAIN_TESTS}::test_a_search_is_stopped_with_the_answer_so_far",),
     ),
+    Mutation(
+        "lab.example_where_it_lies",
+        "scenarios/lab/sweeps.py",
+        "_EXAMPLE.name, shown_path(path))",
+        "_EXAMPLE.name, _EXAMPLE.name)",
+        (f"{_EXPLAIN_TESTS}::test_the_example_is_named_so_that_a_command_finds_it",),
+    ),
 )

@@ -79,8 +79,8 @@ export class BenchView {
 
   take(answer) {
     const names = answer.causes.map((one) => one.name.replaceAll("_", " ")).join(", ");
-    const reached = `${answer.reached ? "The aim is reached" : "The aim is missed"}: ${shown(answer.after.largest_deg)}° are left over the whole turn`;
-    by("loop-verdict").textContent = reached;
+    const reached = answer.reached ? "The aim is reached" : "The aim is missed";
+    by("loop-verdict").textContent = `${reached}: ${shown(answer.after.largest_deg)}° are left over the whole turn`;
     say(reached);
     const cards = [
       ["Before, largest", answer.before.largest_deg, "deg", `${shown(answer.before.rms_deg)} deg RMS, zero taken off`],

@@ -46,10 +46,6 @@ export class DesignView {
       button.setAttribute("aria-label", `Save the picture of ${name} as SVG`);
       button.addEventListener("click", () => save(picture((name === "map" ? this.map : this.plots[name]).svg), `halltwin_${name}.svg`));
     }
-    by("copy").addEventListener("click", async () => {
-      await navigator.clipboard.writeText(by("command").textContent);
-      say("copied the command line");
-    });
     by("save-twin").addEventListener("click", () => this.saveTwin());
   }
 
@@ -156,10 +152,10 @@ export class DesignView {
     const { demand } = design;
     const here = told.figures;
     const study = this.asked?.study.figures;
-    const from = `from ${demand.temperature_c.map(given).join(" to ")} °C`;
+    const from = `from ${demand.temperature_c.map(given).join(" to ")}\u00a0°C`;
     const resting = design.speed_rpm ? ", at rest" : "";
     const cards = [
-      { name: `Error at ${given(design.temperature_c)} °C${design.speed_rpm ? `, ${given(design.speed_rpm)} rpm` : ""}`, value: here.error_deg, unit: "deg", beside: `largest; ${shown(here.rms_deg)} deg RMS` },
+      { name: `Error at ${given(design.temperature_c)}\u00a0°C${design.speed_rpm ? `, ${given(design.speed_rpm)} rpm` : ""}`, value: here.error_deg, unit: "deg", beside: `largest; ${shown(here.rms_deg)} deg RMS` },
     ];
     if (study) {
       cards.push(

@@ -15,13 +15,14 @@ export class ExplainView {
     by("held").checked = start.held;
     this.residual = new Plot(by("residual-plot"), { span: [0, 360], x: "", y: "error left / deg", height: 260, words: "What is left of each reading's error" });
     this.spectrum = new Plot(by("spectrum-plot"), { span: [0, 1], x: "order / cycles a turn", y: "amplitude / deg", height: 170, words: "Spectrum of what is left" });
-    this.look = latest((whole, when) => this.askLook(whole, when));
+    this.look = latest((asked) => this.askLook(asked));
     by("open-sweep").addEventListener("click", () => by("sweep-file").click());
     by("sweep-file").addEventListener("change", (event) => {
       const [file] = event.target.files;
       event.target.value = "";
       if (file) this.open(file);
     });
+    by("example").addEventListener("click", () => this.taken(() => ask("sweep/example", {})));
     by("begin").addEventListener("click", () => this.begin());
     by("stop").addEventListener("click", () => this.trying(async () => this.show(await ask("explain/stop", {}))));
     by("over").addEventListener("change", (event) => this.changed(event.timeStamp));
@@ -29,10 +30,6 @@ export class ExplainView {
       this.layers.allOn();
       this.numbers.fitted();
       this.changed(event.timeStamp);
-    });
-    by("copy-explain").addEventListener("click", async () => {
-      await navigator.clipboard.writeText(by("explain-command").textContent);
-      say("copied the command line");
     });
     for (const name of ["residual", "spectrum"]) {
       const button = document.querySelector(`[data-of=${name}]`);
@@ -56,12 +53,18 @@ export class ExplainView {
   ready() {
     by("sweep-name").textContent = this.sweep ?? "";
     by("begin").disabled = !this.sweep;
+    by("example").hidden = Boolean(this.sweep);
   }
 
   open(file) {
+    put(by("progress"), `reading ${file.name}`);
+    return this.taken(() => handOver("sweep/open", file));
+  }
+
+  /** Explain the sweep that the program has been handed or told to take. */
+  taken(given) {
     return this.trying(async () => {
-      put(by("progress"), `reading ${file.name}`);
-      this.sweep = (await handOver("sweep/open", file)).name;
+      this.sweep = (await given()).name;
       this.ready();
       await this.begin();
     });
@@ -124,18 +127,18 @@ export class ExplainView {
     showCommand(by("explain-command"), answer.command);
     by("answer").hidden = false;
     by("spectrum-note").textContent = `${answer.two_ways ? "Order 0: half of the step between the directions. " : ""}Dashed: what noise alone passes at one order in twenty.`;
-    this.look(true);
+    this.look({ whole: true });
     say(by("answer-verdict").textContent);
   }
 
   /** Something was switched or moved at a time: what is left follows at once, its spectrum when all rests. */
   changed(when) {
-    this.look(false, when);
+    this.look({ whole: false, when });
     clearTimeout(this.rest);
-    this.rest = setTimeout(() => this.look(true), AT_REST_MS);
+    this.rest = setTimeout(() => this.look({ whole: true }), AT_REST_MS);
   }
 
-  async askLook(whole, when) {
+  async askLook({ whole, when }) {
     const width = Math.round(Math.max(this.residual.host.clientWidth - 54, 50));
     const told = await ask("explain/look", { off: [...this.layers.off], values: this.numbers.values, over: by("over").value, width, spectrum: whole });
     complain(null);

@@ -33,6 +33,7 @@ function show(name) {
     tab.setAttribute("aria-selected", String(view === chosen));
     tab.tabIndex = view === chosen ? 0 : -1;
   }
+  say("");
   history.replaceState(null, "", `#${chosen}`);
 }
 
@@ -45,6 +46,13 @@ VIEWS.forEach((view, k) => {
     by(`tab-${next}`).focus();
   });
 });
+
+for (const button of document.querySelectorAll("button.copy")) {
+  button.addEventListener("click", async () => {
+    await navigator.clipboard.writeText(by(button.dataset.of).textContent);
+    say("copied the command line");
+  });
+}
 
 await trying(async () => {
   const start = await got("start");

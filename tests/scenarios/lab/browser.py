@@ -109,9 +109,10 @@ class Page:
 
         On a screen as high as the picture: to capture beyond it makes the browser lay the page out one pixel wide.
         """
-        whole = self.call("Page.getLayoutMetrics")["cssContentSize"]["height"]
-        high = math.ceil(height or whole)
-        self._screen(self.size[0], high)
+        high = 0
+        # What comes onto the screen draws itself and may be higher then.
+        while high != (high := math.ceil(height or self.call("Page.getLayoutMetrics")["cssContentSize"]["height"])):
+            self._screen(self.size[0], high)
         clip = {"x": 0, "y": 0, "width": self.size[0], "height": high, "scale": 1}
         shot = self.call("Page.captureScreenshot", format="png", clip=clip)
         self._screen(*self.size)

@@ -1,11 +1,17 @@
 """The pictures of the guide's first walk, made by the page itself, and the steps of that walk.
 
-python -m tests.scenarios.lab.pictures
+    python -m tests.scenarios.lab.pictures
+    python -m tests.scenarios.lab.pictures --looks FOLDER
+
+The second makes none of them: it lays into a folder what is to be looked at, each view on a screen and on a phone,
+light and dark.
 """
 
 from __future__ import annotations
 
+import itertools
 import json
+import sys
 import tempfile
 from pathlib import Path
 
@@ -19,6 +25,7 @@ PICTURES = ("lab_installed.png", "lab_begins.png", "lab_chosen.png", "lab_explai
 INSTALL = "python3 -m venv .venv && .venv/bin/pip install -q . && .venv/bin/halltwin lab"
 AT_REST = "!!document.querySelector('#map-plot rect') && !document.querySelector('#figures.waiting')"
 HIGH = 905.0
+WIDTHS = (1280, 390)
 _PLACE = """(() => {
     const svg = document.querySelector("#map-plot svg");
     svg.scrollIntoView({ block: "center" });
@@ -88,8 +95,32 @@ def explains(page: Page, folder: Path) -> None:
     page.picture(folder / PICTURES[3], height=HIGH)
 
 
+def looks(page: Page, folder: Path) -> None:
+    """Every view as it begins and as it ends, whole, at both widths, light and dark."""
+    page.until(AT_REST)
+    every_look(page, folder, "design")
+    page.of("document.getElementById('tab-explain').click()")
+    every_look(page, folder, "explain_begins")
+    page.drop(DATA / "bench_sweep.csv")
+    page.until("!!document.querySelector('#spectrum-plot path.line')", within_s=120.0)
+    every_look(page, folder, "explain")
+    page.of("document.getElementById('tab-bench').click()")
+    every_look(page, folder, "bench_begins")
+    page.of("document.getElementById('loop-begin').click()")
+    page.until("!!document.querySelector('#loop-figures div')", within_s=120.0)
+    every_look(page, folder, "bench")
+
+
+def every_look(page: Page, folder: Path, name: str) -> None:
+    """What the page shows, in four pictures."""
+    for width, dark in itertools.product(WIDTHS, (False, True)):
+        page.resize(width, dark=dark)
+        page.picture(folder / f"{name}_{width}_{'dark' if dark else 'light'}.png")
+    page.resize(WIDTHS[0])
+
+
 def main() -> None:
-    """Make all of them."""
+    """Make all of them, or what is to be looked at."""
     if BROWSER is None:
         raise SystemExit(WHY_SKIPPED)
     with tempfile.TemporaryDirectory() as name:
@@ -97,6 +128,9 @@ def main() -> None:
         (folder / "server").mkdir()
         with serving(folder / "server") as client, browsing(folder) as browser:
             page = opened(browser, client.server.guard.url, folder)
+            if sys.argv[1:2] == ["--looks"]:
+                looks(page, Path(sys.argv[2]))
+                return
             for step in (begins, chosen, explains):
                 step(page, DATA)
             installed(page, DATA, started(client.server.guard.url))

@@ -15,6 +15,7 @@ import pytest
 
 from diagnosis import explain
 from scenarios.cli.sweeps import explain as command
+from scenarios.lab import sweeps
 from scenarios.lab.columns import MOST_POINTS, drawn, extremes, highest_in_columns
 from scenarios.lab.explaining import BUDGET_S, SEED, Explaining, Question
 from scenarios.lab.layers import MODEL, Layers, Look
@@ -113,6 +114,15 @@ def test_the_answer_is_the_command_lines_byte_for_byte(
 def test_budget_and_seed_are_the_command_lines() -> None:
     defaults = {name: one.default for name, one in inspect.signature(command).parameters.items()}
     assert (defaults["budget"], defaults["seed"]) == (BUDGET_S, SEED)
+
+
+@pytest.mark.parametrize("here", [Path(__file__).parents[3], Path(__file__).parent])
+def test_the_example_is_named_so_that_a_command_finds_it(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(here)
+    found = sweeps.example()
+    assert found.name == "bench_sweep.csv"
+    assert Path(found.shown).samefile(found.path)
+    assert Path(found.shown).is_absolute() == (here == Path(__file__).parent)
 
 
 def test_layers_are_what_the_answer_says(answer: dict[str, Any], client: Client, folder: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from tests.scenarios.lab.test_explain import TWIN
 
 pytestmark = pytest.mark.skipif(BROWSER is None, reason=WHY_SKIPPED)
 NAME = "sweep one.csv"
+EXAMPLE = Path(__file__).parents[3] / "scenarios" / "data" / "bench_sweep.csv"
 DONE = "!document.getElementById('answer').hidden && !!document.querySelector('#spectrum-plot path.line')"
 LEFT = "parseFloat(document.querySelector('#layers .total span:last-child').textContent)"
 MOVE = """(() => {{ const one = document.getElementById("number-{}"); one.value = {};
@@ -30,13 +32,36 @@ def sweep(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def example(page: Page) -> str:
+    """The command line of the example's answer, on a page without a sweep."""
+    page.of("document.getElementById('tab-explain').click()")
+    page.of("document.getElementById('example').click()")
+    page.until("document.getElementById('sweep-name').textContent === 'bench_sweep.csv'")
+    page.until(DONE, within_s=120.0)
+    command: str = page.of("document.getElementById('explain-command').textContent")
+    return command
+
+
+def test_who_has_no_sweep_takes_the_example(example: str, page: Page) -> None:
+    """It comes with the program; the command line names where it lies."""
+    assert page.of("document.getElementById('example').hidden")
+    *words, name, seed, number = shlex.split(example)
+    assert (words, seed, number) == (["halltwin", "explain"], "--seed", "0")
+    assert Path(name).samefile(EXAMPLE)
+    assert page.of("document.getElementById('answer-verdict').textContent") == "Explained: hysteresis"
+
+
+@pytest.fixture(scope="module")
 def explained(page: Page, sweep: Path) -> Page:
     """The page with the sweep dropped on it and explained."""
     page.drop(sweep)
-    page.until("document.getElementById('progress').textContent.includes('search')", within_s=60.0)
-    assert page.of("document.getElementById('seconds').textContent").endswith(" s:")
-    assert page.of("document.getElementById('elapsed').max") == 120.0
-    assert not page.of("document.getElementById('stop').hidden")
+    # In one question: so short a search may end between two.
+    shown = page.until(
+        """(({ textContent }, { max }, { hidden }) => textContent && [textContent, max, hidden])(
+            ...["seconds", "elapsed", "stop"].map((id) => document.getElementById(id)))""",
+        within_s=60.0,
+    )
+    assert (shown[0][-3:], shown[1:]) == (" s:", [120.0, False])
     page.until(DONE, within_s=120.0)
     return page
 
@@ -72,6 +97,14 @@ def test_a_number_is_moved_and_put_back(explained: Page) -> None:
     explained.of("[...document.querySelectorAll('#factors .reset')].find((one) => !one.hidden).click()")
     explained.until(f"{LEFT} === {on}")
     assert explained.of("[...document.querySelectorAll('#factors .reset')].every((one) => one.hidden)")
+
+
+def test_nothing_is_wrong_where_all_went_well(explained: Page) -> None:
+    """Neither at once nor when all rests, after which the spectrum is asked for."""
+    explained.of(MOVE.format("offset-x_percent", 1.1))
+    explained.of("document.getElementById('all-on').click()")
+    explained.of("new Promise((done) => setTimeout(done, 600))")
+    assert explained.of("[document.getElementById('error').hidden, document.body.className]") == [True, ""]
 
 
 def test_switches_and_moves_are_timed_to_the_frame_that_shows_them(explained: Page) -> None:

@@ -159,6 +159,36 @@ def test_on_a_phone_all_stands_in_one_column(ripple: Page) -> None:
     ]
 
 
+def test_the_head_of_the_page_has_two_rows_on_a_phone(page: Page) -> None:
+    page.resize(390)
+    page.of("document.getElementById('tab-explain').click()")
+    assert page.of("document.getElementById('status').textContent") == ""
+    tops = page.of("""[...document.querySelectorAll(".bar > *")].map((one) => one.getBoundingClientRect())
+        .filter((one) => one.height).map((one) => one.top + one.height / 2)""")
+    assert len({round(top / 20.0) for top in tops}) == 2
+    page.of("document.getElementById('tab-design').click()")
+    assert page.of("document.getElementById('preset').labels[0].textContent") == "Twin"
+
+
+def test_an_underscore_has_room_in_a_field(page: Page) -> None:
+    page.of("document.getElementById('tab-bench').click()")
+    inside, letters = page.of("""(() => { const one = document.getElementById("hide"), style = getComputedStyle(one);
+        return [one.clientHeight - parseFloat(style.paddingTop) - parseFloat(style.paddingBottom),
+            parseFloat(style.fontSize)]; })()""")
+    page.of("document.getElementById('tab-design').click()")
+    assert inside >= 1.5 * letters
+
+
+@pytest.mark.parametrize("of", ["command", "explain-command", "loop-command"])
+def test_every_command_line_is_copied(of: str, page: Page) -> None:
+    page.of("""Object.defineProperty(navigator, "clipboard", { configurable: true,
+        value: { writeText: async (words) => { window.copied = words; } } })""")
+    page.of(f"document.getElementById('{of}').textContent ||= 'halltwin of {of}'")
+    page.of(f"document.querySelector('button.copy[data-of={of}]').click()")
+    page.until(f"window.copied === document.getElementById('{of}').textContent")
+    assert page.of("document.getElementById('status').textContent") == "copied the command line"
+
+
 def test_a_hostile_look_of_the_map_is_one_line(client: Client) -> None:
     got = client.ask("design/yield-map", {"magnet": 1})
     assert got.status == 400

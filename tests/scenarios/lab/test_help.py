@@ -76,6 +76,13 @@ def test_rows_of_the_catalogue_are_blocks_on_a_phone(page: Page, client: Client)
     )
 
 
+@pytest.mark.parametrize("name", ["catalogue", "how_good"])
+def test_no_table_is_cut_off_on_a_wide_screen(name: str, page: Page, client: Client) -> None:
+    page.resize(1280)
+    read(page, client, f"{name}.html")
+    assert page.of("[...document.querySelectorAll('.scroll')].every((one) => one.scrollWidth <= one.clientWidth + 1)")
+
+
 def test_a_picture_of_it(page: Page, client: Client, tmp_path: Path) -> None:
     read(page, client, "choose_magnet.html")
     page.picture(tmp_path / "guide.png")

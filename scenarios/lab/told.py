@@ -63,16 +63,18 @@ def _cause(answer: Mapping[str, Any], cause: Mapping[str, Any]) -> dict[str, Any
     }
 
 
+def _parting(cause: Mapping[str, Any]) -> dict[str, str]:
+    """What parts a cause from those that explain the readings as well."""
+    todo = cause["to_tell_apart"]
+    if todo.startswith("from "):
+        # It says itself what each step tells the cause from.
+        return {"do": f"tell {cause['name'].replace('_', ' ')} {todo}", "why": ""}
+    return {"do": todo, "why": f"tells {cause['name']} from {', '.join(cause['indistinguishable_from'])}"}
+
+
 def _next(answer: Mapping[str, Any]) -> list[dict[str, str]]:
     """What to measure next: what parts causes that these readings cannot, then what would show further ones."""
-    found = [
-        {
-            "do": cause["to_tell_apart"],
-            "why": f"tells {cause['name']} from {', '.join(cause['indistinguishable_from'])}",
-        }
-        for cause in answer["causes"]
-        if cause["to_tell_apart"]
-    ]
+    found = [_parting(cause) for cause in answer["causes"] if cause["to_tell_apart"]]
     for names, _, todo in statements.not_visible(answer["not_visible"]):
         found.append({"do": todo, "why": f"would show {', '.join(names)}"})
     return found

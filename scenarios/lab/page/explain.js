@@ -94,7 +94,7 @@ export class ExplainView {
     this.waited(null);
     if (stand.state === "failed") {
       by("answer-verdict").textContent = `${this.sweep} was not explained`;
-      by("answer-words").textContent = `${capital(stand.words)}.`;
+      by("answer-words").replaceChildren(...whatNow(stand.words, this.sweep));
       complain(stand.words);
     }
     if (stand.state === "done") this.take(stand.answer);
@@ -173,6 +173,14 @@ export class ExplainView {
 /** Words with arrows and minus signs that are such. */
 const signed = (words) => words.replaceAll("->", "→").replace(/(^|[^\w])-(?=\d)/g, "$1−");
 const capital = (words) => words.charAt(0).toUpperCase() + words.slice(1);
+
+/** What to do about a sweep that was not explained; what is wrong with it stands above. */
+function whatNow(words, sweep) {
+  if (!words.startsWith(`${sweep}: `)) return [`${capital(words)}.`];
+  const link = (page, textContent) => node("a", { href: `guide/${page}.html`, target: "_blank", rel: "noopener", textContent });
+  const ways = ["What is wrong with it stands above. Of a log under names of its own ", node("code", { textContent: "halltwin import" }), " makes a sweep: "];
+  return [...ways, link("logs", "logs of any kind"), ". What a sweep has to hold: ", link("explain_sweep", "explain a sweep"), "."];
+}
 
 function figures(answer) {
   const one = answer.figures;

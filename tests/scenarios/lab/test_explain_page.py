@@ -160,6 +160,12 @@ def test_a_hostile_sweep_is_shown_as_what_it_says(explained: Page, saved: Path) 
     assert explained.of("document.querySelector('img')") is None
     assert explained.of("document.getElementById('answer').hidden")
     assert explained.of("document.getElementById('answer-verdict').textContent") == "evil.csv was not explained"
+    # Once, and with a way out.
+    words = explained.of("document.getElementById('answer-words').textContent")
+    assert "halltwin import" in words
+    assert said not in words
+    ways = explained.of("[...document.querySelectorAll('#answer-words a')].map((one) => one.getAttribute('href'))")
+    assert ways == ["guide/logs.html", "guide/explain_sweep.html"]
     assert complaints(explained.browser) == []
 
 

@@ -102,6 +102,19 @@ def test_columns_end_together(page: Page) -> None:
         assert max(bottoms) - min(bottoms) < 1.0, selector
 
 
+def test_numbers_that_are_opened_scroll_beside_the_drawings(page: Page) -> None:
+    """The cards beside them do not grow with them."""
+    high = "document.querySelector('#design .scene').getBoundingClientRect().height"
+    before = page.of(high)
+    page.of("document.querySelectorAll('#controls details').forEach((one) => { one.open = true; })")
+    numbers = "document.getElementById('controls')"
+    assert page.of(high) == before
+    assert page.of(f"{numbers}.scrollHeight > {numbers}.clientHeight")
+    page.resize(390)
+    assert page.of(f"{numbers}.scrollHeight <= {numbers}.clientHeight + 1")
+    page.of("document.querySelectorAll('#controls details').forEach((one) => { one.open = false; })")
+
+
 @pytest.fixture(scope="module")
 def ripple(page: Page, tmp_path_factory: pytest.TempPathFactory) -> Page:
     """The page with a sweep of two lines of one cause explained."""
@@ -122,6 +135,12 @@ def test_lines_of_one_cause_bear_their_orders(ripple: Page) -> None:
     )
     assert {"amplitude, order 50", "phase, order 50", "amplitude, order 100", "phase, order 100"} <= set(labels)
     assert len(labels) == len(set(labels))
+
+
+def test_what_to_measure_next_begins_with_what_to_do(ripple: Page) -> None:
+    first = ripple.of("document.querySelector('#next li').firstChild.textContent")
+    assert first.startswith("Tell drive ripple from mechanics (teeth of a belt or gear): count them")
+    assert ripple.of("document.querySelector('#next li small').textContent") == ""
 
 
 def test_a_floor_that_is_not_known_is_said_in_words(ripple: Page) -> None:

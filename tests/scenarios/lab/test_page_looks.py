@@ -110,6 +110,10 @@ def test_numbers_that_are_opened_scroll_beside_the_drawings(page: Page) -> None:
     numbers = "document.getElementById('controls')"
     assert page.of(high) == before
     assert page.of(f"{numbers}.scrollHeight > {numbers}.clientHeight")
+    assert page.of(f"{numbers}.scrollWidth <= {numbers}.clientWidth")
+    boxes = "[...document.querySelectorAll('#controls .row')].map((one) => one.getBoundingClientRect())"
+    rows = page.of(f"{boxes}.filter((one) => one.width).map((one) => one.right)")
+    assert max(rows) - min(rows) < 1.0
     page.resize(390)
     assert page.of(f"{numbers}.scrollHeight <= {numbers}.clientHeight + 1")
     page.of("document.querySelectorAll('#controls details').forEach((one) => { one.open = false; })")

@@ -83,6 +83,7 @@ class Session:
                 "design/yield-map": self._yield_map,
                 "twin/preset": self._preset,
                 "twin/save": self._save,
+                "sweep/save": self._save_sweep,
                 "bench/begin": self._begin_bench,
                 "bench/stop": self._stop_bench,
                 "sweep/example": self._open_example,
@@ -126,7 +127,9 @@ class Session:
         # Two that share the time would both be late: what was asked first is answered first.
         with self._at_hand:
             told = at_once(sensor.chain, asked)
-        return Reply.of({**told, "command": command_of(asked, sensor=sensor.name)})
+        return Reply.of(
+            {**told, "command": command_of(asked, sensor=sensor.name), "sweep_command": twins.sweep_command(asked)}
+        )
 
     def _causes(self, content: Any) -> Reply:
         sensor, asked = self._asked(content)
@@ -161,6 +164,10 @@ class Session:
     def _save(self, content: Any) -> Reply:
         sensor, asked = self._asked(content)
         return Reply(twins.saved(sensor, asked), "application/toml", download="twin.toml")
+
+    def _save_sweep(self, content: Any) -> Reply:
+        sensor, asked = self._asked(content)
+        return Reply(twins.simulated(sensor, asked), "text/csv; charset=utf-8", download="sweep.csv")
 
     # ---- the sweep -----------------------------------------------------------------------------------------------
 

@@ -138,6 +138,13 @@ LAB: tuple[Mutation, ...] = (
         (f"{_EXPLAIN_TESTS}::test_a_search_is_stopped_with_the_answer_so_far",),
     ),
     Mutation(
+        "lab.sweep_of_the_saved_twin",
+        "scenarios/lab/twins.py",
+        "from_dict(tomllib.loads(saved(sensor, asked).decode()), effects=effects_with())",
+        "sensor.chain",
+        (f"{_DESIGN_TESTS}::test_a_saved_sweep_is_the_commands_byte_for_byte",),
+    ),
+    Mutation(
         "lab.example_where_it_lies",
         "scenarios/lab/sweeps.py",
         "_EXAMPLE.name, shown_path(path))",

@@ -46,7 +46,8 @@ export class DesignView {
       button.setAttribute("aria-label", `Save the picture of ${name} as SVG`);
       button.addEventListener("click", () => save(picture((name === "map" ? this.map : this.plots[name]).svg), `halltwin_${name}.svg`));
     }
-    by("save-twin").addEventListener("click", () => this.saveTwin());
+    by("save-twin").addEventListener("click", () => this.saved("twin/save", "twin.toml"));
+    by("save-sweep").addEventListener("click", () => this.saved("sweep/save", "sweep.csv"));
   }
 
   /** Begin anew with a twin as the program tells of it. */
@@ -131,8 +132,10 @@ export class DesignView {
     this.plots.orders.draw({ bars: order.map((at, k) => ({ at, value: amplitude[k] })), include: [0] });
     this.plots.signals.draw({ lines: [{ name: "x", style: "first", values: told.signals.x }, { name: "y", style: "second dashed", values: told.signals.y }] });
     this.drawFigures();
-    showCommand(by("command"), told.command ?? "halltwin simulate twin.toml --points 360 --both-directions -o sweep.csv");
-    put(by("command-note"), told.command ? "" : "After Save twin. The options of halltwin design cannot say how this one is mounted.");
+    by("command-of-design").hidden = !told.command;
+    put(by("command-note"), told.command ? "" : "The options of halltwin design cannot say how this one is mounted.");
+    showCommand(by("command"), told.command ?? "");
+    showCommand(by("sweep-command"), told.sweep_command);
   }
 
   async askStudy(design) {
@@ -192,11 +195,12 @@ export class DesignView {
     put(by("causes-at"), `${design.demand.temperature_c.map(given).join(" to ")} °C, ${given(design.speed_rpm)} rpm`);
   }
 
-  async saveTwin() {
+  /** The design as the program makes a file of it. */
+  async saved(path, name) {
     try {
-      const reply = await posted("twin/save", this.design);
-      save(await reply.blob(), "twin.toml");
-      say("saved twin.toml");
+      const reply = await posted(path, this.design);
+      save(await reply.blob(), name);
+      say(`saved ${name}`);
     } catch (error) {
       complain(error.message);
     }

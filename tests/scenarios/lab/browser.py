@@ -133,8 +133,15 @@ class Page:
     def drop(self, file: Path, x: float = 300, y: float = 300) -> None:
         """Drop a file on the page."""
         data = {"items": [], "files": [str(file)], "dragOperationsMask": 1}
-        for kind in ("dragEnter", "dragOver", "drop"):
-            self.call("Input.dispatchDragEvent", type=kind, x=x, y=y, data=data)
+        self.of("""window.dropped = false;
+            document.addEventListener("drop", () => { window.dropped = true; }, { once: true, capture: true })""")
+        end = time.monotonic() + _ANSWER_S
+        # A busy browser may not have taken in yet that the page takes files, and then drops nothing.
+        while not self.of("window.dropped"):
+            assert time.monotonic() < end, f"{file.name} could not be dropped"
+            for kind in ("dragEnter", "dragOver", "drop"):
+                self.call("Input.dispatchDragEvent", type=kind, x=x, y=y, data=data)
+                self.of("new Promise((done) => requestAnimationFrame(() => done(1)))")
 
     def middle(self, selector: str) -> tuple[float, float]:
         """The middle of an element on the screen, which is scrolled to it."""

@@ -202,6 +202,27 @@ def test_a_saved_twin_is_the_design(client: Client, begun: dict[str, Any], tmp_p
 
 
 @pytest.mark.parametrize(
+    "held", [{"temperature_c": 25.0, "speed_rpm": 0.0}, {"temperature_c": -20.5, "speed_rpm": 1500.0}]
+)
+def test_a_saved_sweep_is_the_commands_byte_for_byte(
+    held: dict[str, float], client: Client, begun: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the twin as it is saved, by the command that the page shows."""
+    monkeypatch.chdir(tmp_path)
+    design = changed(begun, magnet__diameter_mm=8.0) | held
+    Path("twin.toml").write_bytes(client.ask("twin/save", design).content)
+    got = client.ask("sweep/save", design)
+    assert got.headers["Content-Disposition"] == 'attachment; filename="sweep.csv"'
+    _, *words = shlex.split(client.ask("design/at-once", design).json["sweep_command"])
+    ended = halltwin(*words)
+    assert ended.code == 0, ended.err
+    assert got.content == Path("sweep.csv").read_bytes()
+    # It is a recording of that design.
+    other = changed(begun, magnet__diameter_mm=9.0) | held
+    assert client.ask("sweep/save", other).content != got.content
+
+
+@pytest.mark.parametrize(
     ("changes", "said"),
     [
         ({"magnet__diameter_mm": 0.0}, "diameter_mm is 0 mm"),
@@ -218,7 +239,7 @@ def test_a_saved_twin_is_the_design(client: Client, begun: dict[str, Any], tmp_p
         ({"more": 1.0}, "a design is"),
     ],
 )
-@pytest.mark.parametrize("path", ["design/at-once", "design/study", "design/map", "twin/save"])
+@pytest.mark.parametrize("path", ["design/at-once", "design/study", "design/map", "twin/save", "sweep/save"])
 def test_a_design_that_cannot_be_is_one_line(
     path: str, changes: dict[str, Any], said: str, client: Client, begun: dict[str, Any]
 ) -> None:

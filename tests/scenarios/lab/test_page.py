@@ -124,6 +124,21 @@ def test_a_place_on_the_map_is_gone_to(page: Page) -> None:
     assert 1.0 < page.of(GAP) < 4.0
 
 
+def test_a_sweep_of_the_design_is_saved(page: Page, saved: Path, client: Client) -> None:
+    """At the temperature that is set; where halltwin design cannot say the mounting, its command is not offered."""
+    page.of(SET_GAP.replace("Air gap in mm", "Sensor off axis, y in mm").format("0.2"))
+    page.until("document.getElementById('command-note').textContent.startsWith('The options of halltwin design')")
+    assert page.of("document.getElementById('command-of-design').hidden")
+    command = page.of("document.getElementById('sweep-command').textContent")
+    assert command.startswith("halltwin simulate twin.toml ")
+    page.of("document.getElementById('save-sweep').click()")
+    content = file_in(saved, "sweep.csv")
+    assert content.count(b"\n") == 721
+    design = client.ask("start").json["twin"]["design"]
+    design["placement"]["sensor_y_mm"] = 0.2
+    assert client.ask("sweep/save", design).content == content
+
+
 def test_a_twin_is_saved_and_opened_by_dropping_it(page: Page, saved: Path) -> None:
     drag(page, "#side [data-part=magnet] .south", by=(0.0, -20.0), steps=3)
     page.until(AT_REST)

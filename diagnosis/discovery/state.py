@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from diagnosis.discovery.finding import Finding
-from diagnosis.discovery.fitting.joint_fit import Fit, Free
+from diagnosis.discovery.fitting.free_parameters import Free
+from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.watch import Watch
 from twin.angles import TAU, Array, IntArray

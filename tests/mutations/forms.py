@@ -50,7 +50,7 @@ FORMS: tuple[Mutation, ...] = tuple(
         ),
         (
             "forms.strengths_pass_through_zero_without_a_phase",
-            "diagnosis/discovery/fitting/joint_fit.py",
+            "diagnosis/discovery/fitting/free_parameters.py",
             ' and param.lower == 0.0 and bool(effect.roles("phase"))',
             " and param.lower == 0.0",
             "tests/diagnosis/discovery/fitting/test_joint_fit.py::test_a_strength_without_a_phase_ends_at_its_bound",
@@ -191,10 +191,55 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "exchange.asked_again_in_the_same_fit",
             "diagnosis/discovery/search/exchange.py",
-            " and stands_in.get(key) is not fit",
-            "",
+            "if stood is not None and stood.seen_in is fit:",
+            "if False:",
             "tests/diagnosis/discovery/search/test_exchange.py"
             "::test_a_cause_that_stood_its_ground_is_not_asked_again_in_the_same_fit",
+        ),
+        (
+            "exchange.every_examination_is_by_exact_fits",
+            "diagnosis/discovery/search/exchange.py",
+            "if stood.beats_still(removal, rivals):",
+            "if False:",
+            "tests/diagnosis/discovery/search/test_exchange.py"
+            "::test_what_stood_by_far_stands_without_another_fit_while_no_lead_changes",
+        ),
+        (
+            "standing.a_rival_may_draw_as_near_as_it_likes",
+            "diagnosis/discovery/search/standing.py",
+            "if drawn_nearer >= removal.fit.settings.rival_share * contest.lost_by:",
+            "if False:",
+            "tests/diagnosis/discovery/search/test_exchange.py"
+            "::test_what_stood_is_asked_again_once_a_rival_has_drawn_nearer",
+        ),
+        (
+            "forward_step.the_last_digits_choose",
+            "diagnosis/discovery/search/forward_step.py",
+            "key=lambda one: trials[one].candidate.effect.stage in _AROUND_THE_SENSOR",
+            "key=judged.__getitem__",
+            "tests/diagnosis/discovery/search/test_forward_step.py"
+            "::test_of_causes_that_do_the_same_the_sensors_own_leads",
+        ),
+        (
+            "tidy.a_tidy_fit_is_evaluated_again",
+            "diagnosis/discovery/search/likelihood_ratio.py",
+            "held_anew(fit) if chain is fit.chain else evaluate(",
+            "evaluate(",
+            "tests/diagnosis/discovery/fitting/test_tidy.py::test_a_fit_that_is_tidy_is_not_evaluated_again",
+        ),
+        (
+            "standing.any_order_is_the_same_rival",
+            "diagnosis/discovery/search/standing.py",
+            "(float(round(value * span)) if span > 0.0 else value,)",
+            "()",
+            "tests/diagnosis/discovery/search/test_standing.py::test_another_order_or_frequency_is_another_rival",
+        ),
+        (
+            "standing.a_cause_may_pay_as_little_as_it_likes",
+            "diagnosis/discovery/search/standing.py",
+            "now is not None and now - self.log_p < fit.settings.rival_share * room",
+            "now is not None",
+            "tests/diagnosis/discovery/search/test_exchange.py::test_what_stood_is_asked_again_once_it_pays_less",
         ),
         (
             "forms.no_detail_is_freed",
@@ -206,7 +251,7 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "forms.a_detail_before_another_cause",
             "diagnosis/discovery/search/details.py",
-            "return plain if _by_another_cause(plain, effects, keys, level)",
+            "return plain if _by_another_cause(plain, effects, keys, min(level, surely))",
             "return plain if np.inf",
             f"{_DETAILS}::test_a_detail_stays_at_its_null_where_another_cause_does_it",
         ),

@@ -156,13 +156,13 @@ PARTS: tuple[Mutation, ...] = (
         _T,
         (
             "exchange.nothing_is_removed",
-            "    idle = removal.log_p + handicap(removal.effect, fit) > plan.level_beside(fit, others)\n",
+            "    idle = not known and removal.log_p + handicap(removal.effect, fit) > level\n",
             "    idle = False\n",
             "search/test_exchange.py::test_what_becomes_of_the_causes_held",
         ),
         (
             "exchange.nothing_is_exchanged",
-            "        if own_p - rival_p > fit.settings.swap_log_odds:\n",
+            "        if lost_by < 0.0:\n",
             "        if False:\n",
             "search/test_exchange.py::test_what_becomes_of_the_causes_held",
         ),

@@ -7,16 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import (
-    BASELINE,
-    ZERO_ANGLE,
-    Fit,
-    Free,
-    Weighting,
-    evaluate,
-    free_of,
-    solve,
-)
+from diagnosis.discovery.fitting.free_parameters import BASELINE, ZERO_ANGLE, Free, free_of
+from diagnosis.discovery.fitting.joint_fit import Fit, Weighting, evaluate, solve
 from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.fitting.own_zeros import own_zeros

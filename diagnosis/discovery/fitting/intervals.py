@@ -7,7 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, root_weights, value_of
+from diagnosis.discovery.fitting.free_parameters import Free, value_of
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, root_weights
 from diagnosis.discovery.fitting.open_torques import shifts
 from diagnosis.discovery.fitting.profile import Profile
 from diagnosis.discovery.fitting.projection import projected

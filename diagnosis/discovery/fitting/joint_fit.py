@@ -11,6 +11,7 @@ import numpy as np
 from diagnosis.discovery.fitting.bounded_step import eased, step_within
 from diagnosis.discovery.fitting.coefficients import observables_to_cosine, to_rows
 from diagnosis.discovery.fitting.columns import Columns
+from diagnosis.discovery.fitting.free_parameters import ZERO_ANGLE, Free, bounds, declared, from_centre, value_in
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import NoiseFamily
 from diagnosis.discovery.fitting.nuisance import without_nuisance
@@ -18,26 +19,7 @@ from diagnosis.discovery.fitting.observations import Observations
 from diagnosis.discovery.fitting.projection import projected
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import Array, wrap
-from twin.baseline import FACTORS
-from twin.catalogue import find
 from twin.chain import Chain
-from twin.effect import Effect
-from twin.mechanics.zero import ZERO
-from twin.param import Param
-
-
-@dataclass(frozen=True)
-class Free:
-    """One free parameter: the instance it belongs to, its name, and the turn where it has one a turn."""
-
-    key: str
-    name: str
-    turn: int | None = None
-
-
-ZERO_ANGLE = Free(ZERO.name, "zero_deg")
-BASELINE = (ZERO_ANGLE, *(Free(f.key, f.param) for f in FACTORS if f.effect is not ZERO))
-"""The paper's error model, always fitted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,9 +124,13 @@ class Fit:
 
     def whitened(self, member: int | None = None) -> tuple[Array, Array]:
         """Residual (N,) and Jacobian (P, N) whitened by a family member (the one in force if not given)."""
+        return self.whitened_residual(member), self.whitened_columns(range(len(self.free)), member)
+
+    def whitened_columns(self, places: Sequence[int], member: int | None = None) -> Array:
+        """The rows (len(places), N) of the whitened Jacobian that belong to the free parameters at these places."""
         root = root_weights(self.weighting, self.observations.observables, member)
-        j = (self.cosine_jacobian * root).reshape(len(self.free), root.size)
-        return self.whitened_residual(member), np.concatenate([j, self.prior_jacobian], axis=1)
+        j = (self.cosine_jacobian[places] * root).reshape(len(places), root.size)
+        return np.concatenate([j, self.prior_jacobian[places]], axis=1)
 
     def whitened_residual(self, member: int | None = None) -> Array:
         """The residual (N,) alone."""
@@ -221,7 +207,12 @@ def evaluate(
     cosine = observables_to_cosine(observations, residual)
     held = np.zeros(len(free)) if strengths is None else strengths
     fit = Fit(chain, free, observations, weighting, linear, columns, residual, cosine, held)
-    return fit if strengths is not None else replace(fit, strengths=_prior_strengths(fit))
+    return fit if strengths is not None else held_anew(fit)
+
+
+def held_anew(fit: Fit) -> Fit:
+    """The fit with priors as strong as its residual alone says, as one is evaluated that no other went before."""
+    return replace(fit, strengths=_prior_strengths(replace(fit, strengths=np.zeros(len(fit.free)))))
 
 
 def _prior_strengths(fit: Fit) -> Array:
@@ -234,7 +225,7 @@ def _prior_strengths(fit: Fit) -> Array:
     finite interval. 0: anything goes.
     """
     chain, free, observations = fit.chain, fit.free, fit.observations
-    params = [find(f.key, chain.effects).params[f.name] for f in free]
+    params = [param for _, param in declared(chain, free)]
     # Whitened residuals are in radians: a prior of one sigma counts as one RMS of the noise, the unit. Noise is what
     # the readings are off by, and what planned ones will be off by beside that.
     rms = np.sqrt(np.mean(fit.residual[0][observations.usable] ** 2))
@@ -265,24 +256,6 @@ def _scatter(fit: Fit, turns: Sequence[int], unit: float) -> float:
     share = float(np.mean(weight / (weight + held**2)))
     # Zeros that no reading tells stay as they are.
     return spread / float(np.sqrt(share)) if share > 1e-9 else spread
-
-
-def from_centre(chain: Chain, free: tuple[Free, ...]) -> Array:
-    """How far each free parameter (P,) is from what is most likely before the sweep, in its own unit; else 0."""
-    away = np.zeros(len(free))
-    for place, one in enumerate(free):
-        centre = find(one.key, chain.effects).params[one.name].prior_mean
-        if one.turn is not None:
-            away[place] = float(np.asarray(chain.values[one.key][one.name])[one.turn])
-        elif centre is not None:
-            away[place] = value_of(chain, one) - centre
-    return away
-
-
-def value_of(chain: Chain, free: Free) -> float:
-    """The value of a parameter in a chain, or its null where the chain does not give it."""
-    null = find(free.key, chain.effects).params[free.name].null
-    return float(chain.values.get(free.key, {}).get(free.name, null))
 
 
 def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
@@ -332,20 +305,13 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
 def _room(fit: Fit) -> tuple[Array, Array]:
     """How far each free parameter may move down and up (P,), in its own unit; phases and turns' zeros go anywhere."""
     lower, upper = np.full(len(fit.free), -np.inf), np.full(len(fit.free), np.inf)
-    for place, free in enumerate(fit.free):
-        effect = find(free.key, fit.chain.effects)
-        param = effect.params[free.name]
+    parameters = declared(fit.chain, fit.free)
+    for place, (free, (effect, param)) in enumerate(zip(fit.free, parameters, strict=True)):
         if free.turn is None and param.role != "phase":
-            value = value_of(fit.chain, free)
-            least, most = _bounds(effect, param)
+            value = value_in(fit.chain, free, param)
+            least, most = bounds(effect, param)
             lower[place], upper[place] = min(least - value, 0.0), max(most - value, 0.0)
     return lower, upper
-
-
-def _bounds(effect: Effect, param: Param) -> tuple[float, float]:
-    """Between which a parameter is fitted: an amplitude may pass through zero where a phase can turn by half a turn."""
-    through_zero = param.role == "strength" and param.lower == 0.0 and bool(effect.roles("phase"))
-    return (-param.upper if through_zero else param.lower), param.upper
 
 
 def cost_of(fit: Fit) -> float:
@@ -357,34 +323,17 @@ def cost_of(fit: Fit) -> float:
 def moved_by(fit: Fit, step: Array) -> Chain:
     """The chain with its free parameters moved by ``step`` (P,), in the parameters' own units."""
     values = {key: dict(params) for key, params in fit.chain.values.items()}
-    for place, free in enumerate(fit.free):
-        effect = find(free.key, fit.chain.effects)
-        param = effect.params[free.name]
+    parameters = declared(fit.chain, fit.free)
+    for place, (free, (effect, param)) in enumerate(zip(fit.free, parameters, strict=True)):
         if free.turn is not None:
             zeros = np.array(values[free.key][free.name], dtype=np.float64)
             zeros[free.turn] += step[place]
             values[free.key][free.name] = zeros
             continue
-        moved = value_of(fit.chain, free) + step[place]
-        # A rounding beyond its bound.
-        values[free.key][free.name] = moved if param.role == "phase" else float(np.clip(moved, *_bounds(effect, param)))
+        moved = value_in(fit.chain, free, param) + float(step[place])
+        if param.role != "phase":
+            # A rounding beyond its bound.
+            least, most = bounds(effect, param)
+            moved = min(max(moved, least), most)
+        values[free.key][free.name] = moved
     return replace(fit.chain, values=values)
-
-
-def free_of(effect: Effect, key: str, *, turns: int, channels: bool) -> tuple[Free, ...]:
-    """The parameters of an effect that a fit may move: strengths, phases, and shapes that are no whole numbers."""
-    found: list[Free] = []
-    for name, param in effect.params.items():
-        if param.role in ("strength", "phase") or (
-            param.role in ("level", "shape") and not param.counts and name in searched(effect, channels)
-        ):
-            found.append(Free(key, name))
-        elif param.role == "per turn":
-            found.extend(Free(key, name, turn) for turn in range(turns))
-    return tuple(found)
-
-
-def searched(effect: Effect, channels: bool) -> frozenset[str]:
-    """Names of the shape and level parameters that a fit may move, with or without recorded channels."""
-    names = {effect.line.param} if effect.line else set()
-    return frozenset(names | set(effect.fitted_shapes) | (set(effect.channel_shapes) if channels else set()))

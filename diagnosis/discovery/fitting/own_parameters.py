@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.discovery.fitting.free_parameters import BASELINE, Free, free_of, value_of
 from diagnosis.discovery.fitting.initial_fit import awake
-from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, evaluate, free_of, solve, value_of
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from twin.angles import Array
 from twin.catalogue import find
 from twin.chain import Chain

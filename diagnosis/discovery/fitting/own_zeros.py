@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import ZERO_ANGLE, Free
+from diagnosis.discovery.fitting.free_parameters import ZERO_ANGLE, Free
 from twin.chain import Chain
 from twin.each_recording import MARK, acts_in
 from twin.mechanics.zero import ZERO

@@ -11,15 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import (
-    Fit,
-    cost_of,
-    evaluate,
-    from_centre,
-    moved_by,
-    solve,
-    value_of,
-)
+from diagnosis.discovery.fitting.free_parameters import from_centre, value_of
+from diagnosis.discovery.fitting.joint_fit import Fit, cost_of, evaluate, moved_by, solve
 from diagnosis.discovery.fitting.tidy import tidy
 from twin.angles import Array, wrap_deg
 from twin.catalogue import find

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
-from diagnosis.discovery.fitting.joint_fit import ZERO_ANGLE
+from diagnosis.discovery.fitting.free_parameters import ZERO_ANGLE
 from twin.catalogue import find
 from twin.chain import Chain
 
 
 def tidy(chain: Chain) -> Chain:
-    """Amplitudes made positive, phases and zeros brought to (-180, 180]."""
+    """Amplitudes made positive, phases and zeros brought to (-180, 180]; the very chain where they are so already."""
     values = {key: dict(params) for key, params in chain.values.items()}
     for key, params in values.items():
         effect = find(key, chain.effects)
@@ -22,5 +24,13 @@ def tidy(chain: Chain) -> Chain:
                     params[turned] = -float(params[turned])
                 params[phases[0]] = float(params[phases[0]]) + 180.0
         for name in (*phases, *((ZERO_ANGLE.name,) if key == ZERO_ANGLE.key else ())):
-            params[name] = float(-((-float(params[name]) + 180.0) % 360.0 - 180.0))
-    return replace(chain, values=values)
+            angle = float(params[name])
+            if not -180.0 < angle <= 180.0:
+                # One that is within stays as it is, to its last digit.
+                params[name] = float(-((-angle + 180.0) % 360.0 - 180.0))
+    return chain if all(_same(values[key], chain.values[key]) for key in values) else replace(chain, values=values)
+
+
+def _same(params: Mapping[str, Any], others: Mapping[str, Any]) -> bool:
+    """Whether every parameter is the very object of the others'."""
+    return all(value is others[name] for name, value in params.items())

@@ -14,7 +14,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import BASELINE, Fit, Free, cost_of, evaluate, free_of, solve
+from diagnosis.discovery.fitting.free_parameters import BASELINE, Free, free_of
+from diagnosis.discovery.fitting.joint_fit import Fit, cost_of, evaluate, solve
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.subsample import stretches

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import ZERO_ANGLE, Fit, evaluate, solve
+from diagnosis.discovery.fitting.free_parameters import ZERO_ANGLE
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.own_zeros import owner, zero_of
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import wrap_deg

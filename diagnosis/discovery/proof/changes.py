@@ -15,8 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
+from diagnosis.discovery.fitting.free_parameters import Free, value_of
 from diagnosis.discovery.fitting.initial_fit import awake
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, value_of
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
 from diagnosis.discovery.fitting.projection import projected
 from diagnosis.discovery.settings import over_footprints
 from twin.angles import Array, wrap_deg

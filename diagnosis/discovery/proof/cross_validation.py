@@ -7,8 +7,9 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 
 from diagnosis.discovery.fitting.coefficients import without_motion
+from diagnosis.discovery.fitting.free_parameters import Free
 from diagnosis.discovery.fitting.initial_fit import baseline_of
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.proof.whole_recordings import Split, are_halves, by_recordings, halves, of_recordings
 from twin.angles import TAU, Array, IntArray, wrap
 from twin.effect import BoolArray

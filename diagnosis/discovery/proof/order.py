@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate
+from diagnosis.discovery.fitting.free_parameters import Free
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
 from diagnosis.discovery.fitting.projection import projected
 from twin.angles import Array, wrap
 from twin.catalogue import base_name, find, unnamed

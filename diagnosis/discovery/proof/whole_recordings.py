@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import Fit, Free
+from diagnosis.discovery.fitting.free_parameters import Free
+from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.own_zeros import owner
 from twin.angles import IntArray
 from twin.catalogue import find

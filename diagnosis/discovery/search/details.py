@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from diagnosis.discovery.fitting.joint_fit import Fit, Free
+from diagnosis.discovery.fitting.free_parameters import Free
+from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.noise.plausible import either, plausible_members
 from diagnosis.discovery.search.forward_step import best_addition
 from diagnosis.discovery.search.freed import detail_log_p, with_detail
@@ -42,13 +43,17 @@ def _judged(fit: Fit, detail: Free, level: float, *, effects: Sequence[Effect], 
     log_p = detail_log_p(plain, wide)
     if log_p >= level:
         return plain
-    return plain if _by_another_cause(plain, effects, keys, level) < log_p - fit.settings.swap_log_odds else wide
+    surely = log_p - fit.settings.swap_log_odds
+    return plain if _by_another_cause(plain, effects, keys, min(level, surely)) < surely else wide
 
 
 def _by_another_cause(plain: Fit, effects: Sequence[Effect], keys: Sequence[str], level: float) -> float:
-    """The log probability by chance of what the best further cause explains beside causes without the detail."""
+    """The log probability by chance of what the best further cause explains beside causes without the detail.
+
+    Those are fitted that to first order may come below the level; 0 where none does.
+    """
     without, base = settle(plain)
-    step = best_addition(without, base, effects, keys, level)
+    step = best_addition(without, base, effects, keys, level + plain.settings.contender_nats)
     if step is None:
         return 0.0
     members = either(plausible_members(without), plausible_members(step.fit))

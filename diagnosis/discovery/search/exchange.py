@@ -25,6 +25,7 @@ from diagnosis.discovery.search.likelihood_ratio import (
 from diagnosis.discovery.search.parts import lacks_a_part
 from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import Candidate
+from diagnosis.discovery.search.standing import Contest, Form, Standing, form_of
 from twin.catalogue import find, found_together, unnamed
 from twin.effect import Effect
 
@@ -61,47 +62,89 @@ class Search:
         return self.threshold - doubt_beside(fit, keys)
 
 
-def improve(fit: Fit, keys: Sequence[str], plan: Search) -> tuple[Fit, list[str]]:
-    """Remove what no longer pays, exchange what another explains better; repeat while anything changes."""
-    held = list(keys)
-    stands_in: dict[str, Fit] = {}
+def improve(
+    fit: Fit, keys: Sequence[str], plan: Search, standings: Mapping[str, Standing] | None = None
+) -> tuple[Fit, list[str], Mapping[str, Standing]]:
+    """Remove what no longer pays, exchange what another explains better; repeat while anything changes.
+
+    Returned are the fit, its causes, and by key how they stand; ``standings`` says so of those known from before.
+    """
+    held, known = list(keys), dict(standings or {})
     for _ in range(fit.settings.most_rounds):
         before = list(held)
         fit = detailed(retuned(fit, held), held, plan.threshold, plan.effects)
         for key in before:
-            # In a fit in which a cause stood its ground already it would do so again.
-            if key in held and len(held) > 1 and stands_in.get(key) is not fit:
-                fit, held, plan = _held_or_exchanged(fit, key, held, plan)
-                stands_in[key] = fit
+            if key not in held or len(held) < 2:
+                continue
+            stood = known.get(key)
+            if stood is not None and stood.seen_in is fit:
+                # In the very fit in which it was examined.
+                continue
+            examined = _held_or_exchanged(fit, key, held, plan, stood)
+            if examined.standing is None:
+                # What takes its place may have its key.
+                known = {other: known[other] for other in known if other != key and other in examined.keys}
+            else:
+                known[key] = examined.standing
+            fit, held, plan = examined.fit, examined.keys, examined.plan
         if held == before:
             break
-    return fit, held
+    return fit, held, known
 
 
-def _held_or_exchanged(fit: Fit, key: str, keys: list[str], plan: Search) -> tuple[Fit, list[str], Search]:
+@dataclass(frozen=True, eq=False)
+class _Examined:
+    """What an examination of a cause ends with; ``standing`` where the cause keeps its place."""
+
+    fit: Fit
+    keys: list[str]
+    plan: Search
+    standing: Standing | None = None
+
+
+def _held_or_exchanged(fit: Fit, key: str, keys: list[str], plan: Search, stood: Standing | None) -> _Examined:
     """The fit with this cause, without it, or with another in its place."""
     others = [other for other in keys if other != key]
-    removal = Removal.of(fit, key)
-    idle = removal.log_p + handicap(removal.effect, fit) > plan.level_beside(fit, others)
+    removal, level = Removal.of(fit, key), plan.level_beside(fit, others)
+    contenders = plan.contenders.get(key, plan.effects)
+    known = stood is not None and stood.pays_still(removal, level)
+    idle = not known and removal.log_p + handicap(removal.effect, fit) > level
     if idle or ends_at_bound(fit, key) or lacks_a_part(fit, key, fit.settings.footprint_log_p):
-        return removal.without, others, plan
-    for rival in _rivals(fit, removal, plan.contenders.get(key, plan.effects), others):
+        return _Examined(removal.without, others, plan)
+    if stood is not None and known:
+        rivals = _rivals(fit, removal, contenders, others, log_p=stood.now(removal))
+        if stood.beats_still(removal, rivals):
+            return _Examined(fit, keys, plan, replace(stood, seen_in=fit))
+    contests: dict[Form, Contest] = {}
+    for rival in _rivals(fit, removal, contenders, others):
         trial = Trial.of(removal.removed, rival)
         members = either(plausible_members(fit), trial.members)
         own_gain = 2.0 * (likelihood(fit, members) - likelihood(removal.without, members))
         own_p = removal.judged(own_gain) + handicap(removal.effect, fit)
         rival_p = trial.log_p(removal.without, members, removal.base.dof) + handicap(rival.effect, fit)
-        if own_p - rival_p > fit.settings.swap_log_odds:
-            plan = plan.with_contenders({trial.key: plan.contenders.get(key, plan.effects)})
-            return trial.fit, [*others, trial.key], plan
-    return fit, keys, plan
+        lost_by = rival_p - own_p + fit.settings.swap_log_odds
+        if lost_by < 0.0:
+            plan = plan.with_contenders({trial.key: contenders})
+            return _Examined(trial.fit, [*others, trial.key], plan)
+        contests[form_of(rival, fit)] = Contest(lost_by, rival.log_p - _first(removal))
+    return _Examined(fit, keys, plan, Standing(fit, removal.log_p, _first(removal), contests))
 
 
-def _rivals(fit: Fit, removal: Removal, contenders: Sequence[Effect], others: Sequence[str]) -> list[Candidate]:
-    """Candidates that may do better in the place of a cause, by their first-order scores."""
+def _first(removal: Removal) -> float:
+    """Log probability of what a cause gains to first order, or where that cannot be had, of its exact gain."""
+    return removal.own.log_p if removal.own is not None else removal.log_p
+
+
+def _rivals(
+    fit: Fit, removal: Removal, contenders: Sequence[Effect], others: Sequence[str], *, log_p: float | None = None
+) -> list[Candidate]:
+    """Candidates that may do better in the place of a cause, by their first-order scores.
+
+    ``log_p`` is that of the cause where it is known without an exact fit.
+    """
     # First order undervalues a large gain, of the cause itself as of its rivals: like is held against like.
-    own_first = removal.own.log_p if removal.own is not None else removal.log_p
-    score = max(removal.log_p, own_first) + handicap(removal.effect, fit) + fit.settings.contender_nats
+    exact = removal.log_p if log_p is None else log_p
+    score = max(exact, _first(removal)) + handicap(removal.effect, fit) + fit.settings.contender_nats
     ranked = candidates(removal.base, contenders, others)
     most = fit.settings.most_rivals
     # The zeros of the turns cost a scatter, not a coefficient each: first order undervalues them.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
+from diagnosis.discovery.fitting.joint_fit import SMALL_GAIN, Fit, evaluate, solve
 from diagnosis.discovery.fitting.noise.plausible import either
 from diagnosis.discovery.search.freed import in_detail
 from diagnosis.discovery.search.likelihood_ratio import (
@@ -26,6 +26,8 @@ from diagnosis.discovery.search.screening import Base, Candidate, screen, screen
 from twin.catalogue import base_name, find, of_one_source, unnamed
 from twin.effect import Effect
 
+_AROUND_THE_SENSOR = ("mechanics", "reference")
+"""Stages of what is mounted beside the sensor."""
 _HIGHEST_SHARE = 0.9
 """Highest order looked at as a multiple, as a share of the points a turn."""
 
@@ -121,8 +123,12 @@ def best_addition(
     trials += _in_the_place_of_a_shape(fit, ranked, near, threshold)
     # All are judged by the same noises: those that any of them leaves.
     members = either(*(t.members for t in trials))
-    judged = [(t.log_p(fit, members, base.dof) + handicap(t.candidate.effect, fit), k) for k, t in enumerate(trials)]
-    score, place = min(judged)
+    judged = [t.log_p(fit, members, base.dof) + handicap(t.candidate.effect, fit) for t in trials]
+    # Fits end that near to their optima: of causes that do the same the last digits would choose. In doubt it is the
+    # sensor's own.
+    alike = [place for place, one in enumerate(judged) if one <= min(judged) + SMALL_GAIN]
+    place = min(alike, key=lambda one: trials[one].candidate.effect.stage in _AROUND_THE_SENSOR)
+    score = judged[place]
     if ends_at_bound(trials[place].fit, trials[place].key) or (score > threshold and of_parts(near[0].effect)):
         # Of lines that one cause joins first order may promise what the cause does not keep: they are asked alone.
         tried = trials[place].candidate.effect if score <= threshold else near[0].effect

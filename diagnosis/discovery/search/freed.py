@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate
+from diagnosis.discovery.fitting.free_parameters import Free
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
 from diagnosis.discovery.fitting.noise.plausible import either, plausible_members
 from diagnosis.discovery.fitting.projection import projected
 from diagnosis.discovery.search.likelihood_ratio import Trial, judged_p, likelihood, refit

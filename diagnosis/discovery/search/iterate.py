@@ -26,7 +26,7 @@ def searched(
     found = Found(fit, tuple(keys), 0)
     for _ in range(fit.settings.most_rounds):
         before = found.keys
-        found = search(fit, effects, before, tell=tell)
+        found = search(fit, effects, before, standings=found.standings, tell=tell)
         refined = reblurred(mask_spikes(found.fit, step, also))
         if found.keys == before and np.array_equal(refined.observations.usable, found.fit.observations.usable):
             return found

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, free_of, solve
+from diagnosis.discovery.fitting.free_parameters import Free, free_of
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, held_anew, solve
 from diagnosis.discovery.fitting.noise.plausible import plausible_members, radius_noise
 from diagnosis.discovery.fitting.tidy import tidy
 from diagnosis.discovery.search.screening import Base, Candidate
@@ -53,8 +54,8 @@ def _likelihoods(fit: Fit, members: Sequence[int], *, of_readings: bool = False)
     before = float(np.sum(fit.prior_residual[~np.isin(known, drawn)] ** 2)) if of_readings else 0.0
     found = {}
     for member in members:
-        r, j = fit.whitened(member)
-        _, log_det = np.linalg.slogdet(j[integrated] @ j[integrated].T + 1e-300 * np.eye(len(integrated)))
+        r, j = fit.whitened_residual(member), fit.whitened_columns(integrated, member)
+        _, log_det = np.linalg.slogdet(j @ j.T + 1e-300 * np.eye(len(integrated)))
         found[member] = prior - 0.5 * float(dof * np.log(max(float(r @ r) - before, 1e-300)) + cost[member] + log_det)
     return found
 
@@ -82,7 +83,7 @@ def solve_tidy(fit: Fit, *, iterations: int = 12) -> Fit:
 
 def replace_chain(fit: Fit, chain: Chain) -> Fit:
     """The fit with an equivalent chain (phases and signs made tidy)."""
-    return evaluate(chain, fit.free, fit.observations, fit.weighting)
+    return held_anew(fit) if chain is fit.chain else evaluate(chain, fit.free, fit.observations, fit.weighting)
 
 
 def settle(fit: Fit) -> tuple[Fit, Base]:

@@ -36,7 +36,7 @@ def line_shapes(
     low, high = line.limits(fit.linear.motion)
     if line.clock == "channels":
         return _weights_of_a_bit(matched[0], fit, effect, peaks=peaks)
-    clock = _clock(fit, line)
+    clock = clock_of(fit, line)
     span = float(np.ptp(clock))
     if span <= 0.0 or high <= low:
         return [], 0.0
@@ -64,7 +64,7 @@ def _whole(low: float, high: float) -> Array:
     return np.arange(np.ceil(low), np.floor(high) + 1)
 
 
-def _clock(fit: Fit, line: Line) -> Array:
+def clock_of(fit: Fit, line: Line) -> Array:
     """What the line is periodic in (n,): turns of the shaft, or seconds from the middle of the record."""
     motion = fit.linear.motion
     if line.clock == "shaft":

@@ -3,8 +3,8 @@ left that stands out of the noise."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,17 +14,20 @@ from diagnosis.discovery.search.exchange import Search, improve, in_its_place
 from diagnosis.discovery.search.forward_step import best_addition, best_together
 from diagnosis.discovery.search.likelihood_ratio import settle
 from diagnosis.discovery.search.screening import Base
+from diagnosis.discovery.search.standing import Standing
 from twin.catalogue import base_name, unnamed
 from twin.effect import Effect
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What the search ends with: the joint fit, the keys of its causes, and how many effects were looked at."""
+    """What the search ends with: the joint fit, the keys of its causes, how many effects were looked at, and how the
+    causes stand against others."""
 
     fit: Fit
     keys: tuple[str, ...]
     looked_at: int
+    standings: Mapping[str, Standing] = field(default_factory=dict)
 
 
 Tell = Callable[[Found], None]
@@ -35,7 +38,14 @@ def nobody(found: Found) -> None:
     """Hear it and do nothing."""
 
 
-def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = (), *, tell: Tell = nobody) -> Found:
+def search(
+    fit: Fit,
+    effects: Sequence[Effect],
+    keys: Sequence[str] = (),
+    *,
+    standings: Mapping[str, Standing] | None = None,
+    tell: Tell = nobody,
+) -> Found:
     """Find the causes that the fit's chain lacks.
 
     Parameters
@@ -46,6 +56,8 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = (), *, tel
         What may be found; those that the recording cannot show are left out.
     keys : sequence of str
         Causes that the fit holds already, open to revision.
+    standings : mapping, optional
+        How these stood when they were last examined, by key.
     tell : callable
         Hears what the search holds after each step.
 
@@ -61,8 +73,9 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = (), *, tel
     barred: set[str] = set()
     seen: set[frozenset[str]] = set()
     fit, base = settle(fit)
+    standings = standings or {}
     if held:
-        fit, base, held = _improved(fit, base, held, plan)
+        fit, base, held, standings = _improved(fit, base, held, plan, standings)
     while len(held) < fit.settings.most_causes and _stands_out(fit):
         offered = [effect for effect in plan.effects if effect.name not in barred]
         level = plan.level_beside(fit, held)
@@ -72,7 +85,7 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = (), *, tel
         plan = plan.with_contenders(step.added)
         fit, base = settle(step.fit)
         tell(Found(fit, (*held, *step.added), len(plan.effects)))
-        fit, base, held = _improved(fit, base, [*held, *step.added], plan)
+        fit, base, held, standings = _improved(fit, base, [*held, *step.added], plan, standings)
         # Pruned or exchanged at once: offered again, it would only go round.
         idle = {base_name(key) for key in step.added if key not in held}
         barred |= idle
@@ -83,13 +96,15 @@ def search(fit: Fit, effects: Sequence[Effect], keys: Sequence[str] = (), *, tel
         seen.add(frozenset(held))
     for key in [key for key in held if unnamed(key)]:
         fit, held = in_its_place(fit, key, held, plan)
-    return Found(fit, tuple(held), len(plan.effects))
+    return Found(fit, tuple(held), len(plan.effects), standings)
 
 
-def _improved(fit: Fit, base: Base, keys: Sequence[str], plan: Search) -> tuple[Fit, Base, list[str]]:
-    """The settled fit improved, and settled again where anything has changed."""
-    better, held = improve(fit, keys, plan)
-    return (fit, base, held) if better is fit else (*settle(better), held)
+def _improved(
+    fit: Fit, base: Base, keys: Sequence[str], plan: Search, standings: Mapping[str, Standing]
+) -> tuple[Fit, Base, list[str], Mapping[str, Standing]]:
+    """The settled fit improved, and settled again where anything has changed; and how its causes stand."""
+    better, held, standings = improve(fit, keys, plan, standings)
+    return (fit, base, held, standings) if better is fit else (*settle(better), held, standings)
 
 
 def _stands_out(fit: Fit) -> bool:

@@ -8,7 +8,8 @@ import numpy as np
 
 from diagnosis.discovery.finding import Finding
 from diagnosis.discovery.fitting.f_test import log_probability
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve, value_of
+from diagnosis.discovery.fitting.free_parameters import Free, value_of
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.own_parameters import set_back
 from diagnosis.discovery.proof.changes import TWIN_VARIANCE, Change, Differences, another_device
 from diagnosis.discovery.search.likelihood_ratio import add, drop

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from diagnosis.discovery.fitting.free_parameters import free_of
 from diagnosis.discovery.fitting.initial_fit import (
     awake,
     baseline_fit,
@@ -11,7 +12,7 @@ from diagnosis.discovery.fitting.initial_fit import (
     fit_of_given,
     senses_of_channels,
 )
-from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, free_of, solve
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.state import State
 from twin.catalogue import find
 

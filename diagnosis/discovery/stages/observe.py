@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from diagnosis.discovery.fitting.free_parameters import BASELINE
 from diagnosis.discovery.fitting.initial_fit import unfitted
-from diagnosis.discovery.fitting.joint_fit import BASELINE
 from diagnosis.discovery.fitting.observations import collect
 from diagnosis.discovery.marks.quantisation import grid_bits
 from diagnosis.discovery.marks.row_masks import rows_of

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnosis.discovery.fitting.joint_fit import Free, free_of
+from diagnosis.discovery.fitting.free_parameters import Free, free_of
 from diagnosis.discovery.fitting.linearised_chain import Linear
 from tests.contract.examples import EXAMPLES
 from tests.twin.test_mirror import MISPLACED

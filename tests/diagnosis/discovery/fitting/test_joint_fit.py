@@ -11,17 +11,8 @@ from scipy.fft import dct
 from scipy.optimize import least_squares
 
 from diagnosis.discovery.fitting.bounded_step import eased
-from diagnosis.discovery.fitting.joint_fit import (
-    BASELINE,
-    SMALL_GAIN,
-    Fit,
-    Free,
-    Weighting,
-    cost_of,
-    evaluate,
-    free_of,
-    solve,
-)
+from diagnosis.discovery.fitting.free_parameters import BASELINE, Free, free_of
+from diagnosis.discovery.fitting.joint_fit import SMALL_GAIN, Fit, Weighting, cost_of, evaluate, solve
 from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.observations import collect
 from diagnosis.discovery.settings import DiscoverySettings

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis.discovery.fitting.free_parameters import Free, value_of
 from diagnosis.discovery.fitting.intervals import intervals_95, quantile_95, standard_deviations
-from diagnosis.discovery.fitting.joint_fit import Fit, Free, evaluate, solve, value_of
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.profile import CLOSE, reached
 from diagnosis.discovery.stages.stepwise import stepwise
 from tests.diagnosis.discovery.sweeps import Made, before

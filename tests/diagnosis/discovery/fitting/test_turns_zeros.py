@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.discovery.fitting.joint_fit import Fit, _scatter, evaluate, free_of, solve
+from diagnosis.discovery.fitting.free_parameters import free_of
+from diagnosis.discovery.fitting.joint_fit import Fit, _scatter, evaluate, solve
 from diagnosis.discovery.stages.stepwise import stepwise
 from tests.diagnosis.discovery.sweeps import Made, before
 from twin.angles import Array

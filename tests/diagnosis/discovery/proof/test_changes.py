@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from diagnosis.discovery.fitting.joint_fit import Free
+from diagnosis.discovery.fitting.free_parameters import Free
 from diagnosis.discovery.proof.changes import Differences, _parallel
 from diagnosis.discovery.settings import DiscoverySettings
 

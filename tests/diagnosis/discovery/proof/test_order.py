@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, free_of, solve
+from diagnosis.discovery.fitting.free_parameters import free_of
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.proof.order import by_turn
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.stepwise import stepwise

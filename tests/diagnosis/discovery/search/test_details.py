@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnosis.discovery.fitting.joint_fit import Fit, Free
+from diagnosis.discovery.fitting.free_parameters import Free
+from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.search.details import detailed
 from diagnosis.discovery.search.likelihood_ratio import refit
 from diagnosis.discovery.stages.stepwise import stepwise

@@ -12,8 +12,9 @@ import pytest
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
 from diagnosis.discovery.search import exchange
 from diagnosis.discovery.search.exchange import Search, improve, in_its_place
-from diagnosis.discovery.search.likelihood_ratio import settle
+from diagnosis.discovery.search.likelihood_ratio import Trial, settle
 from diagnosis.discovery.search.removal import Removal
+from diagnosis.discovery.search.screening import Candidate
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.searches import candidate, with_cause
@@ -96,7 +97,7 @@ def test_what_becomes_of_the_causes_held(case: Case) -> None:
     state = plain(BACK)
     shapes = ((case.fourth_deg, order(4, state.fit, case.phase)), (case.fifth_deg, order(5, state.fit, 1.0)))
     state = holding(reading(state, *shapes), case.held)
-    fit, held = improve(state.fit, state.keys, Search.among(state.searched, state.fit))
+    fit, held, _ = improve(state.fit, state.keys, Search.among(state.searched, state.fit))
     assert tuple(held) == case.then
     assert {one.key for one in fit.free} >= set(held)
     assert (fit is state.fit) == (case.then == state.keys)
@@ -116,9 +117,71 @@ def test_a_cause_that_stood_its_ground_is_not_asked_again_in_the_same_fit(monkey
         return of(fit, key)
 
     monkeypatch.setattr(Removal, "of", counted)
-    _, held = improve(state.fit, state.keys, Search.among(state.searched, state.fit))
+    _, held, _ = improve(state.fit, state.keys, Search.among(state.searched, state.fit))
     assert held == [state.keys[1], SATURATION]
     assert asked == [*state.keys, SATURATION]
+
+
+def solved(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Names of what is fitted exactly from here on: a cause's absence, and each of its rivals."""
+    asked: list[str] = []
+    trial, without = Trial.of, Removal.without.func
+
+    def counted(fit: Fit, rival: Candidate) -> Trial:
+        asked.append(rival.effect.name)
+        return trial(fit, rival)
+
+    def missed(removal: Removal) -> Fit:
+        asked.append(f"no {removal.effect.name}")
+        return without(removal)
+
+    known = functools.cached_property(missed)
+    known.__set_name__(Removal, "without")
+    monkeypatch.setattr(Removal, "without", known)
+    monkeypatch.setattr(Trial, "of", counted)
+    return asked
+
+
+def test_what_stood_by_far_stands_without_another_fit_while_no_lead_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """To first order all is as it was: a little more noise, and so another fit, says nothing new."""
+    state = plain(BACK)
+    parts = ((0.05, order(4, state.fit)), (0.05, order(5, state.fit, 1.0)))
+    before = holding(reading(state, *parts), (_AS_SATURATION, _AS_FIFTH))
+    search = Search.among(before.searched, before.fit)
+    _, _, standings = improve(before.fit, before.keys, search)
+    assert set(standings) == set(before.keys)
+    asked = solved(monkeypatch)
+    after = holding(reading(state, *parts, (0.0005, order(9, state.fit))), (_AS_SATURATION, _AS_FIFTH))
+    fit, held, again = improve(after.fit, after.keys, search, standings)
+    assert (fit, tuple(held), asked) == (after.fit, after.keys, [])
+    assert all(again[key].seen_in is fit and again[key].log_p == standings[key].log_p for key in held)
+
+
+def test_what_stood_is_asked_again_once_a_rival_has_drawn_nearer(monkeypatch: pytest.MonkeyPatch) -> None:
+    state = plain(BACK)
+    fifth = (0.05, order(5, state.fit, 1.0))
+    before = holding(reading(state, (0.03, order(4, state.fit, 0.13)), fifth), (_AS_FIFTH, _AS_FOURTH))
+    search = Search.among(before.searched, before.fit)
+    _, _, standings = improve(before.fit, before.keys, search)
+    assert set(standings) == set(before.keys)
+    asked = solved(monkeypatch)
+    after = holding(reading(state, (0.03, order(4, state.fit)), fifth), (_AS_FIFTH, _AS_FOURTH))
+    _, held, _ = improve(after.fit, after.keys, search, standings)
+    assert SATURATION in asked
+    assert held == [HARMONIC, SATURATION]
+
+
+def test_what_stood_is_asked_again_once_it_pays_less(monkeypatch: pytest.MonkeyPatch) -> None:
+    state = plain(BACK)
+    fourth = (0.05, order(4, state.fit))
+    before = holding(reading(state, fourth, (0.05, order(5, state.fit, 1.0))), (_AS_SATURATION, _AS_FIFTH))
+    search = Search.among(before.searched, before.fit)
+    _, _, standings = improve(before.fit, before.keys, search)
+    asked = solved(monkeypatch)
+    after = holding(reading(state, fourth, (0.006, order(5, state.fit, 1.0))), (_AS_SATURATION, _AS_FIFTH))
+    _, held, _ = improve(after.fit, after.keys, search, standings)
+    assert f"no {HARMONIC}" in asked
+    assert held == [SATURATION]
 
 
 def test_only_those_are_tried_that_contended_for_its_place() -> None:
@@ -155,8 +218,8 @@ def test_no_more_rivals_are_tried_than_may_be_but_zeros_of_the_turns_are(monkeyp
     offered = [candidate(name, state.fit, log_p=-100.0 + place) for place, name in enumerate(names)]
     monkeypatch.setattr(exchange, "candidates", lambda *_: offered)
     removal = Removal.of(state.fit, state.keys[0])
-    removal = replace(removal, log_p=-50.0, own=None)
-    rivals = [rival.effect.name for rival in exchange._rivals(state.fit, removal, (), ())]
+    removal = replace(removal, own=None)
+    rivals = [rival.effect.name for rival in exchange._rivals(state.fit, removal, (), (), log_p=-50.0)]
     assert rivals == [*names[:3], "reference_rezero"]
 
 

@@ -49,6 +49,21 @@ def both_steps(state: State) -> tuple[Step | None, Step | None]:
     return best_addition(*asked), best_together(*asked)
 
 
+@pytest.mark.parametrize("first", ["latency", "backlash"])
+def test_of_causes_that_do_the_same_the_sensors_own_leads(first: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """At one speed a lag in time and a play of the shaft are the same: no last digit of a score chooses."""
+    state = before(stepwise, Made(points=72, rpm=(300.0,), back=True, causes=(("latency", 0.1),), left_out=("turn",)))
+    ranked = candidates
+
+    def in_this_order(*asked: object) -> list[Candidate]:
+        return sorted(ranked(*asked), key=lambda one: one.effect.name != first)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(forward_step, "candidates", in_this_order)
+    alone, _ = both_steps(state)
+    assert alone is not None
+    assert list(alone.added) == ["latency"]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Joint:
     """Orders of so many degrees, how many of them may be added together, and how many are."""

@@ -88,7 +88,7 @@ def test_rows_that_stand_alone_only_once_the_causes_are_known_are_masked(monkeyp
         residual[40] += spike
         return Found(with_residual(state, residual).fit, ("saturation",), 7)
 
-    def search(fit: object, effects: object, keys: tuple[str, ...], *, tell: object) -> Found:
+    def search(fit: object, effects: object, keys: tuple[str, ...], *, standings: object, tell: object) -> Found:
         rounds.append(tuple(keys))
         one = found_with(0.05)
         usable = state.fit.observations.usable & (np.arange(120) != (40 if len(rounds) > 1 else -1))
@@ -108,7 +108,7 @@ def test_a_search_that_never_ends_ends_after_its_rounds(monkeypatch: pytest.Monk
     state = recorded(Made(points=120, bits=30))
     rounds: list[tuple[str, ...]] = []
 
-    def search(fit: object, effects: object, keys: tuple[str, ...], *, tell: object) -> Found:
+    def search(fit: object, effects: object, keys: tuple[str, ...], *, standings: object, tell: object) -> Found:
         rounds.append(tuple(keys))
         return Found(state.fit, (f"round {len(rounds)}",), 7)
 

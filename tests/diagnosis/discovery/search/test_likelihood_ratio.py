@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.stats import f as f_distribution
 
-from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, free_of
+from diagnosis.discovery.fitting.free_parameters import free_of
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
 from diagnosis.discovery.search.likelihood_ratio import degrees, doubt_beside, handicap, judged_p, likelihood
 from diagnosis.discovery.search.screening import Base, by_chance
 from diagnosis.discovery.stages.stepwise import stepwise

@@ -63,5 +63,5 @@ def test_one_that_was_taken_before_the_rest_was_known_gives_way() -> None:
     assert lacks_a_part(state.fit, "multipole", level)
     # Nothing stands ready to take its place.
     search = Search.among(state.searched, state.fit).with_contenders({"multipole": ()})
-    _, held = improve(state.fit, state.keys, search)
+    _, held, _ = improve(state.fit, state.keys, search)
     assert "multipole" not in held

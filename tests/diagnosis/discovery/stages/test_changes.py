@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from diagnosis import explain
-from diagnosis.discovery.fitting.joint_fit import value_of
+from diagnosis.discovery.fitting.free_parameters import value_of
 from diagnosis.discovery.stages.changes import changes
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit

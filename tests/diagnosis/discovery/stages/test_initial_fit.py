@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from diagnosis.discovery.fitting.joint_fit import BASELINE, ZERO_ANGLE, Free
+from diagnosis.discovery.fitting.free_parameters import BASELINE, ZERO_ANGLE, Free
 from diagnosis.discovery.stages.initial_fit import initial_fit
 from diagnosis.discovery.stages.observe import observe
 from diagnosis.discovery.state import State

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from diagnosis.discovery.finding import Finding
+from diagnosis.discovery.fitting.free_parameters import Free
 from diagnosis.discovery.fitting.intervals import may_be_null, quantile_95, standard_deviations
-from diagnosis.discovery.fitting.joint_fit import Free, evaluate, solve
+from diagnosis.discovery.fitting.joint_fit import evaluate, solve
 from diagnosis.discovery.stages.answer import answer
 from diagnosis.discovery.stages.listed import listed
 from diagnosis.discovery.state import State

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from diagnosis import explain
-from diagnosis.discovery.fitting.joint_fit import Free, evaluate, solve
+from diagnosis.discovery.fitting.free_parameters import Free
+from diagnosis.discovery.fitting.joint_fit import evaluate, solve
 from diagnosis.discovery.stages.ringing import ringing
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.sweeps import Made, before, with_residual

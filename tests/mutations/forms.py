@@ -199,8 +199,8 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "exchange.every_examination_is_by_exact_fits",
             "diagnosis/discovery/search/exchange.py",
-            "if stood.beats_still(removal, rivals):",
-            "if False:",
+            "if paying is not None and paying.beats_still(",
+            "if False and paying is not None and paying.beats_still(",
             "tests/diagnosis/discovery/search/test_exchange.py"
             "::test_what_stood_by_far_stands_without_another_fit_while_no_lead_changes",
         ),

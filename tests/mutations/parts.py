@@ -156,7 +156,7 @@ PARTS: tuple[Mutation, ...] = (
         _T,
         (
             "exchange.nothing_is_removed",
-            "    idle = not known and removal.log_p + handicap(removal.effect, fit) > level\n",
+            "    idle = paying is None and removal.log_p + handicap(removal.effect, fit) > level\n",
             "    idle = False\n",
             "search/test_exchange.py::test_what_becomes_of_the_causes_held",
         ),

@@ -107,16 +107,15 @@ def _held_or_exchanged(fit: Fit, key: str, keys: list[str], plan: Search, stood:
     others = [other for other in keys if other != key]
     removal, level = Removal.of(fit, key), plan.level_beside(fit, others)
     contenders = plan.contenders.get(key, plan.effects)
-    known = stood is not None and stood.pays_still(removal, level)
-    idle = not known and removal.log_p + handicap(removal.effect, fit) > level
+    paying = stood if stood is not None and stood.pays_still(removal, level) else None
+    idle = paying is None and removal.log_p + handicap(removal.effect, fit) > level
     if idle or ends_at_bound(fit, key) or lacks_a_part(fit, key, fit.settings.footprint_log_p):
         return _Examined(removal.without, others, plan)
-    if stood is not None and known:
-        rivals = _rivals(fit, removal, contenders, others, log_p=stood.now(removal))
-        if stood.beats_still(removal, rivals):
-            return _Examined(fit, keys, plan, replace(stood, seen_in=fit))
+    ranked = candidates(removal.base, contenders, others)
+    if paying is not None and paying.beats_still(removal, _rivals(fit, removal, ranked, log_p=paying.now(removal))):
+        return _Examined(fit, keys, plan, replace(paying, seen_in=fit))
     contests: dict[Form, Contest] = {}
-    for rival in _rivals(fit, removal, contenders, others):
+    for rival in _rivals(fit, removal, ranked):
         trial = Trial.of(removal.removed, rival)
         members = either(plausible_members(fit), trial.members)
         own_gain = 2.0 * (likelihood(fit, members) - likelihood(removal.without, members))
@@ -135,17 +134,14 @@ def _first(removal: Removal) -> float:
     return removal.own.log_p if removal.own is not None else removal.log_p
 
 
-def _rivals(
-    fit: Fit, removal: Removal, contenders: Sequence[Effect], others: Sequence[str], *, log_p: float | None = None
-) -> list[Candidate]:
-    """Candidates that may do better in the place of a cause, by their first-order scores.
+def _rivals(fit: Fit, removal: Removal, ranked: Sequence[Candidate], *, log_p: float | None = None) -> list[Candidate]:
+    """Those of the candidates, ranked by their first-order scores, that may do better in the place of a cause.
 
     ``log_p`` is that of the cause where it is known without an exact fit.
     """
     # First order undervalues a large gain, of the cause itself as of its rivals: like is held against like.
     exact = removal.log_p if log_p is None else log_p
     score = max(exact, _first(removal)) + handicap(removal.effect, fit) + fit.settings.contender_nats
-    ranked = candidates(removal.base, contenders, others)
     most = fit.settings.most_rivals
     # The zeros of the turns cost a scatter, not a coefficient each: first order undervalues them.
     chosen = [*ranked[:most], *(c for c in ranked[most:] if c.effect.roles("per turn"))]

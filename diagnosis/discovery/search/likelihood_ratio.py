@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
-from diagnosis.discovery.fitting.free_parameters import Free, free_of
+from diagnosis.discovery.fitting.free_parameters import Free, declared, free_of
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, held_anew, solve
 from diagnosis.discovery.fitting.noise.plausible import plausible_members, radius_noise
 from diagnosis.discovery.fitting.tidy import tidy
@@ -43,7 +43,7 @@ def likelihood_of_readings(fit: Fit) -> float:
 def _likelihoods(fit: Fit, members: Sequence[int], *, of_readings: bool = False) -> dict[int, float]:
     """The same by family member."""
     family = fit.weighting.family
-    effects = [find(free.key, fit.chain.effects) for free in fit.free]
+    effects = [effect for effect, _ in declared(fit.chain, fit.free)]
     base = [k for k, effect in enumerate(effects) if effect.baseline]
     drawn = [k for k, effect in enumerate(effects) if not effect.baseline and fit.free[k].name in effect.drawn]
     integrated = [*base, *drawn]

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from diagnosis.discovery.fitting.free_parameters import declared
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.fitting.usual_factors import with_usual_factors
 from diagnosis.discovery.search.forward_step import may_come_again, one_more
 from diagnosis.discovery.search.likelihood_ratio import TO_THE_END, add, likelihood, likelihood_of_readings
 from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import screen_one
-from twin.catalogue import base_name, find, unnamed
+from twin.catalogue import base_name, unnamed
 from twin.effect import Effect
 
 
@@ -105,5 +106,4 @@ def _same(fit: Fit, rival: Fit) -> float:
 
 def _held_shapes(fit: Fit) -> int:
     """How many of the free shapes have a prior."""
-    params = (find(free.key, fit.chain.effects).params[free.name] for free in fit.free)
-    return sum(param.role == "shape" and param.prior_sd > 0.0 for param in params)
+    return sum(param.role == "shape" and param.prior_sd > 0.0 for _, param in declared(fit.chain, fit.free))

@@ -194,9 +194,7 @@ def test_only_those_are_tried_that_contended_for_its_place() -> None:
 
 
 @pytest.mark.parametrize(("beyond", "tried"), [(-0.5, True), (0.5, False)])
-def test_first_order_may_undervalue_a_rival_by_so_much(
-    beyond: float, tried: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_first_order_may_undervalue_a_rival_by_so_much(beyond: float, tried: bool) -> None:
     state = plain(BACK)
     state = holding(
         reading(state, (0.03, order(4, state.fit)), (0.05, order(5, state.fit, 1.0))), (_AS_FOURTH, _AS_FIFTH)
@@ -205,21 +203,19 @@ def test_first_order_may_undervalue_a_rival_by_so_much(
     assert removal.own is not None
     limit = max(removal.log_p, removal.own.log_p) + 8.0
     offered = [candidate(SATURATION, state.fit, log_p=limit + beyond), candidate(HARMONIC, state.fit, log_p=-500.0)]
-    monkeypatch.setattr(exchange, "candidates", lambda *_: offered)
-    rivals = exchange._rivals(state.fit, removal, (), ())
+    rivals = exchange._rivals(state.fit, removal, offered)
     # Never the cause itself.
     assert [rival.effect.name for rival in rivals] == ([SATURATION] if tried else [])
 
 
-def test_no_more_rivals_are_tried_than_may_be_but_zeros_of_the_turns_are(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_more_rivals_are_tried_than_may_be_but_zeros_of_the_turns_are() -> None:
     """They cost one scatter, not a coefficient each: first order undervalues them."""
     state = holding(reading(plain(BACK)), (_AS_FOURTH,))
     names = ["cardan_coupling", SATURATION, "index_slip", "zero_drift", "backlash", "reference_rezero"]
     offered = [candidate(name, state.fit, log_p=-100.0 + place) for place, name in enumerate(names)]
-    monkeypatch.setattr(exchange, "candidates", lambda *_: offered)
     removal = Removal.of(state.fit, state.keys[0])
     removal = replace(removal, own=None)
-    rivals = [rival.effect.name for rival in exchange._rivals(state.fit, removal, (), (), log_p=-50.0)]
+    rivals = [rival.effect.name for rival in exchange._rivals(state.fit, removal, offered, log_p=-50.0)]
     assert rivals == [*names[:3], "reference_rezero"]
 
 

@@ -19,14 +19,16 @@ _ROBUST_ROUNDS = 12
 class Look:
     """What the descents found of each sweep, in the pair of senses that fits better.
 
-    ``readings`` have these senses, and weight 0 where they are isolated gross errors that were left out; ``gram`` is
-    their quadratic form (batch, 10, 10). ``swap`` (batch,) says where the senses are not those that were tried first.
-    ``points`` (batch, 6) and ``cost`` (batch,) are the end of the descent from an ideal sensor, ``agreed`` (batch,)
-    whether those from all starts end alike, before any gross error is left out; ``other`` are points and costs of the
-    end in the other senses, None where none are tried.
+    ``readings`` have these senses, and weight 0 where they are isolated gross errors that were left out; ``start``
+    (batch, 6) is the ideal sensor that :func:`ideal` makes of them, ``gram`` their quadratic form (batch, 10, 10).
+    ``swap`` (batch,) says where the senses are not those that were tried first. ``points`` (batch, 6) and ``cost``
+    (batch,) are the end of the descent from an ideal sensor, ``agreed`` (batch,) whether those from all starts end
+    alike, before any gross error is left out; ``other`` are points and costs of the end in the other senses, None where
+    none are tried.
     """
 
     readings: Readings
+    start: Array
     gram: Array
     swap: NDArray[np.bool_]
     points: Array
@@ -42,7 +44,8 @@ def first_look(readings: Readings, reference_rad: Array, *, both: bool, robust: 
     a gross error counts for one reading at most, so even the first fit is not far off.
     """
     batch = reference_rad.shape[0]
-    begun = descents.starts(ideal(readings)[:, ZERO])
+    start = ideal(readings)
+    begun = descents.starts(start[:, ZERO])
     gram = readings.gram()
     ended = descents.descend(
         _forms(gram, both=both), np.concatenate([begun, model.mirrored(begun)]) if both else begun, count=readings.count
@@ -51,7 +54,7 @@ def first_look(readings: Readings, reference_rad: Array, *, both: bool, robust: 
     swap = _swapped(cost, batch)
     used, mask = readings, np.zeros(reference_rad.shape, dtype=np.bool_)
     order = np.argsort(np.remainder(reference_rad, 2.0 * np.pi), axis=-1, kind="stable") if robust else None
-    base = np.ones(reference_rad.shape) if readings.weights is None else readings.weights
+    base = 1.0 if readings.weights is None else readings.weights
     for _ in range(_ROBUST_ROUNDS):
         if order is None:
             break
@@ -66,8 +69,10 @@ def first_look(readings: Readings, reference_rad: Array, *, both: bool, robust: 
         points, cost = coarse.points, coarse.cost
         swap = _swapped(cost, batch)
     here, there = (np.where(one, batch, 0) + np.arange(batch) for one in (swap, ~swap))
+    kept = used.oriented(swap)
     return Look(
-        readings=used.oriented(swap),
+        readings=kept,
+        start=start if kept is readings else ideal(kept),
         gram=np.where(swap[:, None, None], model.swapped_gram(gram), gram),
         swap=swap,
         points=points[here],

@@ -186,16 +186,17 @@ def _both_senses(
         points[close], cost[close] = second.points, second.cost
         turned = close & (cost < exact.cost * (1.0 - 1e-9))
         if turned.any():
-            curvature, settled = exact.curvature.copy(), exact.settled.copy()
+            curvature, settled, residual = exact.curvature.copy(), exact.settled.copy(), exact.residual.copy()
             curvature[turned] = second.curvature[turned[close]]
             settled[turned] = second.settled[turned[close]]
+            residual[turned] = second.residual[turned[close]]
             best = np.where(turned[:, None], points, exact.points)
             points, cost, least = (
                 np.where(turned[:, None], exact.points, points),
                 np.where(turned, exact.cost, cost),
                 np.where(turned, cost, exact.cost),
             )
-            exact = least_squares.Minimum(best, least, curvature, exact.passes, settled)
+            exact = least_squares.Minimum(best, least, curvature, exact.passes, settled, residual)
     return exact, (points, cost), turned
 
 

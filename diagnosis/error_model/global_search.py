@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from diagnosis.error_model import least_squares, model, swarm
 from diagnosis.error_model.error_band import outside
-from diagnosis.error_model.first_look import Look, ideal
+from diagnosis.error_model.first_look import Look
 from diagnosis.error_model.model import ZERO
 from diagnosis.error_model.search_range import Box, at_wall, first_box, widened
 from twin.angles import Array
@@ -51,7 +51,7 @@ def search(
     where the descents of the first look do not end in one minimum: in the range of Table 2, and in a wider one while
     its best particle stands at the edge.
     """
-    readings, start = look.readings, ideal(look.readings)
+    readings, start = look.readings, look.start
     found = GlobalSearch(first_box(start[:, ZERO]), look.gram.copy())
     ideal_coefs = model.coefficients(start)
     found.zero_only = np.maximum(np.einsum("bi,bij,bj->b", ideal_coefs, found.gram, ideal_coefs), 0.0)

@@ -27,7 +27,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.angles import Array, wrap
+from diagnosis.error_model import moments
+from twin.angles import Array, cos_sin, wrap
 from twin.baseline import FACTORS
 
 NAMES = ("Vx_over_Ax", "Vy_over_Ay", "gain_ratio", "beta_rad", "quad", "zero_rad")
@@ -39,7 +40,8 @@ LOWER_LIMIT: Array = np.array([-0.9, -0.9, 0.2, -np.pi / 4, -0.3, -np.inf])
 UPPER_LIMIT: Array = np.array([0.9, 0.9, 5.0, np.pi / 4, 0.3, np.inf])
 """What the twin's effects accept; beyond it a curve is no longer a reading that follows the shaft."""
 
-_CHUNK_ROWS = 32768
+_CHUNK_ROWS = 16384
+"""Of a piece: some twenty rows of so many numbers stay in the processor's cache."""
 _MIRROR_FEATURES: Array = np.array([1, 1, -1, 1, -1, -1, -1, 1, -1, 1], dtype=np.float64)
 
 
@@ -147,16 +149,13 @@ class Readings:
         weights: Array | None = None,
     ) -> Readings:
         """From angles (..., n) [rad], wrapped or not; senses +1 or -1, broadcast against them."""
-        return cls(
-            np.cos(reference_rad),
-            sensor_sense * np.sin(reference_rad),
-            np.cos(measured_rad),
-            output_sense * np.sin(measured_rad),
-            weights,
-        )
+        shaft, read = cos_sin(reference_rad), cos_sin(measured_rad)
+        return cls(*shaft, *read, weights).in_senses(np.asarray(sensor_sense), np.asarray(output_sense))
 
     def in_senses(self, sensor: Array, output: Array) -> Readings:
         """The readings with these senses, +1 or -1, broadcast against them, in place of +1 and +1."""
+        if np.all(sensor == 1.0) and np.all(output == 1.0):
+            return self
         return replace(self, sin_shaft=sensor * self.sin_shaft, sin_read=output * self.sin_read)
 
     def resultant(self, sense: float = 1.0) -> tuple[Array, Array]:
@@ -165,7 +164,7 @@ class Readings:
         if self.weights is not None:
             c, s = c * self.weights, s * self.weights
         cc, ss, sc, cs = (
-            np.einsum("...n,...n->...", read, shaft)
+            (read[..., None, :] @ shaft[..., None])[..., 0, 0]
             for read, shaft in (
                 (c, self.cos_shaft),
                 (s, self.sin_shaft),
@@ -185,7 +184,8 @@ class Readings:
         if not swap.any():
             return self
         sign = np.where(swap, -1.0, 1.0)[:, None]
-        return replace(self, sin_shaft=sign * self.sin_shaft, sin_read=sign * self.sin_read)
+        shaft, read = (np.reshape(sign * sine, sine.shape) for sine in (self.sin_shaft, self.sin_read))
+        return replace(self, sin_shaft=shaft, sin_read=read)
 
     def sweeps(self, which: Any) -> Readings:
         """Some of the readings: a mask, indices or a tuple of them, as an array (batch, n) takes it."""
@@ -195,10 +195,15 @@ class Readings:
         """The same readings with other weights (..., n)."""
         return replace(self, weights=weights)
 
+    @property
+    def longest(self) -> int:
+        """Readings a sweep of a piece, see :meth:`chunks`."""
+        sweeps = int(np.prod(self.cos_shaft.shape[:-1], dtype=np.int64))
+        return min(max(_CHUNK_ROWS // max(sweeps, 1), 256), self.count)
+
     def chunks(self) -> Iterator[tuple[slice, Readings]]:
         """Consecutive pieces that stay in the processor's cache, with the rows they cover."""
-        sweeps = int(np.prod(self.cos_shaft.shape[:-1], dtype=np.int64))
-        size = max(_CHUNK_ROWS // max(sweeps, 1), 256)
+        size = self.longest
         for start in range(0, self.count, size):
             rows = slice(start, min(start + size, self.count))
             yield rows, self._part((..., rows))
@@ -224,19 +229,17 @@ class Readings:
 
         Without it r = 1, which is right to within the offsets and the gain mismatch.
         """
-        total: Array | None = None
+        sums = moments.Moments(self.cos_shaft.shape[:-1], self.longest, rows=3)
         for _, part in self.chunks():
-            features = part.features()
             weights = part.weights
             if around is not None:
                 x, y = part.channels(around)
                 inverse = 1.0 / (x * x + y * y)
                 weights = inverse if weights is None else weights * inverse
-            left = features if weights is None else features * weights[..., None]
-            piece = np.swapaxes(left, -1, -2) @ features
-            total = piece if total is None else total + piece
-        assert total is not None
-        return total
+            harmonics, rows = sums.piece(part.cos_shaft, part.sin_shaft)
+            moments.products(part.cos_read, part.sin_read, weights, rows)
+            sums.add(harmonics, rows)
+        return moments.gram(sums.total)
 
     def channels(self, points: Array) -> tuple[Array, Array]:
         """x and y (..., n) of the model at points (..., 6)."""
@@ -247,8 +250,12 @@ class Readings:
 
     def residual(self, points: Array) -> Array:
         """hm - atan2(y, x) (..., n) [rad] in (-pi, pi] at points (..., 6)."""
-        x, y = self.channels(points)
-        return np.arctan2(x * self.sin_read - y * self.cos_read, x * self.cos_read + y * self.sin_read)
+        out = np.empty(np.broadcast_shapes((*points.shape[:-1], 1), self.cos_shaft.shape, self.cos_read.shape))
+        for rows, part in self.chunks():
+            x, y = part.channels(points)
+            sine, cosine = x * part.sin_read - y * part.cos_read, x * part.cos_read + y * part.sin_read
+            np.arctan2(sine, cosine, out=out[..., rows])
+        return out
 
     def linearised(self, points: Array) -> tuple[Array, Array]:
         """Residual (..., n) and the slopes of atan2(y, x) with respect to the parameters (..., 6, n)."""

@@ -37,8 +37,8 @@ class Outcome:
 
 def results(outcome: Outcome) -> list[BaselineFit]:
     """One result a sweep."""
-    # residual() is h m - atan2(y, x): times h it is measured minus predicted.
-    residual = outcome.output[:, None] * outcome.plain.residual(outcome.exact.points)
+    # The residual is h m - atan2(y, x): times h it is measured minus predicted.
+    residual = outcome.output[:, None] * outcome.exact.residual
     weights = outcome.used.weights
     counted = np.full(residual.shape, True) if weights is None else weights > 0.0
     outliers = _left_out(outcome.plain, counted)
@@ -51,12 +51,13 @@ def _result(
     """The result of sweep ``k``, whose rows (n,) have these residuals [rad]."""
     exact, weights = outcome.exact, outcome.used.weights
     freedom = max(int(np.count_nonzero(counted)) - 6, 1)
-    squares = residual**2 if weights is None else weights[k] * residual**2
-    sigma = float(np.sqrt(squares.sum() / freedom))
+    pulled = residual if weights is None else weights[k] * residual
+    sigma = float(np.sqrt(residual @ pulled / freedom))
     covariance = sigma**2 * _inverse(exact.curvature[k])
     half = student_95(freedom) * np.sqrt(np.diagonal(covariance))
     point = exact.points[k].copy()
-    rms = float(np.sqrt(np.mean(residual[counted] ** 2)))
+    used = residual if counted.all() else residual[counted]
+    rms = float(np.sqrt(used @ used / used.size))
     return BaselineFit(
         point=point,
         covariance=covariance,

@@ -50,9 +50,9 @@ def identifiability(
         weights=np.where(fit.outliers, 0.0, 1.0),
     )
     gram = readings.gram(fit.point)
-    curvature, _, _ = least_squares.on_gram(gram[None])(fit.point[None])
-    scale = np.sqrt(np.maximum(np.diagonal(curvature[0]), 1e-300))
-    values, vectors = np.linalg.eigh(curvature[0] / scale[:, None] / scale)
+    curvature = least_squares.on_gram(gram[None])(fit.point[None]).curvature[0]
+    scale = np.sqrt(np.maximum(np.diagonal(curvature), 1e-300))
+    values, vectors = np.linalg.eigh(curvature / scale[:, None] / scale)
     error = fit.standard_errors
     correlations = fit.covariance / error[:, None] / error
     unseen = tuple(tuple(map(float, vectors[:, k])) for k in np.flatnonzero(values < _UNSEEN * values[-1]))

@@ -43,7 +43,7 @@ def profile(fit: BaselineFit, gram: Array, index: int) -> Profile:
     found = least_squares.descend(least_squares.on_gram(lanes), start, count=count, fixed=fixed)
     middle = _POINTS // 2
     # The covariance may count angles instead of readings: its variance of a reading sets the scale.
-    curvature, _, _ = least_squares.on_gram(gram[None])(fit.point[None])
+    curvature = least_squares.on_gram(gram[None])(fit.point[None]).curvature
     variance = float(np.mean(np.diagonal(fit.covariance @ curvature[0])))
     rise = (found.cost - found.cost[middle]) / max(variance, 1e-300)
     limit = student_95(max(fit.degrees_of_freedom, 1)) ** 2

@@ -11,6 +11,7 @@ import numpy as np
 
 from twin.angles import TAU, Array, IntArray, within_turn, wrap
 from twin.found_by import BoolArray
+from twin.least_squares import fitted
 from twin.motion import Motion
 
 ORDERS = 2
@@ -121,8 +122,7 @@ class Words:
             kept = self.usable & (np.abs(wrap(off - curve)) <= limit)
             if kept.sum() <= columns.shape[1]:
                 break
-            factors, *_ = np.linalg.lstsq(columns[kept], off[kept], rcond=None)
-            curve = columns @ factors
+            curve = columns @ fitted(columns, off, kept)
             left = np.abs(wrap(off - curve))
             freedom = kept.sum() / (kept.sum() - columns.shape[1])
             sigma = float(_MAD * np.median(left[kept]) * np.sqrt(freedom))

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from diagnosis.error_model.result import BaselineFit
-from twin.angles import Array
+from twin.angles import Array, cos_sin
 
 By = Literal["quadratic term", "channels", "twin", "option"]
 DECIDED_LOG_ODDS = float(np.log(1000.0))
@@ -24,6 +24,8 @@ _NEAR = (4, 5, 6, 7, 8)
 """Orders in which the error model leaves nothing: what stands there shows how much else may stand at order 3."""
 _WHOLE_TURN_DEG = 330.0
 _READINGS_AN_ORDER = 4
+_PIECE = 8192
+"""Readings whose cosines are held at once."""
 
 
 @dataclass(frozen=True)
@@ -64,13 +66,22 @@ def log_odds(fit: BaselineFit, reference_rad: Array, *, counted: BaselineFit, co
     orders = np.array((3, *_NEAR))
     if covered_deg < _WHOLE_TURN_DEG or np.unique(np.round(shaft, 6)).size < 2 * _READINGS_AN_ORDER * orders.size:
         return white
-    turns = orders[:, None] * shaft
-    columns = np.concatenate([np.cos(turns), np.sin(turns)])
-    power = np.linalg.lstsq(columns.T, left, rcond=None)[0] ** 2
+    power = _of_orders(shaft, left, orders) ** 2
     # Sines and cosines have a mean square of one half.
     gained = 2.0 * fit.senses.sigma**2 * fit.sigma_rad**2 / left.size
     ratio = 1.0 + gained / max(float(power.sum()), 1e-300)
     return min(white, 0.5 * (2 * len(_NEAR) + 1) * float(np.log(ratio)))
+
+
+def _of_orders(shaft: Array, left: Array, orders: Array) -> Array:
+    """Cosines, then sines, of these orders of the shaft [rad] in what is left, both (n,): least squares, in pieces."""
+    gram, pull = np.zeros((2 * orders.size, 2 * orders.size)), np.zeros(2 * orders.size)
+    for start in range(0, shaft.size, _PIECE):
+        rows = slice(start, start + _PIECE)
+        columns = np.concatenate(cos_sin(orders[:, None] * shaft[rows]))
+        gram += columns @ columns.T
+        pull += columns @ left[rows]
+    return np.asarray(np.linalg.lstsq(gram, pull, rcond=None)[0])
 
 
 def judged(fit: BaselineFit, reference_rad: Array, *, counted: BaselineFit, covered_deg: float) -> Mirror:

@@ -6,7 +6,6 @@ from tests.mutations.mutation import Mutation
 
 _SWARM = "diagnosis/error_model/swarm.py"
 _SWARM_TESTS = "tests/diagnosis/error_model/test_swarm.py"
-_LEAST_SQUARES = "tests/diagnosis/error_model/test_least_squares.py"
 _BAND = "diagnosis/error_model/error_band.py"
 _DESIGN = "tests/scenarios/test_design.py"
 _GAPS = "diagnosis/factors/air_gaps.py"
@@ -28,20 +27,6 @@ ERROR_MODEL: tuple[Mutation, ...] = (
         "np.maximum(_SETTLED * here.cost / max(count - 6, 1), rounding)",
         "_SETTLED * here.cost / max(count - 6, 1)",
         ("tests/diagnosis/error_model/test_fit.py::test_a_descent_ends_where_the_forms_digits_end",),
-    ),
-    Mutation(
-        "descents.a_curvature_is_kept_however_long_the_step",
-        "diagnosis/error_model/least_squares.py",
-        "_ALIKE = 1e-6",
-        "_ALIKE = np.inf",
-        (f"{_LEAST_SQUARES}::test_the_interval_is_that_of_the_curvature_where_the_descent_ends",),
-    ),
-    Mutation(
-        "descents.sums_without_the_fourth_harmonic",
-        "diagnosis/error_model/moments.py",
-        "range(5, out.shape[-2], 2)",
-        "range(5, out.shape[-2] - 2, 2)",
-        (f"{_LEAST_SQUARES}::test_the_form_is_the_sums_over_the_features",),
     ),
     Mutation(
         "swarm.discard",

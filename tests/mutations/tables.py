@@ -11,6 +11,7 @@ from tests.mutations.forms import FORMS
 from tests.mutations.gaps import GAPS
 from tests.mutations.lab import LAB
 from tests.mutations.logs import LOGS
+from tests.mutations.long import LONG
 from tests.mutations.mutation import Mutation
 from tests.mutations.noise import NOISE
 from tests.mutations.pace import PACE
@@ -46,6 +47,7 @@ def mutations() -> tuple[Mutation, ...]:
         *LOGS,
         *STUDIES,
         *LAB,
+        *LONG,
         *FLEET,
         *SCRIPTS,
         *THERMAL,

@@ -11,6 +11,8 @@ from twin.angles import Array, IntArray
 
 _ROUNDS = 60
 _STILL = 1e-3
+_SINGULAR = 1e-13
+"""Share of the largest eigenvalue below which one is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,12 +53,22 @@ def drawn(normal: Array, gradient: Array, variance: float, *, groups: Sequence[I
 
 def solved(normal: Array, gradient: Array, variance: float, sd: Array) -> Drawn:
     """The same with standard deviations that stay as they are."""
-    from scipy.linalg import eigh
-
     system = normal + np.diag(variance / sd**2)
     scale = 1.0 / np.sqrt(np.maximum(np.diag(system), 1e-300))
-    # By relatively robust representations: divide and conquer does not always end on matrices as near a diagonal one.
-    size, turned = eigh(system * np.outer(scale, scale), driver="evr")
-    kept = size > 1e-13 * size[-1]
-    inverse = (turned[:, kept] / size[kept]) @ turned[:, kept].T * np.outer(scale, scale)
+    inverse = _inverse(system * np.outer(scale, scale)) * np.outer(scale, scale)
     return Drawn(inverse @ gradient, variance * inverse, sd)
+
+
+def _inverse(system: Array) -> Array:
+    """Of a symmetric matrix with a diagonal of ones; without the directions of which it says next to nothing."""
+    from scipy.linalg import eigh
+    from scipy.linalg.lapack import dpocon, dpotrf, dpotri
+
+    factor, failed = dpotrf(system, lower=True)
+    if not failed and dpocon(factor, float(np.linalg.norm(system, 1)), uplo="L")[0] > _SINGULAR:
+        lower, _ = dpotri(factor, lower=True)
+        return np.asarray(np.tril(lower) + np.tril(lower, -1).T)
+    # By relatively robust representations: divide and conquer does not always end on matrices as near a diagonal one.
+    size, turned = eigh(system, driver="evr")
+    kept = size > _SINGULAR * size[-1]
+    return np.asarray((turned[:, kept] / size[kept]) @ turned[:, kept].T)

@@ -21,7 +21,7 @@ from diagnosis.spin.spline import Spline, rate
 from diagnosis.spin.variance_components import Drawn, drawn, solved
 from twin.angles import Array
 from twin.effect import BoolArray
-from twin.mechanics.torque_ripple import response
+from twin.mechanics.torque_ripple import response, second_order
 
 HIGHEST_ORDER = 32
 """Of the sensor's error and of the torques: the second harmonic of a cogging by sixteen teeth."""
@@ -78,11 +78,13 @@ ANY_GROWTH = np.full(HIGHEST_OF_FRICTION, np.inf)
 class _Estimate:
     """Where the rounds stand: the problem, the shaft's angle (n,) [rad], and how much everything scatters.
 
+    ``readings`` (n,) [rad] are all of them, those of the problem less what torques do beyond the first order.
     ``stiffness`` (d,) is that of the spline before rougher motion is held less, ``turning_rad_s`` (n,) the usual speed
     of each log, not given: that of all.
     """
 
     problem: Problem
+    readings: Array
     stiffness: Array
     stretches: Sequence[slice]
     shaft_rad: Array
@@ -144,7 +146,10 @@ class _Estimate:
         return replace(
             made,
             problem=problem,
-            shaft_rad=smooth + terms.values[torques] @ made.problem.columns[torques],
+            shaft_rad=smooth
+            + terms.values[torques] @ made.problem.columns[torques]
+            + made.readings
+            - made.problem.readings,
             sd=terms.sd,
             log_penalty=log_penalty,
             variance=variance,
@@ -161,7 +166,17 @@ class _Estimate:
         motion = (self.shaft_rad, *self.rates)
         damping = 0.0 if self.log_penalty is None or self.terms is None else _damping(self, motion)
         columns = np.concatenate([waves, *_torques(*motion, damping)])
-        return replace(self, damping_per_s=damping, problem=replace(self.problem, columns=columns))
+        readings = self.readings - self._beyond_first_order()
+        return replace(
+            self, damping_per_s=damping, problem=replace(self.problem, columns=columns, readings=readings)
+        )
+
+    def _beyond_first_order(self) -> Array | float:
+        """What the torques that were found turn the shaft by, (n,) [rad], beyond what is one of the columns."""
+        if self.terms is None or len(self.terms.values) <= _OF_ERROR:
+            return 0.0
+        torques = self.terms.values[_OF_ERROR:_OF_TORQUE].reshape(-1, 2)
+        return second_order(torques, shaft_rad=self.shaft_rad, speed_rad_s=self.rates[0])
 
 
 def fitted_motion(
@@ -234,6 +249,7 @@ def _set_out(
     shaft, free = np.asarray(spline.design @ start), np.full(_OF_ERROR, np.inf)
     return _Estimate(
         replace(problem, start=start),
+        readings_rad,
         problem.stiffness,
         stretches,
         shaft,

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array
+from twin.angles import TAU, Array
+
+_GRID = 4096
+"""Angles of a turn: of the orders up to 64, 64 a period."""
 
 
 def response(
@@ -24,3 +27,28 @@ def response(
     size = (1.0 - 3.0j * order * acceleration_rad_s2 / turning**2) / (1j * turning * (1j * turning + damping_per_s))
     wave = size * np.exp(1j * order * shaft_rad)
     return np.stack([wave.real, wave.imag])
+
+
+def second_order(torques_rad_s2: Array, *, shaft_rad: Array, speed_rad_s: Array) -> Array:
+    """Angle (n,) [rad] by which torques turn a shaft beyond :func:`response`, their squares and products.
+
+    By the energy: v^2 = w^2 + 2 G with G the integral of the torques over the angle, so that the shaft is ahead by
+    the integral over the angle of 1 - w/v = G/w^2 - (3/2) (G^2 - <G^2>)/w^4 + ...; the first term is the response.
+    A torque of order k that turns the shaft by h makes (3/8) k h^2 of the order 2k, which falls as 1/speed^4.
+
+    Parameters
+    ----------
+    torques_rad_s2 : ndarray
+        Accelerations (orders, 2) that go with cosine and sine of each order from 1 on [rad/s^2].
+    shaft_rad, speed_rad_s : ndarray
+        Angle [rad] and speed [rad/s] at each reading (n,).
+    """
+    order = np.arange(1, len(torques_rad_s2) + 1)
+    waves = np.zeros(_GRID // 2 + 1, dtype=np.complex128)
+    waves[order] = 0.5 * _GRID * (torques_rad_s2[:, 0] - 1j * torques_rad_s2[:, 1]) / (1j * order)
+    squares = np.fft.rfft(np.fft.irfft(waves) ** 2)
+    squares[0] = 0.0
+    turning = 1j * np.arange(1, squares.size)
+    ahead = np.fft.irfft(np.concatenate([[0.0], -1.5 * squares[1:] / turning]))
+    turn = TAU / _GRID * np.arange(_GRID)
+    return np.asarray(np.interp(shaft_rad, turn, ahead, period=TAU) / speed_rad_s**4)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -46,6 +47,13 @@ class Problem:
     stiffness: Array
     start: Array
     columns: Array
+    damping_per_s: float = 0.0
+
+    @cached_property
+    def rough(self) -> Any:
+        """Matrix (d, k) of how much the torque changes from knot to knot: third differences, and damped second ones."""
+        held_back = self.damping_per_s * self.spline.step_s
+        return self.spline.rough + self.spline.bent.multiply(held_back[:, None]).tocsr()
 
     @cached_property
     def _of_readings(self) -> tuple[Array, Array, Array, Array, Array, float]:
@@ -64,7 +72,7 @@ class Problem:
     @cached_property
     def _of_differences(self) -> tuple[Array, Array]:
         """The same of the differences that are held, for a penalty of 1: bands, and the differences themselves."""
-        return bands(self.spline.rough, self.stiffness), self.spline.rough @ self.start
+        return bands(self.rough, self.stiffness), self.rough @ self.start
 
     def reduced(self, log_penalty: float) -> Reduced:
         """The problem with the spline eliminated, at one penalty."""
@@ -78,13 +86,15 @@ class Problem:
         # Of a knot interval without a reading in use the differences alone tell the coefficients, and not all of them.
         system[0] += 1e-12 * np.max(system[0])
         factor = cholesky_banded(system, lower=True)
-        rhs = along - self.spline.rough.T @ held
+        rhs = along - self.rough.T @ held
         solved = cho_solve_banded((factor, True), np.column_stack([rhs, across]))
         step, pulled = solved[:, 0], solved[:, 1:]
         normal = own - across.T @ pulled
         gradient = self.columns @ left - across.T @ step
         squares += float(held @ differences - rhs @ step)
         log_det = 2.0 * float(np.sum(np.log(factor[0]))) - len(held) * log_penalty * float(np.log(10.0))
+        # A motion is told forward from how it begins: of each knot by its predecessors, as the torque has changed.
+        log_det -= 2.0 * float(np.sum(np.log1p(0.5 * self.damping_per_s * self.spline.step_s)))
         return Reduced(normal, gradient, squares, log_det, step, pulled)
 
 

@@ -136,7 +136,7 @@ class _Estimate:
         left = made.problem.readings - smooth - terms.values @ made.problem.columns
         left = np.abs(left) * np.sqrt(made.problem.precision)
         usual_left = 1.4826 * float(np.median(left[made.problem.weights > 0.0]))
-        differences = made.problem.spline.rough @ start
+        differences = made.problem.rough @ start
         problem = replace(
             made.problem,
             start=start,
@@ -168,7 +168,9 @@ class _Estimate:
         columns = np.concatenate([waves, *_torques(*motion, damping)])
         readings = self.readings - self._beyond_first_order()
         return replace(
-            self, damping_per_s=damping, problem=replace(self.problem, columns=columns, readings=readings)
+            self,
+            damping_per_s=damping,
+            problem=replace(self.problem, columns=columns, readings=readings, damping_per_s=damping),
         )
 
     def _beyond_first_order(self) -> Array | float:
@@ -384,7 +386,8 @@ def _damping(found: _Estimate, motion: tuple[Array, Array, Array]) -> float:
 
     def cost(root: float) -> float:
         columns = np.concatenate([waves, *_torques(*motion, root**2 * fastest)])
-        return replace(problem, columns=columns).reduced(penalty).cost(found.sd, found.variance, rows)
+        damped = replace(problem, columns=columns, damping_per_s=root**2 * fastest)
+        return damped.reduced(penalty).cost(found.sd, found.variance, rows)
 
     best = minimize_scalar(cost, bounds=(0.0, 1.0), method="bounded", options={"xatol": 0.01})
     return float(best.x) ** 2 * fastest

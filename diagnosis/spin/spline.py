@@ -24,6 +24,9 @@ ROWS_A_KNOT = 4
 MOST_KNOTS = 2000
 """Of a log: each then spans five readings of ten thousand."""
 FEWEST_KNOTS = 4
+_THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
+_SECOND = np.array([0.5, -0.5, -0.5, 0.5])
+"""The mean of two second differences, which lies where the third one does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,11 +34,14 @@ class Spline:
     """A spline on each of several stretches of time.
 
     ``design`` is the sparse matrix (n, k) of the basis at the readings, ``rough`` that (d, k) of the third differences,
-    ``spacing_s`` the time between two knots, ``at_s`` (d,) the time in the middle of each difference.
+    ``bent`` that (d, k) of the second ones, ``step_s`` (d,) the time between two knots and ``spacing_s`` the usual one,
+    ``at_s`` (d,) the time in the middle of each difference.
     """
 
     design: Any
     rough: Any
+    bent: Any
+    step_s: Array
     spacing_s: float
     at_s: Array
 
@@ -47,7 +53,7 @@ class Spline:
 
         total = sum(float(np.ptp(time_s[rows])) for rows in stretches)
         aim = max(ROWS_A_KNOT * total / time_s.size, total / MOST_KNOTS)
-        bases, differences, middles = [], [], []
+        bases, thirds, seconds, steps, middles = [], [], [], [], []
         for rows in stretches:
             own = time_s[rows]
             first, span = float(own[0]), float(own[-1] - own[0])
@@ -57,11 +63,17 @@ class Spline:
             inside = np.clip(own, first, np.nextafter(first + span, first))
             bases.append(BSpline.design_matrix(inside, knots, DEGREE))
             size = count + DEGREE
-            stencil = np.array([-1.0, 3.0, -3.0, 1.0])
             held = size - PENALISED
-            differences.append(diags_array(stencil, offsets=np.arange(4), shape=(held, size)))
+            thirds.append(diags_array(_THIRD, offsets=np.arange(4), shape=(held, size)))
+            seconds.append(diags_array(_SECOND, offsets=np.arange(4), shape=(held, size)))
+            steps.append(np.full(held, step))
             middles.append(first + step * (np.arange(held) + 0.5))
-        return cls(block_diag(bases, format="csr"), block_diag(differences, format="csr"), aim, np.concatenate(middles))
+        return cls(
+            *(block_diag(blocks, format="csr") for blocks in (bases, thirds, seconds)),
+            np.concatenate(steps),
+            aim,
+            np.concatenate(middles),
+        )
 
     @cached_property
     def size(self) -> int:

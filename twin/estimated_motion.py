@@ -65,6 +65,8 @@ class EstimatedMotion:
         What was found of torques locked to the angle, order by order.
     damping_per_s : float
         Rate at which friction and the drive undo a departure from the speed [1/s].
+    damping_sd_per_s : float
+        Standard deviation of its error.
     rows_aside : int
         Readings of the log that tell nothing: at standstill, in a jerk, or far off.
     even_clock : bool
@@ -76,6 +78,7 @@ class EstimatedMotion:
     noise_rad: float
     torques: tuple[Torque, ...] = field(default=())
     damping_per_s: float = 0.0
+    damping_sd_per_s: float = 0.0
     rows_aside: int = 0
     even_clock: bool = False
 
@@ -116,6 +119,7 @@ class EstimatedMotion:
             noise_rad=float(np.median([part.noise_rad for part in known])),
             torques=known[0].torques,
             damping_per_s=known[0].damping_per_s,
+            damping_sd_per_s=known[0].damping_sd_per_s,
             rows_aside=sum(part.rows_aside for part in known),
             even_clock=any(part.even_clock for part in known),
         )

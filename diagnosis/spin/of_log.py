@@ -155,6 +155,7 @@ def _sweep(log: _Log, fit: MotionFit, own: slice, torques: tuple[Torque, ...]) -
             noise_rad=float(np.median(fit.noise_rad[own])),
             torques=torques,
             damping_per_s=fit.damping_per_s,
+            damping_sd_per_s=fit.damping_sd_per_s,
             rows_aside=len(spin) - rows.size,
             even_clock=log.even,
         ),

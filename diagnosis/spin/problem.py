@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -14,6 +14,10 @@ from twin.angles import Array
 _BEYOND = np.arange(0.0, 16.0)
 """Common logarithms of penalties that are tried: from one to the next the motion is slower by a third, from a turn to
 three hundred of them."""
+_WINDOW = 15
+"""Third differences over whose mean square the motion's roughness is taken to be even."""
+_BEYOND_CHANCE = 4.0
+"""A mean of so many squares of one spread exceeds four times its expectation in one of four million."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +78,13 @@ class Problem:
         """The same of the differences that are held, for a penalty of 1: bands, and the differences themselves."""
         return bands(self.rough, self.stiffness), self.rough @ self.start
 
+    def holding(self, stiffness: Array, damping_per_s: float) -> Problem:
+        """The same with the motion held otherwise."""
+        held = replace(self, stiffness=stiffness, damping_per_s=damping_per_s)
+        # What the readings make of it does not change, and takes the most of the time.
+        held.__dict__["_of_readings"] = self._of_readings
+        return held
+
     def reduced(self, log_penalty: float) -> Reduced:
         """The problem with the spline eliminated, at one penalty."""
         from scipy.linalg import cho_solve_banded, cholesky_banded
@@ -95,6 +106,7 @@ class Problem:
         log_det = 2.0 * float(np.sum(np.log(factor[0]))) - len(held) * log_penalty * float(np.log(10.0))
         # A motion is told forward from how it begins: of each knot by its predecessors, as the torque has changed.
         log_det -= 2.0 * float(np.sum(np.log1p(0.5 * self.damping_per_s * self.spline.step_s)))
+        log_det -= float(np.sum(np.log(self.stiffness)))
         return Reduced(normal, gradient, squares, log_det, step, pulled)
 
 
@@ -128,6 +140,15 @@ class Reduced:
         """The same where ``sd`` (p,) is what differs: with how far the columns may have scattered."""
         held = sd[np.isfinite(sd)]
         return self.cost(sd, variance, rows) + float(np.sum(np.log(held**2 / variance)))
+
+
+def evened(stiffness: Array, differences: Array) -> Array:
+    """This stiffness (d,), less where differences (d,) of the motion show it to be rougher than is usual."""
+    from scipy.ndimage import uniform_filter1d
+
+    local = uniform_filter1d(stiffness * differences**2, _WINDOW, mode="nearest")
+    usual = _BEYOND_CHANCE * max(float(np.median(local)), 1e-300)
+    return np.asarray(stiffness / np.maximum(local / usual, 1.0))
 
 
 def degrees_of_freedom(problem: Problem, sd: Array) -> float:

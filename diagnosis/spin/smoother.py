@@ -15,9 +15,11 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.problem import Own, Problem, Reduced, degrees_of_freedom, held_at, knee, likeliest
+from diagnosis.spin.damping import damping
+from diagnosis.spin.problem import Own, Problem, Reduced, degrees_of_freedom, evened, held_at, knee, likeliest
 from diagnosis.spin.speeds import several_speeds, two_speeds_alone
 from diagnosis.spin.spline import Spline, rate
+from diagnosis.spin.torques import RATE
 from diagnosis.spin.variance_components import Drawn, drawn, solved
 from twin.angles import Array
 from twin.effect import BoolArray
@@ -32,18 +34,15 @@ _OF_RUN_OUT = 2
 _OF_ERROR, _OF_TORQUE = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
 _OF_GROWING = _OF_TORQUE + 2 * HIGHEST_OF_FRICTION
 _OF_FRICTION = _OF_GROWING + 2 * HIGHEST_OF_FRICTION
+_OF_LATE = _OF_FRICTION + 2
 """Where the coefficients of the error, of torques alike at any speed, of those that grow and of those that reverse with
-it end; those of a late channel follow."""
+it, and of a late channel end; by how much the damping is other than it is taken to be follows."""
 _TOLD = 0.5
 """Share of a coefficient that the readings tell, from which on its scatter is told by them too."""
 _SURELY = 2.0 * float(np.log(1000.0))
 """Twice the logarithm of a thousand to one: by so much a channel that is read late has to be likelier than none."""
 _ROUNDS = 5
 _FAR_OUT = 6.0
-_WINDOW = 15
-"""Third differences over whose mean square the motion's roughness is taken to be even."""
-_BEYOND_CHANCE = 4.0
-"""A mean of so many squares of one spread exceeds four times its expectation in one of four million."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +66,7 @@ class MotionFit:
     terms: Drawn
     usable: BoolArray
     damping_per_s: float
+    damping_sd_per_s: float
     separable: BoolArray
     growing: Array
 
@@ -92,6 +92,7 @@ class _Estimate:
     log_penalty: float | None = None
     variance: float = 1e-6
     damping_per_s: float = 0.0
+    damping_sd_per_s: float = 0.0
     terms: Drawn | None = None
     separable: BoolArray = field(default_factory=lambda: np.zeros(HIGHEST_ORDER, dtype=bool))
     growing: Array = field(default_factory=lambda: ANY_GROWTH)
@@ -130,7 +131,7 @@ class _Estimate:
             most_growing=self.most_growing,
             rows=degrees_of_freedom(made.problem, made.sd),
         )
-        torques = slice(_OF_ERROR, _OF_FRICTION)
+        moved = np.r_[_OF_ERROR : min(_OF_FRICTION, len(terms.values)), _OF_LATE : len(terms.values)]
         start = made.problem.start + reduced.step - reduced.pulled @ terms.values
         smooth = made.problem.spline.design @ start
         left = made.problem.readings - smooth - terms.values @ made.problem.columns
@@ -141,15 +142,15 @@ class _Estimate:
             made.problem,
             start=start,
             weights=np.where(left < _FAR_OUT * usual_left, made.problem.precision, 0.0),
-            stiffness=made.stiffness * _stiffness(np.sqrt(made.stiffness) * differences),
+            stiffness=evened(made.stiffness, differences),
         )
         return replace(
             made,
             problem=problem,
-            shaft_rad=smooth
-            + terms.values[torques] @ made.problem.columns[torques]
-            + made.readings
-            - made.problem.readings,
+            shaft_rad=made.readings
+            - made.problem.readings
+            + smooth
+            + terms.values[moved] @ made.problem.columns[moved],
             sd=terms.sd,
             log_penalty=log_penalty,
             variance=variance,
@@ -164,14 +165,30 @@ class _Estimate:
         if not self.with_torques:
             return replace(self, problem=replace(self.problem, columns=waves))
         motion = (self.shaft_rad, *self.rates)
-        damping = 0.0 if self.log_penalty is None or self.terms is None else _damping(self, motion)
-        columns = np.concatenate([waves, *_torques(*motion, damping)])
-        readings = self.readings - self._beyond_first_order()
+        damping_per_s, sd_per_s = self._damping()
+        columns = np.concatenate([waves, *_torques(*motion, damping_per_s)])
+        further = np.concatenate([waves, *_torques(*motion, damping_per_s + RATE)])
+        known = np.zeros(len(columns)) if self.terms is None else np.resize(self.terms.values, len(columns))
+        slower = known[_OF_ERROR:_OF_FRICTION] @ (further - columns)[_OF_ERROR:_OF_FRICTION] / RATE
         return replace(
             self,
-            damping_per_s=damping,
-            problem=replace(self.problem, columns=columns, readings=readings, damping_per_s=damping),
+            damping_per_s=damping_per_s,
+            damping_sd_per_s=sd_per_s,
+            sd=np.concatenate([self.sd[:_OF_LATE], [max(sd_per_s, 1e-9)]]),
+            problem=replace(
+                self.problem,
+                columns=np.concatenate([columns, slower[None]]),
+                readings=self.readings - self._beyond_first_order(),
+                damping_per_s=damping_per_s,
+            ),
         )
+
+    def _damping(self) -> tuple[float, float]:
+        """Of the shaft at this penalty, and its standard deviation [1/s]; none is looked for in the first round."""
+        if self.log_penalty is None or self.terms is None or len(self.terms.values) <= _OF_ERROR:
+            return 0.0, 0.0
+        fastest = float(np.max(np.abs(self.rates[0])))
+        return damping(self.problem, self.terms.values, self.stiffness, self.log_penalty, fastest)
 
     def _beyond_first_order(self) -> Array | float:
         """What the torques that were found turn the shaft by, (n,) [rad], beyond what is one of the columns."""
@@ -209,7 +226,7 @@ def fitted_motion(
     # The first round finds the motion and its speed, which what torques do follows.
     found = found.next()
     if several_speeds(found.rates[0]):
-        found = replace(found, sd=np.concatenate([found.sd, np.ones(_OF_FRICTION + 2 - _OF_ERROR)]))
+        found = replace(found, sd=np.concatenate([found.sd, np.ones(_OF_LATE + 1 - _OF_ERROR)]))
         found = replace(found, log_penalty=None)
     for _ in range(_ROUNDS - 1):
         found = found.next()
@@ -223,6 +240,7 @@ def fitted_motion(
         terms=found.terms,
         usable=found.problem.weights > 0.0,
         damping_per_s=found.damping_per_s,
+        damping_sd_per_s=found.damping_sd_per_s,
         separable=found.separable,
         growing=found.growing,
     )
@@ -322,13 +340,13 @@ def _drawn(
         return solved(reduced.normal, reduced.gradient, variance, sd), ANY_GROWTH
     usual_rad_s = float(np.median(np.abs(speed_rad_s)))
     both_ways, third_speed = bool(np.ptp(np.sign(speed_rad_s)) > 0.0), not two_speeds_alone(speed_rad_s)
-    pairs = [np.arange(place, place + 2) for place in range(_OF_ERROR, len(sd), 2)]
+    pairs = [np.arange(place, place + 2) for place in range(_OF_ERROR, _OF_LATE, 2)]
     growing = pairs[HIGHEST_ORDER:][:HIGHEST_OF_FRICTION]
     reversing = pairs[HIGHEST_ORDER + HIGHEST_OF_FRICTION : -1] if both_ways else []
     groups = [pair for all_of in (pairs, reversing) for pair, told in zip(all_of, separable, strict=False) if told]
     sd = sd.copy()
     sd[_OF_ERROR:_OF_FRICTION] = 1e-9 * usual_rad_s
-    sd[_OF_FRICTION:] = 1e-9 / usual_rad_s
+    sd[_OF_FRICTION:_OF_LATE] = 1e-9 / usual_rad_s
     sd[np.concatenate([np.zeros(0, dtype=np.int64), *groups])] = usual_rad_s**2
     found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
     if third_speed and _late_channel_told(reduced, variance, usual_rad_s):
@@ -372,30 +390,3 @@ def _torques(shaft_rad: Array, speed_rad_s: Array, acceleration_rad_s2: Array, d
     late = speed_rad_s * np.stack([np.cos(2.0 * shaft_rad), np.sin(2.0 * shaft_rad)])
     rubs = moved[: 2 * HIGHEST_OF_FRICTION]
     return [moved, speed_rad_s * rubs, np.sign(speed_rad_s) * rubs, late]
-
-
-def _damping(found: _Estimate, motion: tuple[Array, Array, Array]) -> float:
-    """The damping [1/s] of highest restricted likelihood."""
-    from scipy.optimize import minimize_scalar
-
-    problem, penalty = found.problem, found.log_penalty
-    assert penalty is not None
-    rows = degrees_of_freedom(problem, found.sd)
-    waves = _waves(motion[0])
-    fastest = float(np.max(np.abs(motion[1])))
-
-    def cost(root: float) -> float:
-        columns = np.concatenate([waves, *_torques(*motion, root**2 * fastest)])
-        damped = replace(problem, columns=columns, damping_per_s=root**2 * fastest)
-        return damped.reduced(penalty).cost(found.sd, found.variance, rows)
-
-    best = minimize_scalar(cost, bounds=(0.0, 1.0), method="bounded", options={"xatol": 0.01})
-    return float(best.x) ** 2 * fastest
-
-
-def _stiffness(differences: Array) -> Array:
-    """How firmly each third difference (d,) is held against the usual one: less where the motion is rougher."""
-    from scipy.ndimage import uniform_filter1d
-
-    local = uniform_filter1d(differences**2, _WINDOW, mode="nearest")
-    return np.asarray(1.0 / np.maximum(local / (_BEYOND_CHANCE * max(float(np.median(local)), 1e-300)), 1.0))

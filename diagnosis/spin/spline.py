@@ -68,12 +68,8 @@ class Spline:
             seconds.append(diags_array(_SECOND, offsets=np.arange(4), shape=(held, size)))
             steps.append(np.full(held, step))
             middles.append(first + step * (np.arange(held) + 0.5))
-        return cls(
-            *(block_diag(blocks, format="csr") for blocks in (bases, thirds, seconds)),
-            np.concatenate(steps),
-            aim,
-            np.concatenate(middles),
-        )
+        design, rough, bent = (block_diag(blocks, format="csr") for blocks in (bases, thirds, seconds))
+        return cls(design, rough, bent, np.concatenate(steps), aim, np.concatenate(middles))
 
     @cached_property
     def size(self) -> int:

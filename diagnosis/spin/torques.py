@@ -10,6 +10,9 @@ from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import response
 from twin.motion import Motion
 
+RATE = 1e-3
+"""Damping [1/s] by which the derivative of a response is taken."""
+
 
 def torque_columns(motion: Motion) -> Array:
     """Angles (m, n) [rad] by which torques may turn the shaft, each one standard deviation of what they may be.
@@ -20,18 +23,24 @@ def torque_columns(motion: Motion) -> Array:
     if found is None:
         return np.zeros((0, len(motion)))
     acceleration = rate(motion.speed_rad_s, motion.time_s, found.slices)
-    columns = [np.zeros((0, len(motion)))]
+    columns, damped = [np.zeros((0, len(motion)))], np.zeros(len(motion))
     for torque in found.torques:
         if torque.scatter_rad_s2 or torque.growing_rad_s or torque.reversing_rad_s2:
-            moved = response(
-                torque.order,
-                shaft_rad=motion.shaft_rad,
-                speed_rad_s=motion.speed_rad_s,
-                acceleration_rad_s2=acceleration,
-                damping_per_s=found.damping_per_s,
+            moved, more = (
+                response(
+                    torque.order,
+                    shaft_rad=motion.shaft_rad,
+                    speed_rad_s=motion.speed_rad_s,
+                    acceleration_rad_s2=acceleration,
+                    damping_per_s=found.damping_per_s + by,
+                )
+                for by in (0.0, RATE)
             )
             rubs = torque.growing_rad_s * motion.speed_rad_s, torque.reversing_rad_s2 * np.sign(motion.speed_rad_s)
             columns += [torque.scatter_rad_s2 * moved, *(each * moved for each in rubs)]
+            damped += np.array([torque.cos_rad_s2, torque.sin_rad_s2]) @ (more - moved) / RATE
+    # What was found of the torques turns the shaft as damped as it is, which is known so well.
+    columns.append(found.damping_sd_per_s * damped[None])
     return np.concatenate(columns)
 
 

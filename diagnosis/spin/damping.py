@@ -1,0 +1,76 @@
+"""How fast friction and the drive undo a departure of the shaft from its speed, told by the smooth motion itself.
+
+What a torque locked to the angle does to the shaft follows the same rate, and of that two speeds tell nothing: an order
+has two coefficients at each of them, the sensor's error and the torque as many. The motion tells it: from one speed to
+the next it goes as exp(-rate t), and a coast slows by friction that falls with the speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from diagnosis.spin.problem import Problem, degrees_of_freedom, evened
+from twin.angles import Array
+
+_TRIED = np.linspace(0.0, 1.0, 13)
+"""Roots of rates against the fastest that is looked for: rates are as likely small as large."""
+_PENALTIES = 4.0
+"""Powers of ten to either side of the penalty as it stands: it holds torques, which a higher rate makes larger."""
+
+
+def damping(
+    problem: Problem, terms: Array, stiffness: Array, log_penalty: float, fastest_per_s: float
+) -> tuple[float, float]:
+    """The rate [1/s] of highest restricted likelihood, and its standard deviation.
+
+    Parameters
+    ----------
+    problem : Problem
+        Readings, and columns (p, n) beside the motion with their coefficients ``terms`` (p,), which stay as they are.
+    stiffness : ndarray
+        Of each difference (d,) before rougher motion is held less: how much less, follows from the rate.
+    log_penalty : float
+        Common logarithm of the penalty, about.
+    fastest_per_s : float
+        The highest rate that is looked for.
+    """
+    from scipy.optimize import minimize_scalar
+
+    bare = replace(problem, readings=problem.readings - terms @ problem.columns, columns=problem.columns[:0])
+    rows = degrees_of_freedom(bare, np.zeros(0))
+    none = np.zeros(0)
+
+    def at_penalty(rate: float, one: float) -> float:
+        even = bare.holding(stiffness, rate)
+        differences = even.rough @ (even.start + even.reduced(one).step)
+        return even.holding(evened(stiffness, differences), rate).reduced(one).cost(none, 1.0, rows)
+
+    def cost(root: float) -> float:
+        rate = root**2 * fastest_per_s
+        around = (log_penalty - _PENALTIES, log_penalty + _PENALTIES)
+        at = partial(at_penalty, rate)
+        return float(minimize_scalar(at, bounds=around, method="bounded", options={"xatol": 0.1}).fun)
+
+    costs = np.array([cost(root) for root in _TRIED])
+    place, step = int(np.argmin(costs)), float(_TRIED[1])
+    bounds = (max(_TRIED[place] - step, 0.0), min(_TRIED[place] + step, 1.0))
+    best = minimize_scalar(cost, bounds=bounds, method="bounded", options={"xatol": 0.002})
+    root, least = (float(best.x), float(best.fun)) if best.fun < costs[place] else (float(_TRIED[place]), costs[place])
+    return root**2 * fastest_per_s, _deviation(cost, root, least) * fastest_per_s
+
+
+def _deviation(cost: Callable[[float], float], root: float, least: float) -> float:
+    """Standard deviation of a root's square, by how the deviance rises on both sides of the least."""
+    away = _TRIED[1] / 64.0
+    while away < _TRIED[-1]:
+        ends = np.clip([root - away, root + away], 0.0, _TRIED[-1])
+        risen = np.array([cost(float(end)) for end in ends[ends != root]]) - least
+        squares = np.abs(ends[ends != root] ** 2 - root**2)
+        if np.max(risen) > 1.0:
+            return float(np.mean(squares / np.sqrt(np.maximum(risen, 0.25))))
+        away *= 2.0
+    return float(_TRIED[-1])

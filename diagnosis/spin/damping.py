@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -18,12 +17,14 @@ from twin.angles import Array
 
 _TRIED = np.linspace(0.0, 1.0, 13)
 """Roots of rates against the fastest that is looked for: rates are as likely small as large."""
-_PENALTIES = 4.0
+_DEVIATIONS = 2.0
+"""Of a sum of as many squares: what noise exceeds once in forty times."""
+_PENALTIES = 6.0
 """Powers of ten to either side of the penalty as it stands: it holds torques, which a higher rate makes larger."""
 
 
 def damping(
-    problem: Problem, terms: Array, stiffness: Array, log_penalty: float, fastest_per_s: float
+    problem: Problem, terms: Array, stiffness: Array, *, log_penalty: float, variance: float, fastest_per_s: float
 ) -> tuple[float, float]:
     """The rate [1/s] of highest restricted likelihood, and its standard deviation.
 
@@ -33,27 +34,25 @@ def damping(
         Readings, and columns (p, n) beside the motion with their coefficients ``terms`` (p,), which stay as they are.
     stiffness : ndarray
         Of each difference (d,) before rougher motion is held less: how much less, follows from the rate.
-    log_penalty : float
-        Common logarithm of the penalty, about.
+    log_penalty, variance : float
+        Common logarithm of the penalty, about, and the variance [rad^2] of a reading's noise.
     fastest_per_s : float
         The highest rate that is looked for.
     """
     from scipy.optimize import minimize_scalar
 
     bare = replace(problem, readings=problem.readings - terms @ problem.columns, columns=problem.columns[:0])
-    rows = degrees_of_freedom(bare, np.zeros(0))
-    none = np.zeros(0)
-
-    def at_penalty(rate: float, one: float) -> float:
-        even = bare.holding(stiffness, rate)
-        differences = even.rough @ (even.start + even.reduced(one).step)
-        return even.holding(evened(stiffness, differences), rate).reduced(one).cost(none, 1.0, rows)
+    rows, none = degrees_of_freedom(bare, np.zeros(0)), np.zeros(0)
+    around = (log_penalty - _PENALTIES, log_penalty + _PENALTIES)
+    pilot = _pilot(bare.holding(stiffness, 0.0), variance, around)
 
     def cost(root: float) -> float:
-        rate = root**2 * fastest_per_s
-        around = (log_penalty - _PENALTIES, log_penalty + _PENALTIES)
-        at = partial(at_penalty, rate)
-        return float(minimize_scalar(at, bounds=around, method="bounded", options={"xatol": 0.1}).fun)
+        even = bare.holding(stiffness, root**2 * fastest_per_s)
+        held = bare.holding(evened(stiffness, even.rough @ pilot), even.damping_per_s)
+        found = minimize_scalar(
+            lambda one: held.reduced(one).cost(none, 1.0, rows), bounds=around, method="bounded", options={"xatol": 0.1}
+        )
+        return float(found.fun)
 
     costs = np.array([cost(root) for root in _TRIED])
     place, step = int(np.argmin(costs)), float(_TRIED[1])
@@ -61,6 +60,30 @@ def damping(
     best = minimize_scalar(cost, bounds=bounds, method="bounded", options={"xatol": 0.002})
     root, least = (float(best.x), float(best.fun)) if best.fun < costs[place] else (float(_TRIED[place]), costs[place])
     return root**2 * fastest_per_s, _deviation(cost, root, least) * fastest_per_s
+
+
+def _pilot(even: Problem, variance: float, around: tuple[float, float]) -> Array:
+    """The stiffest even motion (k,) that leaves no more than noise of this variance: it is rough where there is a jerk.
+
+    A freer one is as rough everywhere by its noise alone, a stiffer one spreads the jerk to where there is none.
+    """
+    from scipy.optimize import brentq
+
+    rows = float(np.count_nonzero(even.weights))
+    most = variance * (rows + _DEVIATIONS * float(np.sqrt(2.0 * rows)))
+
+    def moved(one: float) -> Array:
+        return np.asarray(even.start + even.reduced(one).step)
+
+    def too_much(one: float) -> float:
+        left = even.readings - even.spline.design @ moved(one)
+        return float(even.weights @ left**2) - most
+
+    if too_much(around[1]) < 0.0:
+        return moved(around[1])
+    if too_much(around[0]) > 0.0:
+        return moved(around[0])
+    return moved(float(brentq(too_much, *around, xtol=0.1)))
 
 
 def _deviation(cost: Callable[[float], float], root: float, least: float) -> float:

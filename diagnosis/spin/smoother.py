@@ -188,7 +188,14 @@ class _Estimate:
         if self.log_penalty is None or self.terms is None or len(self.terms.values) <= _OF_ERROR:
             return 0.0, 0.0
         fastest = float(np.max(np.abs(self.rates[0])))
-        return damping(self.problem, self.terms.values, self.stiffness, self.log_penalty, fastest)
+        return damping(
+            self.problem,
+            self.terms.values,
+            self.stiffness,
+            log_penalty=self.log_penalty,
+            variance=self.variance,
+            fastest_per_s=fastest,
+        )
 
     def _beyond_first_order(self) -> Array | float:
         """What the torques that were found turn the shaft by, (n,) [rad], beyond what is one of the columns."""

@@ -245,13 +245,13 @@ DAMPED = 8.0
 """Rate [1/s] at which a drive holds its speed."""
 
 
-def driven(torque: float, *, order: int) -> np.ndarray:
-    """A drive that holds 30 rad/s and after 3 s goes over to 80 rad/s, by the equation of motion."""
+def driven(torque: float, *, order: int, fast: float = 80.0) -> np.ndarray:
+    """A drive that holds 30 rad/s and after 3 s goes over to a faster speed, by the equation of motion."""
     steps, angle, speed, out = 10, 0.0, 30.0, np.empty(TIME.size)
     step = 0.001 / steps
     for row, time in enumerate(TIME):
         out[row] = angle
-        wanted = 30.0 + 50.0 * float(np.clip((time - 3.0) / 0.3, 0.0, 1.0))
+        wanted = 30.0 + (fast - 30.0) * float(np.clip((time - 3.0) / 0.3, 0.0, 1.0))
         for _ in range(steps):
             pull = DAMPED * (wanted - speed) + torque * np.cos(order * angle)
             speed += step * pull
@@ -269,7 +269,6 @@ def test_how_a_shaft_goes_over_to_a_speed_tells_how_it_answers_to_a_torque() -> 
 
 
 def test_a_torque_is_as_well_known_as_the_damping() -> None:
-    fit = fitted(driven(3.0, order=1))
     (sweep,) = sweeps_of([Spin.from_columns({"time_s": TIME, "measured_deg": np.degrees(read(driven(3.0, order=1)))})])
     found = sweep.estimated
     assert found is not None
@@ -277,4 +276,11 @@ def test_a_torque_is_as_well_known_as_the_damping() -> None:
     slower = torque_columns(sweep.motion())[-1]
     # To the first order in damping over speed: the torque's angle, turned by so much.
     assert np.max(np.abs(slower)) == pytest.approx(3.0 / 30.0**3 * found.damping_sd_per_s, rel=0.3)
-    assert fit.terms.covariance[0, 0] > 0.0
+
+
+def test_a_strong_torque_is_no_error_of_twice_its_order() -> None:
+    """Order 8 by 0.4 deg at the slow speed makes 0.009 deg of the order 16, which falls as 1/speed^4."""
+    angle = driven(423.0, order=8, fast=55.0)
+    noise = 0.1 * NOISE * np.random.default_rng(1).standard_normal(angle.size)
+    fit = fitted_motion(angle + noise, TIME, [slice(0, TIME.size)])
+    assert error_of(fit, 16) == pytest.approx([0.0, 0.0], abs=1e-5)

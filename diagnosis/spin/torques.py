@@ -9,6 +9,7 @@ from twin.angles import Array
 from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import response
 from twin.motion import Motion
+from twin.noise.spectrum import to_cosine, to_rows
 
 RATE = 1e-3
 """Damping [1/s] by which the derivative of a response is taken."""
@@ -78,25 +79,51 @@ _LEAST = 1e-4
 
 
 class Loose:
-    """Directions in which readings are free by some standard deviation beside their noise, whitened.
+    """Directions in which readings are free by some standard deviation beside their noise and the motion, whitened.
 
-    With columns T of one standard deviation each and white noise of RMS s, readings have the covariance s^2 I + T T';
-    its inverse square root, times s, is ``1 - Q f Q'`` with orthonormal directions Q and shares f. Rows that are not in
-    use lose what the others tell of the columns.
+    With columns T of one standard deviation each, beside noise and motion of covariance inv(W'W), readings have that of
+    both. Its inverse square root is W (1 - T r f r' T' W'W) with shares f, where r makes W T r orthonormal: what is
+    taken off has the shape of the columns, as far as the readings tell it beside the motion. Rows that are not in use
+    lose what the others tell of the columns.
+
+    Parameters
+    ----------
+    columns : ndarray
+        What turns the shaft by one standard deviation (m, n) [rad].
+    usable : ndarray
+        Rows (n,) in use.
+    noise : float
+        RMS [rad] of a reading's noise.
+    motion : ndarray or float
+        Variance of the motion over that of the noise, for the cosine coefficients (n,) of each stretch.
+    lengths : tuple of int
+        Rows of each stretch; not given: all are one.
     """
 
-    def __init__(self, columns: Array, usable: BoolArray, noise: float) -> None:
+    def __init__(
+        self,
+        columns: Array,
+        usable: BoolArray,
+        noise: float,
+        motion: Array | float = 0.0,
+        lengths: tuple[int, ...] | None = None,
+    ) -> None:
+        of = (usable.size,) if lengths is None else lengths
         used = columns * usable / noise
-        size, turned = np.linalg.eigh(used @ used.T)
+        weighed = to_rows(to_cosine(used, of) / (1.0 + motion), of) * usable
+        size, turned = np.linalg.eigh(used @ weighed.T)
         told = size > _LEAST
         size, turned = size[told], turned[:, told]
         self._usable = usable
-        self._directions: Array = (turned / np.sqrt(size)).T @ used
-        self._shares: Array = 1.0 - 1.0 / np.sqrt(1.0 + size)
+        self._along: Array = (turned / np.sqrt(size)).T @ weighed
+        self._away: Array = ((turned * (1.0 - 1.0 / np.sqrt(1.0 + size))) / np.sqrt(size)).T @ used
         self._columns: Array = (turned * (np.sqrt(size) / (1.0 + size))).T @ (columns / noise)
 
     def whitened(self, values: Array) -> Array:
         """Values (..., n) less what they have along the directions."""
-        along = (values * self._usable) @ self._directions.T
-        of_used = (along * self._shares) @ self._directions
-        return np.asarray(values - np.where(self._usable, of_used, along @ self._columns))
+        along = (values * self._usable) @ self._along.T
+        return np.asarray(values - np.where(self._usable, along @ self._away, along @ self._columns))
+
+    def matched(self, values: Array) -> Array:
+        """Whitened values (..., n), weighed by noise and motion, as columns are matched to that are not whitened."""
+        return np.asarray(values - ((values * self._usable) @ self._away.T) @ self._along)

@@ -102,6 +102,20 @@ SPINS: tuple[Mutation, ...] = tuple(
             f"{_SMOOTHER}::test_a_torque_is_as_well_known_as_the_damping",
         ),
         (
+            "spins.torques_are_told_as_if_nothing_moved",
+            "diagnosis/discovery/fitting/observations.py",
+            "found.noise_rad, found.spectrum, found.lengths)",
+            "found.noise_rad)",
+            f"{_EXPLAIN}::test_an_error_below_the_motion_is_as_well_known_as_the_torque_leaves_it",
+        ),
+        (
+            "spins.a_line_is_matched_as_it_is_whitened",
+            "diagnosis/spin/torques.py",
+            "((values * self._usable) @ self._away.T) @ self._along)",
+            "((values * self._usable) @ self._along.T) @ self._away)",
+            f"{_SMOOTHER}::test_a_line_is_matched_to_the_residual_as_both_whitened_are",
+        ),
+        (
             "spins.a_torque_is_weak",
             "diagnosis/spin/smoother.py",
             "readings=self.readings - self._beyond_first_order(),",

@@ -86,8 +86,9 @@ class Observations:
         columns = torque_columns(self.motion)
         if not len(columns):
             return None
-        assert self.motion.estimated is not None
-        return Loose(columns, self.usable, self.motion.estimated.noise_rad)
+        found = self.motion.estimated
+        assert found is not None
+        return Loose(columns, self.usable, found.noise_rad, found.spectrum, found.lengths)
 
     def masked(self, usable: BoolArray) -> Observations:
         """The same rows with another mask."""

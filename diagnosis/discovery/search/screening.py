@@ -218,8 +218,8 @@ def matched_to(base: Base, cosine_residual: Array, best: int) -> list[Array]:
     for member in dict.fromkeys((0, best)):
         weighted = to_rows(observations, cosine_residual * fit.weighting.family.weights[member])
         weighted = weighted * (observations.usable / observations.scale)
-        # Lines are matched as they are: what whitens them beside the noise is symmetric, and turned on the residual.
-        rows.append(weighted if observations.loose is None else observations.loose.whitened(weighted))
+        # Lines are matched as they are: what whitens them beside the noise is turned on the residual.
+        rows.append(weighted if observations.loose is None else observations.loose.matched(weighted))
     return rows
 
 

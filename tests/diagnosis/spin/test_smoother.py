@@ -9,6 +9,7 @@ from diagnosis.spin.of_log import sweeps_of
 from diagnosis.spin.smoother import HIGHEST_ORDER, MotionFit, fitted_motion
 from diagnosis.spin.torques import Loose, torque_columns
 from tests.hidden.spins.generator import draw
+from twin.noise.spectrum import to_cosine, to_rows
 from twin.spin import Spin
 
 TIME = np.arange(0.0, 6.0, 0.001)
@@ -218,6 +219,29 @@ def test_directions_that_are_loose_are_whitened_as_their_covariance_says() -> No
     covariance = 0.01**2 * np.eye(400) + columns.T @ columns
     whitened = loose.whitened(covariance)
     assert np.allclose(loose.whitened(whitened.T), 0.01**2 * np.eye(400), atol=1e-10)
+
+
+def test_directions_are_loose_beside_a_motion_as_their_common_covariance_says() -> None:
+    """What a torque does is told where the motion leaves it to: one after the other would whiten neither."""
+    rows, slow, noise = 400, 12, 0.01
+    motion = np.minimum((slow / np.arange(1e-3, rows)) ** 6, 1e6)
+    basis = to_cosine(np.eye(rows), (rows,)).T
+    beside = noise**2 * (basis.T @ ((1.0 + motion)[:, None] * basis))
+    columns = 0.05 * np.cos(np.pi * np.array([6.0, 30.0])[:, None] * np.arange(rows) / rows).sum(axis=0, keepdims=True)
+    loose = Loose(columns, np.ones(rows, dtype=bool), noise, motion, (rows,))
+    left = loose.whitened(loose.whitened(beside + columns.T @ columns).T)
+    weights = 1.0 / np.sqrt(1.0 + motion)
+    white = (weights[:, None] * weights) * (basis @ left @ basis.T)
+    assert np.allclose(white, noise**2 * np.eye(rows), atol=1e-3 * noise**2)
+
+
+def test_a_line_is_matched_to_the_residual_as_both_whitened_are() -> None:
+    rng = np.random.default_rng(4)
+    motion = np.minimum((12.0 / np.arange(1e-3, 400)) ** 6, 1e6)
+    loose = Loose(0.05 * rng.standard_normal((3, 400)), np.ones(400, dtype=bool), 0.01, motion, (400,))
+    line, residual = rng.standard_normal((2, 400))
+    weighed = to_rows(to_cosine(loose.whitened(residual), (400,)) / (1.0 + motion), (400,))
+    assert line @ loose.matched(weighed) == pytest.approx(loose.whitened(line) @ weighed, rel=1e-9)
 
 
 def test_rows_out_of_use_lose_what_the_others_tell() -> None:

@@ -106,7 +106,7 @@ SPINS: tuple[Mutation, ...] = tuple(
             "diagnosis/discovery/fitting/observations.py",
             "found.noise_rad, found.spectrum, found.lengths)",
             "found.noise_rad)",
-            f"{_EXPLAIN}::test_an_error_below_the_motion_is_as_well_known_as_the_torque_leaves_it",
+            f"{_SMOOTHER}::test_torques_weigh_in_a_fit_as_noise_and_motion_leave_them_to",
         ),
         (
             "spins.a_line_is_matched_as_it_is_whitened",
@@ -203,7 +203,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.lines_are_matched_to_torques",
             "diagnosis/discovery/search/screening.py",
-            "weighted if observations.loose is None else observations.loose.whitened(weighted)",
+            "weighted if observations.loose is None else observations.loose.matched(weighted)",
             "weighted",
             f"{_SEARCH}::test_lines_are_matched_to_what_torques_do_not_make",
         ),
@@ -301,8 +301,8 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.rows_out_of_use_keep_their_torque",
             "diagnosis/spin/torques.py",
-            "np.where(self._usable, of_used, along @ self._columns)",
-            "of_used",
+            "np.where(self._usable, along @ self._away, along @ self._columns)",
+            "along @ self._away",
             f"{_SMOOTHER}::test_rows_out_of_use_lose_what_the_others_tell",
         ),
         (

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from diagnosis.discovery.fitting.coefficients import observables_to_cosine
+from diagnosis.discovery.fitting.nuisance import without_nuisance
+from diagnosis.discovery.fitting.observations import collect
 from diagnosis.spin.of_log import sweeps_of
 from diagnosis.spin.smoother import HIGHEST_ORDER, MotionFit, fitted_motion
 from diagnosis.spin.torques import Loose, torque_columns
@@ -233,6 +238,20 @@ def test_directions_are_loose_beside_a_motion_as_their_common_covariance_says() 
     weights = 1.0 / np.sqrt(1.0 + motion)
     white = (weights[:, None] * weights) * (basis @ left @ basis.T)
     assert np.allclose(white, noise**2 * np.eye(rows), atol=1e-3 * noise**2)
+
+
+def test_torques_weigh_in_a_fit_as_noise_and_motion_leave_them_to() -> None:
+    """Order 1 at the slow speed is slower than the motion is free: there the readings tell next to nothing of it."""
+    (sweep,) = sweeps_of([Spin.from_columns({"time_s": TIME, "measured_deg": np.degrees(read(driven(3.0, order=1)))})])
+    assert sweep.estimated is not None
+    freer = replace(sweep.estimated, knee_rad=np.full(len(sweep), 0.08))
+    observations = collect(replace(sweep, estimated=freer))
+    columns = torque_columns(observations.motion)
+    weights = 1.0 / (freer.noise_rad * np.sqrt(1.0 + freer.spectrum))
+    alone = weights * to_cosine(columns, freer.lengths)
+    beside = weights * observables_to_cosine(observations, without_nuisance(observations, columns[:, None]))[:, 0]
+    told = alone @ alone.T
+    assert np.allclose(beside @ beside.T, told @ np.linalg.inv(np.eye(len(told)) + told), atol=1e-3)
 
 
 def test_a_line_is_matched_to_the_residual_as_both_whitened_are() -> None:

@@ -9,16 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from diagnosis.spin.problem import Problem, degrees_of_freedom, evened
+from diagnosis.spin.spline import PENALISED
 from twin.angles import Array
 
 _TRIED = np.linspace(0.0, 1.0, 13)
 """Roots of rates against the fastest that is looked for: rates are as likely small as large."""
 _DEVIATIONS = 2.0
 """Of a sum of as many squares: what noise exceeds once in forty times."""
+SURELY = 2.0 * float(np.log(1000.0))
+"""Twice the logarithm of a thousand to one: so much likelier what would change all else has to be than none of it."""
 _PENALTIES = 6.0
 """Powers of ten to either side of the penalty as it stands: it holds torques, which a higher rate makes larger."""
 
@@ -52,14 +56,37 @@ def damping(
         found = minimize_scalar(
             lambda one: held.reduced(one).cost(none, 1.0, rows), bounds=around, method="bounded", options={"xatol": 0.1}
         )
-        return float(found.fun)
+        return float(found.fun) - _of_ways(bare, even.damping_per_s)
 
     costs = np.array([cost(root) for root in _TRIED])
     place, step = int(np.argmin(costs)), float(_TRIED[1])
     bounds = (max(_TRIED[place] - step, 0.0), min(_TRIED[place] + step, 1.0))
     best = minimize_scalar(cost, bounds=bounds, method="bounded", options={"xatol": 0.002})
-    root, least = (float(best.x), float(best.fun)) if best.fun < costs[place] else (float(_TRIED[place]), costs[place])
-    return root**2 * fastest_per_s, _deviation(cost, root, least) * fastest_per_s
+    lowest, root = min((float(best.fun), float(best.x)), (float(costs[place]), float(_TRIED[place])))
+    if costs[0] - lowest < SURELY:
+        return 0.0, 0.0
+    return root**2 * fastest_per_s, _deviation(cost, root, lowest) * fastest_per_s
+
+
+def _of_ways(bare: Problem, damping_per_s: float) -> float:
+    """Log determinant of the ways in which a shaft goes on without a torque that changes, as the readings see them.
+
+    Restricted likelihoods compare rates only beside it, as these ways (standstill, an even speed, one that dies away)
+    depend on the rate (D. A. Harville, Biometrika 61 (1974) 383): a way that is small would be likelier by being so.
+    """
+    spline, total = bare.spline, 0.0
+    ends = np.cumsum([0, *spline.sizes])
+    for first, last in pairwise(ends):
+        step = float(spline.step_s[first - PENALISED * int(np.searchsorted(ends, first))])
+        kept = (1.0 - 0.5 * damping_per_s * step) / (1.0 + 0.5 * damping_per_s * step)
+        knot = np.arange(last - first, dtype=np.float64)
+        dies = np.concatenate([[0.0, 0.0], np.cumsum(np.cumsum(kept ** knot[:-2]))])
+        seen = np.sqrt(bare.weights)[:, None] * (
+            spline.design[:, first:last] @ np.stack([np.ones_like(knot), knot, dies]).T
+        )
+        scale = np.linalg.norm(seen, axis=0)
+        total += float(np.linalg.slogdet((seen / scale).T @ (seen / scale))[1]) + 2.0 * float(np.sum(np.log(scale)))
+    return total
 
 
 def _pilot(even: Problem, variance: float, around: tuple[float, float]) -> Array:

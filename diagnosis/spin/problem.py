@@ -95,7 +95,7 @@ class Problem:
         held = penalty * self.stiffness * differences
         system = by_readings + penalty * by_differences
         # Of a knot interval without a reading in use the differences alone tell the coefficients, and not all of them.
-        system[0] += 1e-12 * np.max(system[0])
+        system[0] += 1e-14 * np.max(system[0])
         factor = cholesky_banded(system, lower=True)
         rhs = along - self.rough.T @ held
         solved = cho_solve_banded((factor, True), np.column_stack([rhs, across]))

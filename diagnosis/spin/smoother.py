@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.damping import damping
+from diagnosis.spin.damping import SURELY, damping
 from diagnosis.spin.problem import Own, Problem, Reduced, degrees_of_freedom, evened, held_at, knee, likeliest
 from diagnosis.spin.speeds import several_speeds, two_speeds_alone
 from diagnosis.spin.spline import Spline, rate
@@ -39,8 +39,6 @@ _OF_LATE = _OF_FRICTION + 2
 it, and of a late channel end; by how much the damping is other than it is taken to be follows."""
 _TOLD = 0.5
 """Share of a coefficient that the readings tell, from which on its scatter is told by them too."""
-_SURELY = 2.0 * float(np.log(1000.0))
-"""Twice the logarithm of a thousand to one: by so much a channel that is read late has to be likelier than none."""
 _ROUNDS = 5
 _FAR_OUT = 6.0
 
@@ -361,7 +359,7 @@ def _drawn(
         late = drawn(reduced.normal, reduced.gradient, variance, groups=[*groups, pairs[-1]], sd=sd)
         # Between two speeds it does what a torque of order 2 does, and would put another error in the sensor.
         likelier = reduced.deviance(found.sd, variance, rows) - reduced.deviance(late.sd, variance, rows)
-        if likelier > _SURELY:
+        if likelier > SURELY:
             found, groups = late, [*groups, pairs[-1]]
     sd = found.sd.copy()
     half = 0.5 * sd[[pair[0] for pair in pairs[: len(growing)]]] / float(np.sqrt(np.mean(speed_rad_s**2)))

@@ -35,7 +35,7 @@ class Spline:
 
     ``design`` is the sparse matrix (n, k) of the basis at the readings, ``rough`` that (d, k) of the third differences,
     ``bent`` that (d, k) of the second ones, ``step_s`` (d,) the time between two knots and ``spacing_s`` the usual one,
-    ``at_s`` (d,) the time in the middle of each difference.
+    ``at_s`` (d,) the time in the middle of each difference, ``sizes`` how many coefficients each stretch has.
     """
 
     design: Any
@@ -44,6 +44,7 @@ class Spline:
     step_s: Array
     spacing_s: float
     at_s: Array
+    sizes: tuple[int, ...]
 
     @classmethod
     def over(cls, time_s: Array, stretches: Sequence[slice]) -> Spline:
@@ -69,7 +70,15 @@ class Spline:
             steps.append(np.full(held, step))
             middles.append(first + step * (np.arange(held) + 0.5))
         design, rough, bent = (block_diag(blocks, format="csr") for blocks in (bases, thirds, seconds))
-        return cls(design, rough, bent, np.concatenate(steps), aim, np.concatenate(middles))
+        return cls(
+            design,
+            rough,
+            bent,
+            np.concatenate(steps),
+            aim,
+            np.concatenate(middles),
+            tuple(base.shape[1] for base in bases),
+        )
 
     @cached_property
     def size(self) -> int:

@@ -41,7 +41,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.a_torque_is_a_late_channel",
             "diagnosis/spin/smoother.py",
-            "        if likelier > _SURELY:\n",
+            "        if likelier > SURELY:\n",
             "        if True:\n",
             f"{_SMOOTHER}::test_a_torque_at_two_speeds_is_no_channel_read_late",
         ),
@@ -86,6 +86,13 @@ SPINS: tuple[Mutation, ...] = tuple(
             "        if self.log_penalty is None or self.terms is None or",
             "        if True or",
             f"{_SMOOTHER}::test_how_a_shaft_goes_over_to_a_speed_tells_how_it_answers_to_a_torque",
+        ),
+        (
+            "spins.what_begins_small_is_likelier",
+            "diagnosis/spin/damping.py",
+            " - _of_ways(bare, even.damping_per_s)",
+            "",
+            f"{_SMOOTHER}::test_of_an_even_motion_no_damping_is_told",
         ),
         (
             "spins.a_jerk_is_as_rough_as_any",

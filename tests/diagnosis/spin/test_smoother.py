@@ -311,6 +311,19 @@ def test_how_a_shaft_goes_over_to_a_speed_tells_how_it_answers_to_a_torque() -> 
     assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=2.5e-4)
 
 
+def test_of_an_even_motion_no_damping_is_told() -> None:
+    angles = [speed * TIME - 10.0 * np.cos(3.0 * speed * TIME) / (3.0 * speed) ** 2 for speed in (40.0, 100.0)]
+    logs = [
+        Spin.from_columns({"time_s": TIME, "measured_deg": np.degrees(read(angle, seed=seed))})
+        for seed, angle in enumerate(angles)
+    ]
+    found = sweeps_of(logs)[0].estimated
+    assert found is not None
+    assert found.damping_per_s == 0.0
+    torque = found.torques[2]
+    assert np.hypot(torque.cos_rad_s2, torque.sin_rad_s2) == pytest.approx(10.0, abs=3.0 * torque.sd_rad_s2)
+
+
 def test_a_torque_is_as_well_known_as_the_damping() -> None:
     (sweep,) = sweeps_of([Spin.from_columns({"time_s": TIME, "measured_deg": np.degrees(read(driven(3.0, order=1)))})])
     found = sweep.estimated

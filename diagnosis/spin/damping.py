@@ -23,6 +23,8 @@ _DEVIATIONS = 2.0
 """Of a sum of as many squares: what noise exceeds once in forty times."""
 SURELY = 2.0 * float(np.log(1000.0))
 """Twice the logarithm of a thousand to one: so much likelier what would change all else has to be than none of it."""
+_RIDGE = 1e-14
+"""Share of the largest element that is added to all: more would hold a motion that is even, most of all undamped."""
 _PENALTIES = 6.0
 """Powers of ten to either side of the penalty as it stands: it holds torques, which a higher rate makes larger."""
 
@@ -54,7 +56,10 @@ def damping(
         even = bare.holding(stiffness, root**2 * fastest_per_s)
         held = bare.holding(evened(stiffness, even.rough @ pilot), even.damping_per_s)
         found = minimize_scalar(
-            lambda one: held.reduced(one).cost(none, 1.0, rows), bounds=around, method="bounded", options={"xatol": 0.1}
+            lambda one: held.reduced(one, ridge=_RIDGE).cost(none, 1.0, rows),
+            bounds=around,
+            method="bounded",
+            options={"xatol": 0.1},
         )
         return float(found.fun) - _of_ways(bare, even.damping_per_s)
 

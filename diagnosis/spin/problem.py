@@ -85,7 +85,7 @@ class Problem:
         held.__dict__["_of_readings"] = self._of_readings
         return held
 
-    def reduced(self, log_penalty: float) -> Reduced:
+    def reduced(self, log_penalty: float, *, ridge: float = 1e-12) -> Reduced:
         """The problem with the spline eliminated, at one penalty."""
         from scipy.linalg import cho_solve_banded, cholesky_banded
 
@@ -95,7 +95,7 @@ class Problem:
         held = penalty * self.stiffness * differences
         system = by_readings + penalty * by_differences
         # Of a knot interval without a reading in use the differences alone tell the coefficients, and not all of them.
-        system[0] += 1e-14 * np.max(system[0])
+        system[0] += ridge * np.max(system[0])
         factor = cholesky_banded(system, lower=True)
         rhs = along - self.rough.T @ held
         solved = cho_solve_banded((factor, True), np.column_stack([rhs, across]))

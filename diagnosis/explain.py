@@ -13,9 +13,11 @@ from diagnosis.progress import Listener
 if TYPE_CHECKING:
     import numpy as np
 
+    from diagnosis.discovery.result import Discovery
     from diagnosis.discovery.settings import DiscoverySettings
     from diagnosis.discovery.state import State
     from diagnosis.discovery.watch import Watch
+    from diagnosis.discovery.whole_record import WholeRecord
     from diagnosis.factors.mounting import Mounting
     from twin.chain import Chain
     from twin.effect import BoolArray, Effect, Parameters
@@ -166,7 +168,20 @@ def explain(
     with one_blas_thread(), listening, ended_by_budget(watch):
         state = _begun(read, given=given, start=start, mounting=mounting, settings=settings, rng=rng, watch=watch)
         found = discover(state)
-    return Explanation(found, made)
+        whole = _whole_record(read, found, state)
+    return Explanation(found, made, whole)
+
+
+def _whole_record(read: list[Sweep], found: Discovery, handed_in: State) -> WholeRecord | None:
+    """What all readings of a long record show beside what its searched part does; None where there is no more to it.
+
+    The record itself is let go of: the means are all that is searched.
+    """
+    from diagnosis.discovery.whole_record import averaged, searched
+
+    means = averaged(read[0], found) if len(read) == 1 else None
+    read.clear()
+    return None if means is None else searched(means, handed_in)
 
 
 def _read(

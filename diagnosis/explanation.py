@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from diagnosis.discovery.result import Discovery
+    from diagnosis.discovery.whole_record import WholeRecord
     from diagnosis.report.provenance import Provenance
     from twin.chain import Chain
     from twin.sweep import Sweep
@@ -126,10 +127,14 @@ class Explanation:
         Everything that the search found, down to residuals and Jacobians; its inner structure may change.
     made : diagnosis.report.provenance.Provenance
         Version, day, seed and command that the answer comes from.
+    whole_record : diagnosis.discovery.whole_record.WholeRecord or None
+        What all readings of a record that is too long to be searched in full show beside, averaged over its turns;
+        None where there is no more to it.
     """
 
     discovery: Discovery
     made: Provenance
+    whole_record: WholeRecord | None = None
 
     def __repr__(self) -> str:
         from diagnosis.report.wording import plain
@@ -194,8 +199,9 @@ class Explanation:
     @cached_property
     def _answer(self) -> dict[str, Any]:
         from diagnosis.report.answer import to_json
+        from diagnosis.report.whole_record import whole_answer
 
-        return to_json(self.discovery, self.made)
+        return to_json(self.discovery, self.made) | whole_answer(self.whole_record)
 
     def summary(self, width: int = 80) -> str:
         """The answer as a person reads it: the text that ``halltwin explain`` prints, without colours.

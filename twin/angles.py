@@ -53,6 +53,15 @@ def cos_sin(angle: Array) -> tuple[Array, Array]:
     return cosine.reshape(given.shape), sine.reshape(given.shape)
 
 
+def mean_vector(angle: Array) -> complex:
+    """Mean of the unit vectors of angles (n,) [rad], piece by piece; NaN of none."""
+    flat, total = np.ravel(angle), 0.0 + 0.0j
+    for start in range(0, flat.size, _PIECE):
+        cosine, sine = cos_sin(flat[start : start + _PIECE])
+        total += complex(cosine.sum(), sine.sum())
+    return total / flat.size if flat.size else complex("nan")
+
+
 def within_turn(angle: Array) -> Array:
     """An angle [rad] in [0, 2 pi), the rounding of a double below a whole turn as 0."""
     return np.asarray(np.mod(angle + _ROUNDING_RAD, TAU))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.angles import Array, radians, wrap_deg
+from twin.angles import Array, mean_vector, radians, wrap_deg
 
 FOLLOWS_DEG = 40.0
 _FEWEST_SWUNG = 16
@@ -28,7 +28,7 @@ def distance_deg(measured: Array, driver: Array) -> float:
 
 def spread_deg(angle: Array) -> float:
     """Median distance [deg] of angles (n,) [deg] from their mean direction."""
-    centre = np.degrees(np.angle(np.mean(np.exp(1j * radians(angle)))))
+    centre = np.degrees(np.angle(mean_vector(radians(angle))))
     return float(np.median(np.abs(wrap_deg(angle - centre))))
 
 
@@ -50,7 +50,7 @@ def swing_deg(measured: Array, driver: Array) -> tuple[float, float] | None:
     if driver.size < _FEWEST_SWUNG:
         return None
     travel = np.unwrap(driver, period=360.0)
-    centre = np.degrees(np.angle(np.mean(np.exp(1j * radians(measured)))))
+    centre = np.degrees(np.angle(mean_vector(radians(measured))))
     away = wrap_deg(measured - centre)
     low, high = np.quantile(away, [0.02, 0.98])
     if np.ptp(travel) < _ROUND_DEG or high - low > _WIDEST_SWING_DEG or high == low:
@@ -69,5 +69,5 @@ def swing_deg(measured: Array, driver: Array) -> tuple[float, float] | None:
 
 def slope_of(reference_rad: Array, measured_rad: Array) -> int:
     """Whether the readings (n,) count with the reference (1) or against it (-1)."""
-    same, other = (abs(np.mean(np.exp(1j * (measured_rad - sign * reference_rad)))) for sign in (1.0, -1.0))
+    same, other = (abs(mean_vector(measured_rad - sign * reference_rad)) for sign in (1.0, -1.0))
     return 1 if same >= other else -1

@@ -196,14 +196,17 @@ class Sweep:
         data = as_recorded(columns, name=name, required=REQUIRED)
         check_both_channels(data, name=name)
         keep, rejected = rows_in_use(data)
-        used: dict[str, Any] = {key: np.ascontiguousarray(values[keep]) for key, values in data.items()}
+        whole = bool(keep.all())
+        used: dict[str, Any] = {
+            key: np.ascontiguousarray(values if whole else values[keep]) for key, values in data.items()
+        }
         check_usable(used, name=name, rejected=len(rejected))
         if (periods := checked_pole_pairs(pole_pairs)) is not None:
             used = of_the_shaft(used, periods, name=name)
         following_deg = check_follows(used["measured_deg"], used["reference_deg"], name=name)
         if "vx" in used:
             check_channels(used["vx"], used["vy"], following_deg, name=name)
-        return cls(**used, rejected=rejected, name=name, row_numbers=np.flatnonzero(keep) + 1)
+        return cls(**used, rejected=rejected, name=name, row_numbers=None if whole else np.flatnonzero(keep) + 1)
 
     @classmethod
     def from_motion(cls, motion: Motion, *, reference_deg: Array, measured_deg: Array, channels: Array | None) -> Self:

@@ -36,13 +36,34 @@ class _Header:
         return {cell: place for place, cell in enumerate(self.names) if cell in COLUMNS}
 
 
+class _Growing:
+    """A column that grows in place, so that its cells are never held twice."""
+
+    def __init__(self) -> None:
+        self._cells: Array = np.empty(0)
+        self._count = 0
+
+    def add(self, values: Array) -> None:
+        """Put cells (n,) behind those that are there."""
+        end = self._count + values.size
+        if end > self._cells.size:
+            self._cells.resize(max(end, self._cells.size + self._cells.size // 8), refcheck=False)
+        self._cells[self._count : end] = values
+        self._count = end
+
+    def told(self) -> Array:
+        """The column (n,), which grows no more."""
+        self._cells.resize(self._count, refcheck=False)
+        return self._cells
+
+
 def parse_csv(content: Iterable[bytes], *, name: str, spin: bool = False) -> dict[str, Array]:
     """The known columns (n,) of a CSV file, handed over in blocks of bytes; lines that begin with # are comments.
 
     ``spin``: those of a log without a reference will do. Raises SweepError.
     """
     header: _Header | None = None
-    tables: list[Array] = []
+    columns: dict[str, _Growing] = {}
     first = 1
     for text in _whole_lines(content, name=name):
         # Not splitlines(): it also breaks at characters that editors do not count as the end of a line.
@@ -52,13 +73,15 @@ def parse_csv(content: Iterable[bytes], *, name: str, spin: bool = False) -> dic
             header = _header_of(lines[told[0]], first + told[0], name=name, spin=spin)
             told = told[1:]
         if header is not None and told:
-            tables.append(_table(lines, told, header, where=(name, first)))
+            table = _table(lines, told, header, where=(name, first))
+            for place, cell in enumerate(header.wanted):
+                columns.setdefault(cell, _Growing()).add(table[:, place])
         first += len(lines) - 1
     if header is None:
         raise SweepError(f"{name}: the file is empty; expected a header line and one row per reading")
-    if not tables:
+    if not columns:
         raise SweepError(f"{name}: no row below the header of line {header.line}; expected one row per reading")
-    return {cell: np.concatenate([table[:, k] for table in tables]) for k, cell in enumerate(header.wanted)}
+    return {cell: columns[cell].told() for cell in header.wanted}
 
 
 def _whole_lines(content: Iterable[bytes], *, name: str) -> Iterator[str]:

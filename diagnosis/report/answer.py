@@ -72,7 +72,7 @@ def to_json(found: Discovery, made: Provenance) -> dict[str, Any]:
             "verdict": found.verdict,
             **_checked(found),
             **_changed(found),
-            "causes": [_cause(found, cause) for cause in found.causes],
+            "causes": [cause_entry(found, cause) for cause in found.causes],
             "unexplained": {
                 "rms_deg": _rms(extended[kept]),
                 "structure": [_structure(found, key) for key in unnamed],
@@ -231,7 +231,8 @@ def _change(found: Discovery, change: Change) -> dict[str, Any]:
     }
 
 
-def _cause(found: Discovery, cause: Finding) -> dict[str, Any]:
+def cause_entry(found: Discovery, cause: Finding) -> dict[str, Any]:
+    """One cause with its parameters and held-out figures."""
     fit = found.fit
     effect = find(cause.keys[0], fit.chain.effects)
     answer: dict[str, Any] = {

@@ -22,6 +22,7 @@ from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.setup_words import setup_block
 from diagnosis.report.statements import FactorRow
 from diagnosis.report.sweep_words import sweep_facts
+from diagnosis.report.whole_record import TITLE, whole_words
 from diagnosis.report.wording import assumed_words, chance
 
 _ALL_SAID = ("adequate", "explained")
@@ -49,6 +50,7 @@ def show(answer: Mapping[str, Any], console: Console | None = None) -> None:
         _baseline(answer, beside=3 if console.width >= _WIDE else 2 if console.width >= _NARROW else 1),
         _changes(answer, width=min(console.width, _WIDE)),
         _causes(answer, width=min(console.width, _WIDE)),
+        _whole_record(answer, width=min(console.width, _WIDE)),
         _verdict(answer),
         _recordings(answer),
         _invisible(answer),
@@ -135,14 +137,23 @@ class _Entry:
 
 
 def _causes(answer: Mapping[str, Any], *, width: int) -> RenderableType | None:
-    return _listed(
-        _WRONG,
-        [
-            _Entry(cause["name"], _figures(cause, cause["false_alarm_probability"]), _details(answer, cause))
-            for cause in answer["causes"]
-        ],
-        width=width,
-    )
+    return _listed(_WRONG, _cause_entries(answer, answer["causes"]), width=width)
+
+
+def _cause_entries(answer: Mapping[str, Any], causes: Iterable[Mapping[str, Any]]) -> list[_Entry]:
+    return [
+        _Entry(cause["name"], _figures(cause, cause["false_alarm_probability"]), _details(answer, cause))
+        for cause in causes
+    ]
+
+
+def _whole_record(answer: Mapping[str, Any], *, width: int) -> RenderableType | None:
+    """What all readings of a long record show beside; None where all of them were searched."""
+    said = whole_words(answer)
+    if not said:
+        return None
+    listed = _listed(TITLE, _cause_entries(answer, answer["whole_record"]["causes"]), width=width)
+    return Group(listed or Text(TITLE, "bold"), _indented(f"{said}."))
 
 
 def _changes(answer: Mapping[str, Any], *, width: int) -> RenderableType | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.mutations.mutation import Mutation
 
 _LEAST_SQUARES = "tests/diagnosis/error_model/test_least_squares.py"
+_WHOLE = "tests/diagnosis/discovery/test_whole_record.py"
 
 LONG: tuple[Mutation, ...] = tuple(
     Mutation(f"long.{name}", file, old, new, (test,))
@@ -36,6 +37,34 @@ LONG: tuple[Mutation, ...] = tuple(
             "_CLEAR = 1e-6",
             "_CLEAR = -1.0",
             "tests/twin/test_least_squares.py",
+        ),
+        (
+            "a_block_begins_without_a_turn_ahead_of_it",
+            "diagnosis/discovery/whole_record.py",
+            "lead = int(np.ceil(sweep.part(np.arange(min(count, _BLOCK))).motion().points_per_turn))",
+            "lead = 0",
+            f"{_WHOLE}::test_blocks_do_not_show",
+        ),
+        (
+            "wild_readings_are_part_of_the_means",
+            "diagnosis/discovery/whole_record.py",
+            "np.abs(left) <= _FAR * sigma",
+            "np.abs(left) <= np.inf",
+            f"{_WHOLE}::test_wild_readings_are_no_part_of_the_means",
+        ),
+        (
+            "stairs_are_taken_for_blurred",
+            "diagnosis/discovery/whole_record.py",
+            "typical < FEWEST_TURNS or stairs_left(found.bits, sigma) > sigma / np.sqrt(typical)",
+            "typical < FEWEST_TURNS",
+            f"{_WHOLE}::test_no_means_where_they_would_say_nothing",
+        ),
+        (
+            "the_means_are_those_of_the_twin",
+            "diagnosis/discovery/whole_record.py",
+            "expected + mean(self.left)",
+            "expected",
+            f"{_WHOLE}::test_the_means_show_what_the_noise_of_the_searched_part_hides",
         ),
     )
 )

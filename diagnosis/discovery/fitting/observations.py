@@ -146,11 +146,14 @@ def of_readings(row_rms_deg: float, observations: Observations) -> float:
     return float(np.hypot(row_rms_deg, np.degrees(np.sqrt(observations.within))))
 
 
-def block_length(motion: Motion) -> int:
-    """Readings that are averaged into one row: 1 but for long records far denser than any structure searched for."""
+def block_length(motion: Motion, rows: int | None = None) -> int:
+    """Readings that are averaged into one row: 1 but for long records far denser than any structure searched for.
+
+    ``rows`` are those of the whole record, where the motion is of a piece of it.
+    """
     if _in_place(motion):
         return 1
-    return max(1, min(-(-len(motion) // MOST_ROWS), int(motion.points_per_turn // DENSE_POINTS)))
+    return max(1, min(-(-(rows or len(motion)) // MOST_ROWS), int(motion.points_per_turn // DENSE_POINTS)))
 
 
 def _in_place(motion: Motion) -> bool:

@@ -73,6 +73,13 @@ def explained(path: Path) -> str:
     return f"{time.process_time() - start} {peak_mb()} {names or '-'} {beside or '-'}"
 
 
+def written(path: Path) -> str:
+    """CPU time [s] and peak memory [MB] of writing the record whose rows the file's name says."""
+    start = time.process_time()
+    write(int(path.stem), path)
+    return f"{time.process_time() - start} {peak_mb()} - -"
+
+
 def baseline_fit(path: Path) -> str:
     """CPU time [s] and peak memory [MB] of one least_squares fit of the paper's model."""
     from scipy.optimize import least_squares
@@ -91,7 +98,7 @@ def baseline_fit(path: Path) -> str:
 
 
 def alone(task: str, path: Path) -> tuple[float, float, str, str]:
-    """One task in a process of its own."""
+    """One task in a process of its own; the most memory that a parent has held would count as the child's."""
     command = [sys.executable, "-m", "tests.benchmarks.long_records", "--task", task, "--path", str(path)]
     told = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
     seconds, megabytes, names, beside = told
@@ -102,18 +109,18 @@ def main() -> None:
     """Print the table, or one task's figures."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rows", type=int, nargs="+", default=list(ROWS))
-    parser.add_argument("--task", choices=("explain", "fit"), help="one task alone, for --path")
+    parser.add_argument("--task", choices=("write", "explain", "fit"), help="one task alone, for --path")
     parser.add_argument("--path", type=Path)
     options = parser.parse_args()
     if options.task:
-        print({"explain": explained, "fit": baseline_fit}[options.task](options.path))
+        print({"write": written, "explain": explained, "fit": baseline_fit}[options.task](options.path))
         return
     print("| rows | CPU, s | memory, MB | one least_squares fit, s | times as long | named | beside, by all readings |")
     print("|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         for rows in options.rows:
             path = Path(folder) / f"{rows}.csv"
-            write(rows, path)
+            alone("write", path)
             seconds, megabytes, names, beside = alone("explain", path)
             fit_s = alone("fit", path)[0]
             path.unlink()

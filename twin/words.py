@@ -60,9 +60,12 @@ class Expected:
         return wrap(self.chosen - self.angle)
 
     def log_likelihood(self, usable: BoolArray) -> float:
-        """Of the readings in use: Gaussian about what is expected, or anywhere on the circle, as gross errors are."""
-        off = self.residual[usable] / self.sigma
-        return -float(np.sum(np.minimum(0.5 * off**2 + np.log(self.sigma), np.log(np.sqrt(TAU)))))
+        """Of the readings in use."""
+        return float(np.sum(self.log_densities(self.residual[usable])))
+
+    def log_densities(self, off: Array) -> Array:
+        """Of readings that are off by so much (m,) [rad]: Gaussian, or anywhere on the circle, as gross errors are."""
+        return -np.minimum(0.5 * (off / self.sigma) ** 2 + np.log(self.sigma), np.log(np.sqrt(TAU)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,7 +38,8 @@ _LACKS = {
     "turn": ("no turn column", "number the sweeps in a turn column"),
     "two currents": ("no current_a that changes", "record current_a at several currents"),
     "two currents|a reference": ("no reference and no current_a", "record current_a at several currents"),
-    "two currents|two speeds": ("one speed and no current", "record current_a, or measure at two speeds"),
+    "two currents|moving shaft": ("at rest at each reading and no current_a", "record current_a, or speed_rpm"),
+    "two currents|two speeds|both directions": ("one speed one way, no current", "record current_a, or turn both ways"),
     "two air gaps": ("one air gap", "measure at a second air gap"),
     "two speeds": ("one speed", "measure at a second speed"),
     "two speeds|both directions": ("one speed, one direction", "measure at a second speed or in both directions"),
@@ -64,6 +65,7 @@ _ALSO_SAYS = {
     "two temperatures": "temperature_c",
     "two turns": "turn",
     "two speeds|both directions": "moving shaft",
+    "two currents|two speeds|both directions": "two currents|moving shaft",
 }
 """A want that goes without saying where the second one is wanted too."""
 _UNEXPLAINED = "Structure is there that no cause of the catalogue explains"

@@ -62,7 +62,7 @@ def test_readings_of_a_dead_zone_are_set_aside() -> None:
     assert found.to_dict()["sweep"]["touched"] > 0
 
 
-@pytest.mark.parametrize("seed", [8, 22, 27])
+@pytest.mark.parametrize("seed", [1, 2, 22])
 def test_a_scale_is_told_with_its_interval(seed: int) -> None:
     drawn = draw("scale_error", seed=seed)
     (cause,) = answered(drawn).causes

@@ -27,6 +27,13 @@ REPORTED = (
         (f"{_CASES}::test_a_sweep_of_the_kind_is_answered_rightly[field_of_drag]",),
     ),
     Mutation(
+        "motor_field.the_current_turns_with_the_shaft",
+        "twin/magnet/motor_field.py",
+        '"two currents|two speeds|both directions"',
+        '"two currents|two speeds"',
+        ("tests/diagnosis/discovery/test_seam_and_current.py::test_a_field_of_drag_turns_its_sign_with_the_direction",),
+    ),
+    Mutation(
         "stale_frames.a_count_is_a_movement",
         "twin/link/stale_frames.py",
         "np.maximum(move - TAU / motion.whole_counts.counts_per_turn, 0.0)",

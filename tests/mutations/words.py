@@ -86,6 +86,20 @@ WORDS = (
         (f"{_TESTS}::test_a_stretch_of_wrong_words_is_no_dead_zone",),
     ),
     Mutation(
+        "dead_zone.both_edges_are_free",
+        "twin/link/dead_zone.py",
+        "(standing - edges) * np.log",
+        "(standing - 2) * np.log",
+        (f"{_TESTS}::test_two_readings_within_a_zone_are_no_code",),
+    ),
+    Mutation(
+        "scale_error.begins_anew_anywhere",
+        "twin/link/scale_error.py",
+        "if _gain_of_another_place(factor - 1.0, after, words.usable) > np.log(words.usable.sum()) - LIMIT_LOG_P:",
+        "if False:",
+        (f"{_TESTS}::test_a_ramp_that_begins_anew_elsewhere_is_no_scale",),
+    ),
+    Mutation(
         "dead_zone.runs_of_repeats_are_short",
         "twin/link/dead_zone.py",
         "if not own or not others:",

@@ -8,8 +8,9 @@ import pytest
 from tests.hidden.link_faults import Drawn, draw
 from twin.catalogue import CATALOGUE
 from twin.decoded import Decoded, decoded
+from twin.link.scale_error import find as find_scale
 from twin.sweep import Sweep
-from twin.words import WordFault
+from twin.words import WordFault, Words
 
 DRAWS = 12
 STATES = {"low": (0, 0), "high": (1, 0), "up": (0, 1), "up_or": (0, 1), "down": (0, -1), "down_or": (0, -1)}
@@ -135,6 +136,33 @@ def test_the_longest_of_many_runs_of_repeated_frames_is_no_dead_zone(others: tup
     assert ([key for key, _ in faults] == ["dead_zone"]) == zone
 
 
+@pytest.mark.parametrize("edge", ["low", "high"])
+def test_two_readings_within_a_zone_are_no_code(edge: str) -> None:
+    """Of a turn of 180 readings two fall into the zone: what they read stands at its edge, and nowhere by itself."""
+    angle, words = sound(points=180)
+    start, end = int(words[20]) + 10, int(words[23]) - 10
+    words[21:23] = start if edge == "low" else end
+    (key, fault), *rest = decoded(Sweep(angle, words * (360.0 / 2**12)), CATALOGUE).faults
+    assert (key, rest) == ("dead_zone", [])
+    low, high = fault.intervals["width_deg"]
+    assert low < (end - start) * (360.0 / 2**12) < high
+
+
+@pytest.mark.parametrize("place", [0, 3, -3])
+def test_a_ramp_that_begins_anew_elsewhere_is_no_scale(place: int) -> None:
+    """A wrong scale begins anew at the word 0; a turn that drifted does where it began, here three readings away.
+
+    The 0.3 deg there are thirty times the noise: three readings leave no doubt.
+    """
+    angle = np.arange(200) * 1.8
+    error = 0.8 * np.sin(np.radians(angle)) + 0.01 * np.random.default_rng(3).standard_normal(200)
+    true = np.mod(angle + 0.9 + error, 360.0)
+    ramp = -0.3 / 360.0 * np.mod(true - 1.8 * place, 360.0)
+    measured = np.radians(np.mod(true + ramp, 360.0))
+    found = find_scale(Words(np.radians(angle), measured, np.ones(200, dtype=bool)))
+    assert (found is not None) == (place == 0)
+
+
 def test_a_sweep_that_only_follows_once_decoded_is_read() -> None:
     """The top bit always reads 1: half of the readings are half a turn off, so that they follow nothing."""
     angle = np.arange(0.0, 360.0, 9.0)
@@ -149,7 +177,7 @@ def test_a_sweep_that_only_follows_once_decoded_is_read() -> None:
 def turned(zero_deg: float = 41.0, points: int = 360) -> tuple[np.ndarray, np.ndarray]:
     """Angles of two turns and 12-bit words of a sensor with a zero of its own and noise of 0.03 deg."""
     angle = np.arange(points) * (720.0 / points)
-    noise = 0.03 * np.random.default_rng(3).standard_normal(points)
+    noise = 0.01 * np.random.default_rng(3).standard_normal(points)
     read = angle + zero_deg + 1.2 * np.sin(np.radians(angle + 30.0)) + noise
     return angle, np.round(read / 360.0 * 4096).astype(np.int64) % 4096
 

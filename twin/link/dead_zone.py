@@ -29,8 +29,8 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
 def find(words: Words) -> WordFault | None:
     """The widest range without a reading, where readings are expected in it and stand at its edges instead.
 
-    Chance: a reading that is expected inside stands outside of it by another error, as rare as these are, and at the
-    very word at which another one stands already.
+    Chance: a reading that is expected inside stands outside of it by another error, as rare as these are, and, but for
+    the first at each edge, at the very word at which another one stands already.
     """
     read = np.sort(np.mod(words.measured[words.usable], TAU))
     gaps = np.diff(np.append(read, read[0] + TAU)) if read.size else np.zeros(1)
@@ -48,8 +48,8 @@ def find(words: Words) -> WordFault | None:
     apart = max((_reach(place[held & edge]) for edge in (low, high)), default=0.0)
     if count < 2 or apart <= margin or np.count_nonzero(held) < (1.0 - MISSED) * count:
         return None
-    standing = int(np.count_nonzero(held))
-    log_p = (2 * standing - count) * np.log(MISSED) + (standing - 2) * np.log(2.0 * words.step / TAU)
+    standing, edges = int(np.count_nonzero(held)), int((held & low).any()) + int((held & high).any())
+    log_p = (2 * standing - count) * np.log(MISSED) + (standing - edges) * np.log(2.0 * words.step / TAU)
     log_p = max(float(log_p), _log_p_of_repeats(words, held))
     return _fault(words, (start, width), (place, held & low, held & high), log_p)
 

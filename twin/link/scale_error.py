@@ -8,10 +8,10 @@ import numpy as np
 
 from twin.angles import TAU, Array, wrap
 from twin.confidence import Z95
-from twin.effect import Effect, Param, Parameters
+from twin.effect import BoolArray, Effect, Param, Parameters
 from twin.mechanics.zero_drift import ZERO_DRIFT
 from twin.motion import Motion
-from twin.words import ORDERS, Also, Expected, InWords, WordFault, Words, noise_of, of_orders
+from twin.words import LIMIT_LOG_P, ORDERS, Also, Expected, InWords, WordFault, Words, noise_of, of_orders
 
 _PASSES = 5
 _AFAR_RAD = np.radians(1.0)
@@ -40,7 +40,8 @@ def shapes(motion: Motion) -> Sequence[Mapping[str, float]]:
 def find(words: Words) -> WordFault | None:
     """The factor where it leaves no more than noise, and half of what is left without it at most.
 
-    Words that begin anew at 0: of those that go on from turn to turn a drift of the zero would do the same.
+    Words that begin anew at 0: of those that go on from turn to turn a drift of the zero would do the same. Where the
+    ramp begins anew elsewhere, at any of so many readings, it is something else that drifted over the turn.
     """
     before = words.expected
     noise = max(noise_of(before.residual[words.usable]), words.step / np.sqrt(12.0))
@@ -51,10 +52,25 @@ def find(words: Words) -> WordFault | None:
     factor, deviation, after = min((_settled(words, start) for start in starts), key=lambda one: one[2].sigma)
     if after.sigma > 0.5 * before.sigma or after.sigma > 2.0 * max(noise_of(after.residual[words.usable]), noise):
         return None
+    if _gain_of_another_place(factor - 1.0, after, words.usable) > np.log(words.usable.sum()) - LIMIT_LOG_P:
+        return None
     values = {"factor": factor, "goes_on": 0.0}
     within = {"factor": (factor - Z95 * deviation, factor + Z95 * deviation)}
     log_p = float(np.log(after.sigma / before.sigma)) * words.usable.sum()
     return WordFault(values, log_p, words.usable, np.zeros(len(words), dtype=bool), after.chosen, within)
+
+
+def _gain_of_another_place(away: float, after: Expected, usable: BoolArray) -> float:
+    """Log likelihood gained where the ramp begins anew at the best of all places instead of at the word 0.
+
+    Readings behind 0 up to that place then stand where the ramp ends, or those before 0 where it begins.
+    """
+    off, order = after.residual[usable], np.argsort(np.mod(after.angle[usable], TAU))
+    behind, before = (
+        after.log_densities(off[rows] - shift) - after.log_densities(off[rows])
+        for shift, rows in ((away * TAU, order), (-away * TAU, order[::-1]))
+    )
+    return float(max(np.max(np.cumsum(gain), initial=0.0) for gain in (behind, before)))
 
 
 def _settled(words: Words, start: float) -> tuple[float, float, Expected]:

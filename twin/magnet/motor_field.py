@@ -62,7 +62,14 @@ MOTOR_FIELD = Effect(
     at_magnet=at_magnet,
     assumes=f"a field of {FIELD_MT:g} mT at the sensor",
     # Without a reference the speed is told by these very readings, and a motor that coasts draws no current.
-    needs=frozenset({"two currents|a reference", "two currents|two speeds"}),
+    # Which way the shaft turns decides which way its drag pulls, and the current with it.
+    needs=frozenset(
+        {
+            "two currents|a reference",
+            "two currents|moving shaft",
+            "two currents|two speeds|both directions",
+        }
+    ),
     source="Biot and Savart: the field of a winding and its leads in proportion to the current, added to the magnet's; "
     "a motor's current in proportion to the torque of drag",
     signature="order 1 times the current, or times the speed",

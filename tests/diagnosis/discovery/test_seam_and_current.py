@@ -40,3 +40,17 @@ def test_what_follows_the_motors_current_is_named(name: str) -> None:
         told = found[name][key]
         # One of three intervals of 95 % misses in one seed of seven: twice as wide they hold.
         assert abs(abs(told["value"]) - value) < told["high"] - told["low"]
+
+
+def test_a_field_of_drag_turns_its_sign_with_the_direction() -> None:
+    """At one speed, and no current recorded: drag turns round with the shaft, and so does what it asks of the motor."""
+    shaft = turns(180, 2)
+    shaft, rpm = np.concatenate([shaft, shaft[::-1]]), np.repeat([1200.0, -1200.0], shaft.size)
+    towards = 0.001 * np.sign(rpm) * np.array([[0.6], [0.8]])
+    time = np.cumsum(np.abs(np.gradient(shaft)) / (np.abs(rpm) * np.pi / 30.0))
+    found = named(sweep(shaft, channels(shaft) + towards, 23, speed_rpm=rpm, time_s=time))
+    assert list(found) == ["motor_field"]
+    for key, share in (("bx_mT_per_krpm", 0.6), ("by_mT_per_krpm", 0.8)):
+        told = found["motor_field"][key]
+        # Per 1000 rpm of an assumed field of 50 mT; one of two intervals of 95 % misses in one seed of ten.
+        assert abs(abs(told["value"]) - 50.0 * 0.001 * share / 1.2) < told["high"] - told["low"]

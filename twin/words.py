@@ -65,7 +65,8 @@ class Expected:
 
     def log_densities(self, off: Array) -> Array:
         """Of readings that are off by so much (m,) [rad]: Gaussian, or anywhere on the circle, as gross errors are."""
-        return np.maximum(-0.5 * (off / self.sigma) ** 2 - np.log(self.sigma), -np.log(np.sqrt(TAU)), dtype=np.float64)
+        anywhere = -np.log(np.sqrt(TAU))
+        return np.asarray(np.maximum(-0.5 * (off / self.sigma) ** 2 - np.log(self.sigma), anywhere))
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,9 +69,9 @@ def test_explain_says_so_first(tmp_path: Path) -> None:
     """Counts a turn that are too few by four: the fits are well, and of a turn they say nothing."""
     path = tmp_path / "log.csv"
     path.write_text(csv_text({"t": TIME, "angle": COUNTS}))
-    answer = explained(path, "--columns", "time_s=t, measured_deg=angle*360/4096")
+    answer = explained(path, "--columns", "time_s=t, measured_deg=angle*360/4096", "--budget", "2")
     assert [one["kind"] for one in answer["setup"] if one["level"] == "fault"] == ["wrong_counts"]
-    answer = explained(path, "--columns", "time_s=t, measured_deg=angle*360/16384")
+    answer = explained(path, "--columns", "time_s=t, measured_deg=angle*360/16384", "--budget", "2")
     assert not answer["setup"]
 
 

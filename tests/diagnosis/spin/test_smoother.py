@@ -125,7 +125,7 @@ def test_a_torque_at_two_speeds_is_no_channel_read_late() -> None:
 
 def test_dry_friction_reverses_with_the_direction() -> None:
     """Its torque of order 1 does so too: there and back it is told from one that does not."""
-    there, rubbing = coasting(cogging=0.0), 4.0
+    there, rubbing = coasting(cogging=0.0), 20.0
     speed = np.gradient(there, TIME)
     turned = -rubbing * np.cos(there) / speed**2
     both = np.concatenate([there + turned, -there + rubbing * np.cos(there) / speed**2])
@@ -133,7 +133,8 @@ def test_dry_friction_reverses_with_the_direction() -> None:
     readings = np.concatenate([read(both[: TIME.size]), read(both[TIME.size :], seed=2)])
     slices = [slice(0, TIME.size), slice(TIME.size, 2 * TIME.size)]
     fit = fitted_motion(readings, time, slices)
-    assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=6e-5)
+    # To first order so strong a rub leaves a ten-thousandth; one that did not reverse would leave nine.
+    assert error_of(fit, 1) == pytest.approx([0.0, OFFSET], abs=3e-4)
 
 
 def test_readings_far_off_are_left_out() -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 Z95 = 1.959964
 """Standard deviations on either side that hold 95 % of a normal distribution."""
+OF_MAD = 1.4826
+"""Standard deviation of a normal distribution over the median of how far its values are from the middle."""
 
 
 def student_95(freedom: float) -> float:

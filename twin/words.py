@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from twin.angles import TAU, Array, IntArray, within_turn, wrap
+from twin.confidence import OF_MAD
 from twin.found_by import BoolArray
 from twin.least_squares import fitted
 from twin.motion import Motion
@@ -29,7 +30,6 @@ NEAR_RAD = np.radians(30.0)
 """No sensor's smooth error is larger."""
 _PASSES = 6
 _TRIMMED = 5.0
-_MAD = 1.4826
 _DIGITS_RAD = tuple(np.radians((1.2e-6, 6e-4, 6e-3, 6e-2)))
 """As many digits as files have: six decimals of a degree, or three, two or one."""
 _DECIMALS_OF_A_TURN = 360_000
@@ -129,7 +129,7 @@ class Words:
             curve = columns @ fitted(columns, off, kept)
             left = np.abs(wrap(off - curve))
             freedom = kept.sum() / (kept.sum() - columns.shape[1])
-            sigma = float(_MAD * np.median(left[kept]) * np.sqrt(freedom))
+            sigma = float(OF_MAD * np.median(left[kept]) * np.sqrt(freedom))
             sigma = max(sigma, self.step / np.sqrt(12.0))
             limit = min(float(NEAR_RAD), _TRIMMED * sigma)
         return Expected(wrap(turn + curve), _nearest(candidates, turn + curve), sigma, zero, sense)
@@ -280,7 +280,7 @@ def decimal_step(read: Array) -> float | None:
 
 def noise_of(left: Array) -> float:
     """RMS of the noise in what is left (n,) in the order of the readings, by its second differences."""
-    return float(_MAD * np.median(np.abs(np.diff(left, 2)))) / float(np.sqrt(6.0)) if left.size > 2 else 0.0
+    return float(OF_MAD * np.median(np.abs(np.diff(left, 2)))) / float(np.sqrt(6.0)) if left.size > 2 else 0.0
 
 
 def of_orders(reference: Array, orders: int) -> Array:

@@ -19,6 +19,7 @@ from diagnosis.discovery.state import State
 from twin.angles import TAU, Array, IntArray, wrap
 from twin.catalogue import base_name, find
 from twin.chain import Chain
+from twin.confidence import OF_MAD
 from twin.effect import Effect
 from twin.motion import RPM, Motion
 from twin.sweep import Sweep
@@ -31,7 +32,6 @@ _BLOCK = 1 << 17
 """Readings that run through the chain at once."""
 _FAR = 6.0
 """Robust standard deviations beyond which a reading stands alone and is no part of a mean."""
-_MAD = 1.4826
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,7 @@ def averaged(sweep: Sweep, found: Discovery) -> Averaged | None:
         return None
     sums, sigma = _Sums.empty(), 0.0
     for motion, rows, left in left_beside(sweep, twin):
-        sigma = sigma or _MAD * float(np.median(np.abs(left)))
+        sigma = sigma or OF_MAD * float(np.median(np.abs(left)))
         near = np.flatnonzero(np.abs(left) <= _FAR * sigma)
         sums.add(motion.part(near), rows[near] * STRETCHES // len(sweep), left[near])
     typical = float(np.median(sums.count[sums.count > 0])) if sums.count.any() else 0.0

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.angles import Array
+from twin.confidence import OF_MAD
 
 _FAR = 6.0
-_MAD = 1.4826
 _FLOOR_RAD = 1e-7
 
 
@@ -31,6 +31,6 @@ def isolated(
     for value in (residual_rad, own):
         looked_at = value if weights is None else np.where(weights > 0.0, value, np.nan)
         middle = np.nanmedian(looked_at, axis=-1, keepdims=True)
-        scale = _MAD * np.nanmedian(np.abs(looked_at - middle), axis=-1, keepdims=True)
+        scale = OF_MAD * np.nanmedian(np.abs(looked_at - middle), axis=-1, keepdims=True)
         far &= np.abs(value - middle) > _FAR * np.maximum(scale, _FLOOR_RAD)
     return far if weights is None else far & (weights > 0.0)

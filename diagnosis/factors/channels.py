@@ -14,6 +14,7 @@ from diagnosis.error_model.model import BETA, GAIN, NOMINAL, QUAD, VX, VY
 from diagnosis.error_model.result import BaselineFit
 from diagnosis.factors.mechanical import counter_rotating
 from twin.angles import Array
+from twin.following import slope_of
 
 NAMES = ("Vx", "Vy", "Ax", "Ay", "beta_rad", "quad")
 _SURE = 4.0
@@ -62,9 +63,7 @@ class Added:
 
 def output_sense(measured_rad: Array, vx: Array, vy: Array) -> int:
     """h of m = h atan2(vy, vx), from arrays (n,)."""
-    own = np.arctan2(vy - np.median(vy), vx - np.median(vx))
-    follows = [abs(np.mean(np.exp(1j * (measured_rad - sense * own)))) for sense in (1, -1)]
-    return 1 if follows[0] >= follows[1] else -1
+    return slope_of(np.arctan2(vy - np.median(vy), vx - np.median(vx)), measured_rad)
 
 
 def fit_curve(vx: Array, vy: Array) -> ChannelFit:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.angles import Array
+from twin.confidence import OF_MAD
 
 _WITHIN = 0.975
 """Share of normal devices that the second estimate is taken from; it is scaled up for those that it leaves out."""
@@ -63,4 +64,4 @@ def rest_of(values: Array) -> Rest:
 
 def _scale(values: Array) -> Array:
     """Median absolute deviation along the first axis, as a standard deviation of normal values."""
-    return np.asarray(1.4826 * np.median(np.abs(values - np.median(values, axis=0)), axis=0))
+    return np.asarray(OF_MAD * np.median(np.abs(values - np.median(values, axis=0)), axis=0))

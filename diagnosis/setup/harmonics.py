@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.angles import Array, BoolArray
+from twin.confidence import OF_MAD
 
 _WILD = 6.0
 """Robust standard deviations beyond which a reading is left out of a fit."""
@@ -50,7 +51,7 @@ def fitted(shapes: list[Array], values: Array, *, most_wild: float = 0.5) -> Fit
     for _ in range(4):
         coefficients = np.asarray(np.linalg.lstsq(design[kept], values[kept], rcond=None)[0])
         left = values - design @ coefficients
-        scale = 1.4826 * float(np.median(np.abs(left)))
+        scale = OF_MAD * float(np.median(np.abs(left)))
         now = np.abs(left) <= max(_WILD * scale, 1e-12)
         if np.array_equal(now, kept) or now.sum() <= design.shape[1] + 2 or np.mean(~now) > most_wild:
             break
@@ -97,4 +98,4 @@ def white_noise(values: Array) -> float:
     if values.size < 8:
         return 0.0
     third = np.diff(values, 3)
-    return float(1.4826 * np.median(np.abs(third)) / np.sqrt(20.0))
+    return float(OF_MAD * np.median(np.abs(third)) / np.sqrt(20.0))

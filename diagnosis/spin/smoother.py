@@ -22,6 +22,7 @@ from diagnosis.spin.spline import Spline, rate
 from diagnosis.spin.torques import RATE
 from diagnosis.spin.variance_components import Drawn, drawn, solved
 from twin.angles import Array
+from twin.confidence import OF_MAD
 from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import response, second_order
 
@@ -134,7 +135,7 @@ class _Estimate:
         smooth = made.problem.spline.design @ start
         left = made.problem.readings - smooth - terms.values @ made.problem.columns
         left = np.abs(left) * np.sqrt(made.problem.precision)
-        usual_left = 1.4826 * float(np.median(left[made.problem.weights > 0.0]))
+        usual_left = OF_MAD * float(np.median(left[made.problem.weights > 0.0]))
         differences = made.problem.rough @ start
         problem = replace(
             made.problem,

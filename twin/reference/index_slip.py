@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from twin.angles import Array, IntArray, radians, wrap
+from twin.confidence import OF_MAD
 from twin.drawing import span
 from twin.effect import BoolArray, Effect, Param, Parameters
 from twin.motion import Motion
@@ -81,7 +82,7 @@ def _jumps(reference: Array, off: Array, sense: float, least: float) -> tuple[li
             found = np.linalg.lstsq(design, off, rcond=None)[0]
             left, sizes = off - design @ found, np.asarray(found[-len(jumps) :])
             shaft = reference + sense * design[:, -len(jumps) :] @ sizes
-        sigma = float(1.4826 * np.median(np.abs(left)))
+        sigma = float(OF_MAD * np.median(np.abs(left)))
         if sigma <= _NOISE_RATIO * max(noise_of(left), least):
             return jumps, sizes, sigma
     return [], np.zeros(0), 0.0

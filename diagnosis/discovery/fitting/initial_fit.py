@@ -28,12 +28,8 @@ def senses_of_channels(sweep: Sweep) -> tuple[int, int] | None:
         return sweep.senses
     measured, reference = np.radians(sweep.measured_deg), np.radians(sweep.reference_deg)
     channel = np.arctan2(sweep.vy, sweep.vx)
-
-    def together(a: Array, b: Array) -> int:
-        return 1 if abs(np.mean(np.exp(1j * (a - b)))) >= abs(np.mean(np.exp(1j * (a + b)))) else -1
-
-    output = together(measured, channel)
-    return together(measured, reference) * output, output
+    output = slope_of(channel, measured)
+    return slope_of(reference, measured) * output, output
 
 
 def unfitted(observations: Observations, start: Chain, settings: DiscoverySettings) -> Fit:

@@ -6,6 +6,7 @@ import numpy as np
 
 from diagnosis.discovery.settings import DiscoverySettings
 from twin.angles import TAU, Array
+from twin.confidence import OF_MAD
 from twin.effect import BoolArray
 from twin.motion import Motion
 from twin.running_median import running_median
@@ -13,7 +14,7 @@ from twin.running_median import running_median
 
 def robust_rms(values: Array) -> float:
     """RMS of Gaussian values from their median deviation, blind to outliers."""
-    return float(1.4826 * np.median(np.abs(values - np.median(values)))) if values.size else 0.0
+    return float(OF_MAD * np.median(np.abs(values - np.median(values)))) if values.size else 0.0
 
 
 _BOUND = 1.5

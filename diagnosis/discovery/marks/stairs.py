@@ -10,6 +10,7 @@ from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
 from diagnosis.discovery.fitting.linearised_chain import Linear, is_staircase
 from diagnosis.discovery.fitting.noise.rounding import blur_behind, coarsest_stair
 from twin.angles import Array, wrap
+from twin.confidence import OF_MAD
 from twin.effect import Effect
 
 BLUR = "blur_percent"
@@ -66,4 +67,4 @@ def _noise_ahead(fit: Fit, effect: Effect) -> float:
     rows = fit.observations.usable & (passed > 0.5) & (passed < 2.0)
     if not np.any(rows):
         rows, passed = fit.observations.usable, np.ones_like(passed)
-    return float(1.4826 * np.median(np.abs(fit.residual[0][rows]) / passed[rows]))
+    return float(OF_MAD * np.median(np.abs(fit.residual[0][rows]) / passed[rows]))

@@ -98,6 +98,11 @@ class EstimatedMotion:
         noise_rad = self.noise_rad / float(np.sqrt(np.mean(count)))
         return replace(self, stretch=self.stretch[first], knee_rad=self.knee_rad[first] * count, noise_rad=noise_rad)
 
+    def at_noise(self, noise_rad: float) -> EstimatedMotion:
+        """The same motion, as free as it is, against readings of this noise [rad]."""
+        knee_rad = self.knee_rad * (self.noise_rad / noise_rad) ** (2.0 / SPECTRAL_SLOPE)
+        return replace(self, knee_rad=knee_rad, noise_rad=noise_rad)
+
     @classmethod
     def joined(cls, parts: Sequence[EstimatedMotion | None], lengths: Sequence[int]) -> EstimatedMotion | None:
         """Of several recordings one behind the other, None standing for one with a reference; None: all are.

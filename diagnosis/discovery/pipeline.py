@@ -19,6 +19,7 @@ from diagnosis.discovery.stages.grid_cause import grid_cause
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit
 from diagnosis.discovery.stages.listed import listed
+from diagnosis.discovery.stages.motion_freedom import motion_freedom
 from diagnosis.discovery.stages.observe import observe
 from diagnosis.discovery.stages.one_source import one_source
 from diagnosis.discovery.stages.own_parameters import own_parameters
@@ -51,6 +52,7 @@ PIPELINE: tuple[Stage, ...] = (
         repeated_frames,  # readings that repeat the one before
         variance,  # rows that are beyond doubt louder weigh less
         stepwise,  # causes in the mean: add, exchange, remove
+        motion_freedom,  # without a reference, how free the shaft is against the noise that is left
         ringing,  # lines that are a narrow band of noise
         one_source,  # lines that one cause makes together
         sense_check,  # who counts which way, now that the causes are known

@@ -21,7 +21,7 @@ _TRIED = np.linspace(0.0, 1.0, 13)
 """Roots of rates against the fastest that is looked for: rates are as likely small as large."""
 _DEVIATIONS = 2.0
 """Of a sum of as many squares: what noise exceeds once in forty times."""
-SURELY = 2.0 * float(np.log(1000.0))
+_SURELY = 2.0 * float(np.log(1000.0))
 """Twice the logarithm of a thousand to one: so much likelier what would change all else has to be than none of it."""
 _RIDGE = 1e-14
 """Share of the largest element that is added to all: more would hold a motion that is even, most of all undamped."""
@@ -68,7 +68,7 @@ def damping(
     bounds = (max(_TRIED[place] - step, 0.0), min(_TRIED[place] + step, 1.0))
     best = minimize_scalar(cost, bounds=bounds, method="bounded", options={"xatol": 0.002})
     lowest, root = min((float(best.fun), float(best.x)), (float(costs[place]), float(_TRIED[place])))
-    if costs[0] - lowest < SURELY:
+    if costs[0] - lowest < _SURELY:
         return 0.0, 0.0
     return root**2 * fastest_per_s, _deviation(cost, root, lowest) * fastest_per_s
 

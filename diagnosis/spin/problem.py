@@ -136,11 +136,6 @@ class Reduced:
         left, log_det = self.left(sd, variance)
         return rows * float(np.log(max(left, 1e-300))) + self.log_det + log_det
 
-    def deviance(self, sd: Array, variance: float, rows: float) -> float:
-        """The same where ``sd`` (p,) is what differs: with how far the columns may have scattered."""
-        held = sd[np.isfinite(sd)]
-        return self.cost(sd, variance, rows) + float(np.sum(np.log(held**2 / variance)))
-
 
 def evened(stiffness: Array, differences: Array) -> Array:
     """This stiffness (d,), less where differences (d,) of the motion show it to be rougher than is usual."""

@@ -15,8 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.damping import SURELY, damping
-from diagnosis.spin.problem import Own, Problem, Reduced, degrees_of_freedom, evened, held_at, knee, likeliest
+from diagnosis.spin.damping import damping
+from diagnosis.spin.problem import Own, Problem, Reduced, evened, held_at, knee, likeliest
 from diagnosis.spin.speeds import several_speeds, two_speeds_alone
 from diagnosis.spin.spline import Spline, rate
 from diagnosis.spin.torques import RATE
@@ -128,7 +128,6 @@ class _Estimate:
             self.rates[0],
             separable,
             most_growing=self.most_growing,
-            rows=degrees_of_freedom(made.problem, made.sd),
         )
         moved = np.r_[_OF_ERROR : min(_OF_FRICTION, len(terms.values)), _OF_LATE : len(terms.values)]
         start = made.problem.start + reduced.step - reduced.pulled @ terms.values
@@ -330,7 +329,6 @@ def _drawn(
     separable: BoolArray,
     *,
     most_growing: Array,
-    rows: float,
 ) -> tuple[Drawn, Array]:
     """The coefficients, each order's torque by a scatter of its own; none where it would not be told.
 
@@ -340,7 +338,7 @@ def _drawn(
     larger than it is known to be at most, nor than those of the orders 1 and 2: a torque of a higher order is a
     cogging, which does not grow. One that reverses with the speed, as a modulated dry friction does, is told by a log
     that has both directions. An error of order 2 that grows with the speed, as of a channel that is read late, is told
-    by three speeds; where it is not, or where torques alone are about as likely, none is taken to be there.
+    by three speeds; where it is not, none is taken to be there.
     """
     if len(sd) <= _OF_ERROR:
         return solved(reduced.normal, reduced.gradient, variance, sd), ANY_GROWTH
@@ -354,14 +352,11 @@ def _drawn(
     sd[_OF_ERROR:_OF_FRICTION] = 1e-9 * usual_rad_s
     sd[_OF_FRICTION:_OF_LATE] = 1e-9 / usual_rad_s
     sd[np.concatenate([np.zeros(0, dtype=np.int64), *groups])] = usual_rad_s**2
-    found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
     if third_speed and _late_channel_told(reduced, variance, usual_rad_s):
-        sd[pairs[-1]] = 1.0 / usual_rad_s
-        late = drawn(reduced.normal, reduced.gradient, variance, groups=[*groups, pairs[-1]], sd=sd)
         # Between two speeds it does what a torque of order 2 does, and would put another error in the sensor.
-        likelier = reduced.deviance(found.sd, variance, rows) - reduced.deviance(late.sd, variance, rows)
-        if likelier > SURELY:
-            found, groups = late, [*groups, pairs[-1]]
+        sd[pairs[-1]] = 1.0 / usual_rad_s
+        groups = [*groups, pairs[-1]]
+    found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
     sd = found.sd.copy()
     half = 0.5 * sd[[pair[0] for pair in pairs[: len(growing)]]] / float(np.sqrt(np.mean(speed_rad_s**2)))
     if separable[:_OF_RUN_OUT].any():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from diagnosis.spin.spline import rate
@@ -15,6 +17,7 @@ RATE = 1e-3
 """Damping [1/s] by which the derivative of a response is taken."""
 
 
+@lru_cache(maxsize=4)
 def torque_columns(motion: Motion) -> Array:
     """Angles (m, n) [rad] by which torques may turn the shaft, each one standard deviation of what they may be.
 
@@ -23,26 +26,44 @@ def torque_columns(motion: Motion) -> Array:
     found = motion.estimated
     if found is None:
         return np.zeros((0, len(motion)))
-    acceleration = rate(motion.speed_rad_s, motion.time_s, found.slices)
-    columns, damped = [np.zeros((0, len(motion)))], np.zeros(len(motion))
+    columns = [np.zeros((0, len(motion)))]
     for torque in found.torques:
         if torque.scatter_rad_s2 or torque.growing_rad_s or torque.reversing_rad_s2:
-            moved, more = (
-                response(
-                    torque.order,
-                    shaft_rad=motion.shaft_rad,
-                    speed_rad_s=motion.speed_rad_s,
-                    acceleration_rad_s2=acceleration,
-                    damping_per_s=found.damping_per_s + by,
-                )
-                for by in (0.0, RATE)
-            )
+            moved = _moved(motion, torque.order)
             rubs = torque.growing_rad_s * motion.speed_rad_s, torque.reversing_rad_s2 * np.sign(motion.speed_rad_s)
             columns += [torque.scatter_rad_s2 * moved, *(each * moved for each in rubs)]
-            damped += np.array([torque.cos_rad_s2, torque.sin_rad_s2]) @ (more - moved) / RATE
     # What was found of the torques turns the shaft as damped as it is, which is known so well.
+    damped = (found_torques(motion, more_damped_per_s=RATE) - found_torques(motion)) / RATE
     columns.append(found.damping_sd_per_s * damped[None])
     return np.concatenate(columns)
+
+
+@lru_cache(maxsize=8)
+def found_torques(motion: Motion, *, more_damped_per_s: float = 0.0) -> Array:
+    """Angle (n,) [rad] by which the torques that were found turn the shaft, to first order.
+
+    It is part of an estimated motion. What they may be scatters about none, and not about what was found: readings that
+    told it would count twice.
+    """
+    turned = np.zeros(len(motion))
+    for torque in () if motion.estimated is None else motion.estimated.torques:
+        if torque.scatter_rad_s2:
+            moved = _moved(motion, torque.order, more_damped_per_s=more_damped_per_s)
+            turned += np.array([torque.cos_rad_s2, torque.sin_rad_s2]) @ moved
+    return turned
+
+
+def _moved(motion: Motion, order: int, *, more_damped_per_s: float = 0.0) -> Array:
+    """What torques of an order that give 1 rad/s^2, with its cosine and its sine, turn the shaft by (2, n) [rad]."""
+    found = motion.estimated
+    assert found is not None
+    return response(
+        order,
+        shaft_rad=motion.shaft_rad,
+        speed_rad_s=motion.speed_rad_s,
+        acceleration_rad_s2=rate(motion.speed_rad_s, motion.time_s, found.slices),
+        damping_per_s=found.damping_per_s + more_damped_per_s,
+    )
 
 
 def as_large_as_seen(motion: Motion, off_rad: Array, usable: BoolArray) -> Array:
@@ -55,23 +76,13 @@ def as_large_as_seen(motion: Motion, off_rad: Array, usable: BoolArray) -> Array
     orders = [] if found is None else [one.order for one in found.torques if not (one.separable or one.scatter_rad_s2)]
     if found is None or not orders:
         return np.zeros((0, len(motion)))
-    angle, speed = motion.shaft_rad, motion.speed_rad_s
+    angle = motion.shaft_rad
     waves = [np.ones_like(angle), *(wave(order * angle) for order in orders for wave in (np.cos, np.sin))]
     seen = np.linalg.lstsq(np.stack(waves).T[usable], off_rad[usable], rcond=None)[0][1:].reshape(-1, 2)
-    usual, acceleration = float(np.median(np.abs(speed))), rate(speed, motion.time_s, found.slices)
-    moved = [
-        size
-        * (order * usual) ** 2
-        * response(
-            order,
-            shaft_rad=angle,
-            speed_rad_s=speed,
-            acceleration_rad_s2=acceleration,
-            damping_per_s=found.damping_per_s,
-        )
-        for order, size in zip(orders, np.linalg.norm(seen, axis=1), strict=True)
-    ]
-    return np.concatenate(moved)
+    usual, sizes = float(np.median(np.abs(motion.speed_rad_s))), np.linalg.norm(seen, axis=1)
+    return np.concatenate(
+        [size * (order * usual) ** 2 * _moved(motion, order) for order, size in zip(orders, sizes, strict=True)]
+    )
 
 
 _LEAST = 1e-4

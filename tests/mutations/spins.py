@@ -41,8 +41,8 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.a_torque_is_a_late_channel",
             "diagnosis/spin/smoother.py",
-            "        if likelier > SURELY:\n",
-            "        if True:\n",
+            "    if third_speed and _late_channel_told(reduced, variance, usual_rad_s):\n",
+            "    if True:\n",
             f"{_SMOOTHER}::test_a_torque_at_two_speeds_is_no_channel_read_late",
         ),
         (

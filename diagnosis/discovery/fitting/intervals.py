@@ -79,10 +79,11 @@ def intervals_95(fit: Fit) -> Mapping[tuple[str, str], tuple[float, float]]:
     """95 % interval of every free scalar parameter of a fit, in its own unit; infinite where nothing is known of it.
 
     By the profile likelihood, which within an interval is mostly a parabola. Of stairs in the channels it is none at
-    all: what scatters at their edges is in the standard deviation alone.
+    all: what scatters at their edges is in the standard deviation alone. So it is of stairs behind an estimated motion,
+    whose edges tell of the shaft as well.
     """
     found = parabola_95(fit)
-    if fit.free and not fit.weighting.slopes:
+    if fit.free and not (fit.weighting.slopes or fit.by_average):
         # What a prior holds is as uncertain as that says, by whichever likelihood.
         deviation = standard_deviations(fit)
         known = [

@@ -105,6 +105,11 @@ class Fit:
         return cost_of(self) / self.freedom
 
     @property
+    def by_average(self) -> bool:
+        """Whether stairs lie between the readings and a motion that is estimated from these: they tell on average."""
+        return self.weighting.blur > 0.0 and self.observations.motion.estimated is not None
+
+    @property
     def squares_to_first_order(self) -> float:
         """Sum of the whitened squares that would be left were the chain linear in the free parameters."""
         left = projected(*self.whitened())
@@ -199,7 +204,7 @@ def evaluate(
     seen = observations.observables
     linear = Linear(chain, observations.motion, blur=weighting.blur, observables=seen, slopes=weighting.slopes)
     residual = np.empty((seen, len(observations)))
-    residual[0] = wrap(observations.measured - linear.angle)
+    residual[0] = wrap(observations.measured - linear.angle) + observations.torques
     if observations.log_radius is not None:
         residual[1] = observations.log_radius - linear.log_radius
     residual = without_nuisance(observations, residual)

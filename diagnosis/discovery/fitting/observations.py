@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from diagnosis.discovery.fitting.repeats import Repeats
-from diagnosis.spin.torques import Loose, torque_columns
+from diagnosis.spin.torques import Loose, found_torques, torque_columns
 from twin.angles import Array, IntArray, wrap
 from twin.effect import BoolArray
 from twin.motion import Motion
@@ -89,6 +89,11 @@ class Observations:
         found = self.motion.estimated
         assert found is not None
         return Loose(columns, self.usable, found.noise_rad, found.spectrum, found.lengths)
+
+    @cached_property
+    def torques(self) -> Array | float:
+        """Angle (n,) [rad] by which torques locked to the angle turn an estimated motion; 0 where none are loose."""
+        return 0.0 if self.loose is None else found_torques(self.motion)
 
     def masked(self, usable: BoolArray) -> Observations:
         """The same rows with another mask."""

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, moved_by, solve
 from diagnosis.discovery.fitting.linearised_chain import Linear, is_staircase
 from diagnosis.discovery.fitting.noise.rounding import blur_behind, coarsest_stair
 from twin.angles import Array, wrap
@@ -55,6 +55,25 @@ def with_slopes(fit: Fit) -> Fit:
             found = min(100.0 * _noise_ahead(fit, effect), effect.params[BLUR].upper)
             chain = chain.with_effect(effect.name, **{BLUR: found})
         fit = solve(evaluate(chain, free, fit.observations, fit.weighting), iterations=30)
+    return fit
+
+
+def on_average(fit: Fit) -> Fit:
+    """The fit beside a motion that no reference recorded, by what readings behind stairs say on average; else as it is.
+
+    How far the shaft was elsewhere than it is taken to be shows at each edge of a stair, and nothing but a parameter
+    can move the edges of the model: least squares would make the parameters hold the shaft's place. On average over
+    edges and treads a reading follows the shaft and the parameters alike, and those are where the average, free of
+    what the shaft may have done, is at its zero.
+    """
+    if not fit.by_average:
+        return fit
+    for _ in range(_ROUNDS):
+        residual, columns = fit.whitened()
+        scale = np.maximum(np.linalg.norm(columns, axis=1), 1e-300)
+        unit = columns / scale[:, None]
+        step = np.linalg.pinv(unit @ unit.T, rcond=1e-12, hermitian=True) @ (unit @ residual) / scale
+        fit = evaluate(moved_by(fit, step), fit.free, fit.observations, fit.weighting)
     return fit
 
 

@@ -29,7 +29,7 @@ from diagnosis.report.facts import facts, recorded_columns
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
 from diagnosis.report.how_read import how_read
 from diagnosis.report.motion import TORQUE, motion_answer
-from diagnosis.report.over_class import moved, over_class
+from diagnosis.report.over_class import known_beside, moved, over_class
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.recordings import in_recordings, recordings_answer
 from diagnosis.report.rounded import rounded
@@ -199,7 +199,8 @@ def _factors(fit: Fit, known: Mapping[tuple[str, str], tuple[float, float]]) -> 
 def _extended_parameters(found: Discovery) -> dict[str, dict[str, Any]]:
     """The factors with the causes, as well known as all that explains the sweep as well leaves them."""
     # Where another explanation leaves a factor is what matters there; to follow each along its likelihood takes long.
-    others = [(everywhere(name), _factors(fit, parabola_95(fit))) for name, fit in found.rival_fits]
+    fits = (*found.rival_fits, *found.fits_beside)
+    others = [(everywhere(name), _factors(fit, parabola_95(fit))) for name, fit in fits]
     return over_class(baseline_parameters(found.fit), [*others, _by_torques(found.fit)])
 
 
@@ -273,7 +274,7 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
     fit = found.fit
     effect = find(key, fit.chain.effects)
     values = {**effect.null(), **fit.chain.values.get(key, {}), **found.words.get(key, {})}
-    derived, known = effect.derived(values), with_open_torques(fit, intervals_95(fit))
+    derived, known = effect.derived(values), known_beside(with_open_torques(fit, intervals_95(fit)), found)
     figures: dict[str, dict[str, Any]] = {}
     for name, param in effect.params.items():
         if param.role == "per turn" or name not in values or np.ndim(values[name]):
@@ -288,7 +289,7 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
             # Of a phase no less can be known than nothing.
             low, high = max(low, value - 180.0), min(high, value + 180.0)
         figures[name] = _figure(value, low, high, param.unit)
-        figures[name] |= _if_no_torque(fit, key, name, (low, high))
+        figures[name] |= _as_named(fit, key, name, (low, high))
         figures[name] |= _marks(param, value, deviation.get((key, name), 0.0))
         if param.unit == "s" and name in effect.zoomed and (key, name) not in deviation:
             figures[name] |= _between_readings(fit, value)
@@ -308,8 +309,8 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
     return figures
 
 
-def _if_no_torque(fit: Fit, key: str, name: str, ends: tuple[float, float]) -> dict[str, Any]:
-    """The interval of a parameter if nothing of it is a torque's, where that may be and widens its ends."""
+def _as_named(fit: Fit, key: str, name: str, ends: tuple[float, float]) -> dict[str, Any]:
+    """The interval of a parameter if nothing of it is a torque's or of an effect beside, where that widens its ends."""
     own = intervals_95(fit).get((key, name), ends)
     return {"as_named": list(own)} if own[1] - own[0] < ends[1] - ends[0] else {}
 

@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from diagnosis.discovery.fitting.intervals import parabola_95
+from diagnosis.discovery.result import Discovery
 from diagnosis.report.factor_names import LABELS
 from diagnosis.report.wording import listed
+from twin.catalogue import find
 
 Interval = tuple[float, float]
+Key = tuple[str, str]
 _MUCH = 2.0
 """An interval that is so many times wider over the class is told as a range, with what widens it."""
 
@@ -40,6 +44,22 @@ def over_class(named: Mapping[str, Any], others: Sequence[tuple[str, Mapping[str
     return found
 
 
+def known_beside(known: Mapping[Key, Interval], found: Discovery) -> dict[Key, Interval]:
+    """These 95 % intervals of the fit's parameters, wide enough for each fit with an effect that a cause hides."""
+    wider = dict(known)
+    for _, fit in found.fits_beside:
+        for (key, name), ends in parabola_95(fit).items():
+            if (key, name) not in wider:
+                continue
+            turns = 0.0
+            if find(key, fit.chain.effects).params[name].role == "phase":
+                away = float(found.fit.chain.values[key][name]) - float(fit.chain.values[key][name])
+                turns = 360.0 * round(away / 360.0)
+            low, high = wider[key, name]
+            wider[key, name] = min(low, ends[0] + turns), max(high, ends[1] + turns)
+    return wider
+
+
 def _much(own: Interval, ends: Interval) -> bool:
     """Whether an interval that spans both is much wider than one's own."""
     return max(own[1], ends[1]) - min(own[0], ends[0]) > _MUCH * (own[1] - own[0])
@@ -67,13 +87,16 @@ def _holds(wide: Mapping[str, Any], known: Mapping[str, Any]) -> bool:
 
 def open_words(answer: Mapping[str, Any]) -> str:
     """Which factors are told as ranges, and what would put them elsewhere there; empty where none are."""
+    rivals = {name for cause in answer["causes"] for name in cause.get("indistinguishable_from", ())}
     groups: dict[str, list[str]] = {}
     for key, factor in answer["extended"]["parameters"].items():
-        if factor.get("open_by"):
-            groups.setdefault(listed(factor["open_by"], "or"), []).append(LABELS[key])
-    said = [
-        f"{names} in its cause's place may put {listed(factors)} anywhere there" for names, factors in groups.items()
-    ]
+        names = factor.get("open_by", ())
+        in_place, beside = [name for name in names if name in rivals], [name for name in names if name not in rivals]
+        ways = [f"{listed(in_place, 'or')} in its cause's place"] if in_place else []
+        ways += [f"{listed(beside, 'or')} beside"] if beside else []
+        if ways:
+            groups.setdefault(" or ".join(ways), []).append(LABELS[key])
+    said = [f"{ways} may put {listed(factors)} anywhere there" for ways, factors in groups.items()]
     return f"Ranges: {'; '.join(said)}" if said else ""
 
 

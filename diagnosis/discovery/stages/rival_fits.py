@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from diagnosis.discovery.fitting.open_effects import open_beside
 from diagnosis.discovery.search.every_start import from_every_start
+from diagnosis.discovery.search.likelihood_ratio import TO_THE_END, solve_tidy
 from diagnosis.discovery.state import State
 
 
 def rival_fits(state: State) -> State:
-    """Fit each rival in its cause's place from wherever the sweep leaves its shape open."""
+    """Fit each rival in its cause's place from wherever the sweep leaves its shape open, and what a cause hides."""
     found = [
         (name, fit)
         for cause in state.causes
         for name, rival in cause.rivals.items()
         for fit in from_every_start(rival, name)
     ]
-    return state.with_(rival_fits=tuple(found)) if found else state
+    beside = [(name, solve_tidy(fit, iterations=TO_THE_END)) for name, fit in open_beside(state.fit).items()]
+    return state.with_(rival_fits=tuple(found), fits_beside=tuple(beside)) if found or beside else state

@@ -31,11 +31,13 @@ def test_an_interval_holds_those_of_all_that_explains_the_sweep_as_well() -> Non
 def test_what_is_open_is_told_as_a_range_with_what_opens_it() -> None:
     found = over_class({"beta_deg": factor(1.0, 0.1)}, [("first", {"beta_deg": factor(3.0, 0.5)})])
     assert with_unit(found["beta_deg"]) == "0.9 to 3.5 deg"
-    words = open_words({"extended": {"parameters": found}})
+    told = {"extended": {"parameters": found}}
+    words = open_words({**told, "causes": [{"indistinguishable_from": ["first"]}]})
     assert words == "Ranges: first in its cause's place may put phase anywhere there"
+    assert open_words({**told, "causes": []}) == "Ranges: first beside may put phase anywhere there"
     near = over_class({"beta_deg": factor(1.0, 0.1)}, [("first", {"beta_deg": factor(1.02, 0.1)})])
     assert with_unit(near["beta_deg"]) == "1.00 ±0.11 deg"
-    assert open_words({"extended": {"parameters": near}}) == ""
+    assert open_words({"extended": {"parameters": near}, "causes": []}) == ""
 
 
 def test_what_the_factors_hold_is_said() -> None:

@@ -1,0 +1,44 @@
+"""Effects that may stand beside the causes unseen: what a cause that is there does most of."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnosis import explain
+from twin.chain import Chain
+from twin.motion import Motion
+
+AMPLITUDE, PHASE = 0.3, 40.0
+
+
+@functools.cache
+def told(order: int) -> dict[str, Any]:
+    """The answer to a harmonic of this order beside a saturation of 1 %."""
+    sensor = Chain().with_effect("offset", x_percent=2.0, y_percent=1.0).with_effect("phase", beta_deg=0.8)
+    sensor = sensor.with_effect("magnet_harmonic", order=order, amplitude_deg=AMPLITUDE, phase_deg=PHASE)
+    sensor = sensor.with_effect("saturation", k_percent=1.0).with_effect("noise", rms_deg=0.02)
+    return explain(sensor.simulate(Motion.from_angle(np.radians(np.arange(0.0, 1440.0, 2.0))), seed=1)).to_dict()
+
+
+def test_a_harmonic_of_order_4_hides_a_saturation_and_its_figures_hold_both() -> None:
+    """Alone it takes the saturation's order 4 with its own, which is a third larger then."""
+    answer = told(4)
+    assert [cause["name"] for cause in answer["causes"]] == ["magnet_harmonic"]
+    amplitude = answer["causes"][0]["parameters"]["amplitude_deg"]
+    assert amplitude["as_named"][0] > 0.4 > amplitude["low"]
+    assert amplitude["low"] < AMPLITUDE < amplitude["high"]
+    for name, true in {"Vx_over_Ax": 0.02, "Vy_over_Ay": 0.01, "beta_deg": 0.8}.items():
+        factor = answer["extended"]["parameters"][name]
+        assert factor["low"] < true < factor["high"], name
+    assert answer["extended"]["parameters"]["Vx_over_Ax"]["open_by"] == ["saturation"]
+
+
+@pytest.mark.parametrize("order", [5, 6])
+def test_a_harmonic_of_another_order_hides_none(order: int) -> None:
+    answer = told(order)
+    assert {cause["name"] for cause in answer["causes"]} == {"magnet_harmonic", "saturation"}
+    assert "as_named" not in answer["causes"][0]["parameters"]["amplitude_deg"]

@@ -17,6 +17,7 @@ from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.spin.of_log import sweeps_of
 from diagnosis.spin.torques import torque_columns
 from tests.diagnosis.spin.test_smoother import TIME, coasting, read
+from twin.angles import wrap
 from twin.catalogue import CATALOGUE, find
 from twin.chain import Chain
 from twin.spin import Spin
@@ -41,6 +42,24 @@ def test_a_candidate_gains_to_first_order_what_it_gains_in_the_fit() -> None:
     assert np.radians(trial.chain.values[key]["amplitude_deg"]) == pytest.approx(0.004, rel=0.2)
     # The quadratic term, which makes an order 3 as well, is held by the noise, which is known better with the harmonic.
     assert candidate.values["amplitude_deg"] == pytest.approx(trial.chain.values[key]["amplitude_deg"], rel=0.15)
+
+
+def test_what_a_torque_may_be_scatters_about_none_and_not_about_what_was_found() -> None:
+    """Along a torque a residual is what was found of it, counted by how much torques scatter: readings count once."""
+    fit = fit_of_a_coast()
+    observations, estimated = fit.observations, fit.observations.motion.estimated
+    assert observations.loose is not None
+    assert estimated is not None
+    off = wrap(observations.measured - fit.linear.angle)
+    assert fit.residual[0] == pytest.approx(observations.loose.whitened(off + observations.torques), abs=1e-12)
+    found = without_motion(observations, np.asarray(observations.torques)) / estimated.noise_rad
+    scatter = [
+        (torque.cos_rad_s2**2 + torque.sin_rad_s2**2) / torque.scatter_rad_s2**2
+        for torque in estimated.torques
+        if torque.scatter_rad_s2
+    ]
+    # Of a torque that may grow with the speed as well, less is needed of each.
+    assert 0.5 * sum(scatter) < found @ found < sum(scatter)
 
 
 def test_lines_are_matched_to_what_torques_do_not_make() -> None:

@@ -43,7 +43,7 @@ class Discovery:
     ``fitted_anew`` whether the others were not held at the twin's values. ``in_factors`` are effects that an angle
     alone never tells from the error model's factors, which hold what they do. ``rival_fits`` are the fits with
     another effect, whose name stands beside, in the place of a cause, ``fits_beside`` those with one that a cause
-    hides. ``alone`` is each of several recordings
+    hides, and how likely that is against none. ``alone`` is each of several recordings
     fitted by itself, and ``whole_recordings`` whether these were held out as a whole. ``words`` are the effects on
     the words as they were sent: ``sweep`` holds the readings without them, ``fit`` is of these, and the device has
     them; ``told_back`` (n,) [rad] is what readings that were told back had been off by, None where none was.
@@ -73,7 +73,7 @@ class Discovery:
     cut_by: EndedBy | None = None
     alone: tuple[Alone, ...] = ()
     rival_fits: tuple[tuple[str, Fit], ...] = ()
-    fits_beside: tuple[tuple[str, Fit], ...] = ()
+    fits_beside: tuple[tuple[str, Fit, float], ...] = ()
     whole_recordings: bool = False
     words: Mapping[str, Parameters] = field(default_factory=dict)
     told_back: Array | None = None

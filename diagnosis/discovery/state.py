@@ -45,7 +45,7 @@ class State:
     ``fold`` (n,), the block in which each row was held out; ``held``, held-out residuals (n,) [rad] of the baseline and
     after each of ``keys``, and once there is an answer after each of ``causes``; ``causes``, the entries of
     the answer; ``rival_fits``, by name the fits with another effect in the place of one of these that are as good;
-    ``fits_beside``, likewise those with an effect beside them that one of them hides;
+    ``fits_beside``, likewise those with an effect beside them that one of them hides, and its odds;
     ``likeness``, the predictive check; ``lack``, what is left against repeated readings. Of a given twin
     also ``own``, its parameters that are asked whether they have moved, ``changed``, those that have,
     ``other_device``, whether so many have that it is another's twin, and ``fitted_anew``, whether the others were not
@@ -74,7 +74,7 @@ class State:
     likeness: PredictiveCheck | None = None
     alone: tuple[Alone, ...] = ()
     rival_fits: tuple[tuple[str, Fit], ...] = ()
-    fits_beside: tuple[tuple[str, Fit], ...] = ()
+    fits_beside: tuple[tuple[str, Fit, float], ...] = ()
     lack: LackOfFit | None = None
     own: tuple[Free, ...] = ()
     changed: tuple[Change, ...] = ()

@@ -25,11 +25,12 @@ from diagnosis.discovery.proof.predictive_check import why_not_checked
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.as_read import as_read, values_as_read
 from diagnosis.report.as_well import as_well
+from diagnosis.report.beside_class import beside_each, over_all_beside
 from diagnosis.report.facts import facts, recorded_columns
 from diagnosis.report.fitted_rows import counts, of_baseline, rms_deg, wild
 from diagnosis.report.how_read import how_read
 from diagnosis.report.motion import TORQUE, motion_answer
-from diagnosis.report.over_class import known_beside, moved, over_class
+from diagnosis.report.over_class import moved, over_class
 from diagnosis.report.provenance import Provenance
 from diagnosis.report.recordings import in_recordings, recordings_answer
 from diagnosis.report.rounded import rounded
@@ -199,8 +200,9 @@ def _factors(fit: Fit, known: Mapping[tuple[str, str], tuple[float, float]]) -> 
 def _extended_parameters(found: Discovery) -> dict[str, dict[str, Any]]:
     """The factors with the causes, as well known as all that explains the sweep as well leaves them."""
     # Where another explanation leaves a factor is what matters there; to follow each along its likelihood takes long.
-    fits = (*found.rival_fits, *found.fits_beside)
-    others = [(everywhere(name), _factors(fit, parabola_95(fit))) for name, fit in fits]
+    others = [(everywhere(name), _factors(fit, parabola_95(fit))) for name, fit in found.rival_fits]
+    beside = beside_each(intervals_95(found.fit), found)
+    others += [(everywhere(name), _factors(found.fit, known)) for name, known in beside.items()]
     return over_class(baseline_parameters(found.fit), [*others, _by_torques(found.fit)])
 
 
@@ -274,7 +276,7 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
     fit = found.fit
     effect = find(key, fit.chain.effects)
     values = {**effect.null(), **fit.chain.values.get(key, {}), **found.words.get(key, {})}
-    derived, known = effect.derived(values), known_beside(with_open_torques(fit, intervals_95(fit)), found)
+    derived, known = effect.derived(values), over_all_beside(with_open_torques(fit, intervals_95(fit)), found)
     figures: dict[str, dict[str, Any]] = {}
     for name, param in effect.params.items():
         if param.role == "per turn" or name not in values or np.ndim(values[name]):

@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from diagnosis.discovery.fitting.intervals import parabola_95
-from diagnosis.discovery.result import Discovery
 from diagnosis.report.factor_names import LABELS
 from diagnosis.report.wording import listed
-from twin.catalogue import find
 
 Interval = tuple[float, float]
-Key = tuple[str, str]
 _MUCH = 2.0
 """An interval that is so many times wider over the class is told as a range, with what widens it."""
 
@@ -42,22 +38,6 @@ def over_class(named: Mapping[str, Any], others: Sequence[tuple[str, Mapping[str
         more = {"as_named": list(own), "open_by": list(names)} if (low, high) != own else {}
         found[key] = {**factor, "low": low, "high": high, **more}
     return found
-
-
-def known_beside(known: Mapping[Key, Interval], found: Discovery) -> dict[Key, Interval]:
-    """These 95 % intervals of the fit's parameters, wide enough for each fit with an effect that a cause hides."""
-    wider = dict(known)
-    for _, fit in found.fits_beside:
-        for (key, name), ends in parabola_95(fit).items():
-            if (key, name) not in wider:
-                continue
-            turns = 0.0
-            if find(key, fit.chain.effects).params[name].role == "phase":
-                away = float(found.fit.chain.values[key][name]) - float(fit.chain.values[key][name])
-                turns = 360.0 * round(away / 360.0)
-            low, high = wider[key, name]
-            wider[key, name] = min(low, ends[0] + turns), max(high, ends[1] + turns)
-    return wider
 
 
 def _much(own: Interval, ends: Interval) -> bool:

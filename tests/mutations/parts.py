@@ -254,32 +254,6 @@ PARTS: tuple[Mutation, ...] = (
         ),
     ),
     *of_one_file(
-        f"{_D}/fitting/open_effects.py",
-        _T,
-        (
-            "open_effects.what_is_told_is_hidden_too",
-            "    if left**2 > (1.0 - _TAKEN) * alone**2 or alone == 0.0:\n",
-            "    if alone == 0.0:\n",
-            "fitting/test_open_effects.py::test_a_harmonic_of_another_order_hides_none",
-        ),
-        (
-            "open_effects.nothing_is_hidden",
-            "        if strongest > 0.0:\n",
-            "        if False:\n",
-            "fitting/test_open_effects.py::test_a_harmonic_of_order_4_hides_a_saturation_and_its_figures_hold_both",
-        ),
-    ),
-    *of_one_file(
-        "diagnosis/report/over_class.py",
-        _T,
-        (
-            "over_class.a_cause_is_as_known_as_named",
-            "    for _, fit in found.fits_beside:\n",
-            "    for _, fit in ():\n",
-            "fitting/test_open_effects.py::test_a_harmonic_of_order_4_hides_a_saturation_and_its_figures_hold_both",
-        ),
-    ),
-    *of_one_file(
         f"{_D}/search/likelihood_ratio.py",
         _T,
         (

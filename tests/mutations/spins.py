@@ -8,7 +8,6 @@ _SMOOTHER = "tests/diagnosis/spin/test_smoother.py"
 _SEARCH = "tests/diagnosis/spin/test_search.py"
 _STRETCHES = "tests/diagnosis/spin/test_stretches.py"
 _MOTION = "tests/twin/test_estimated_motion.py"
-_BESIDE = "tests/diagnosis/spin/test_causes_beside_motion.py"
 _EXPLAIN = "tests/diagnosis/spin/test_explain.py"
 _LEVELS = "tests/diagnosis/discovery/stages/test_recording_levels.py"
 _SIDES = "tests/diagnosis/discovery/search/test_one_sided.py"
@@ -45,42 +44,6 @@ SPINS: tuple[Mutation, ...] = tuple(
             "    if third_speed and _late_channel_told(reduced, variance, usual_rad_s):\n",
             "    if True:\n",
             f"{_SMOOTHER}::test_a_torque_at_two_speeds_is_no_channel_read_late",
-        ),
-        (
-            "spins.torques_scatter_about_what_was_found",
-            "diagnosis/discovery/fitting/joint_fit.py",
-            " + observations.torques\n",
-            "\n",
-            "tests/diagnosis/spin/test_search.py"
-            "::test_what_a_torque_may_be_scatters_about_none_and_not_about_what_was_found",
-        ),
-        (
-            "spins.the_motion_is_as_free_against_any_noise",
-            "diagnosis/discovery/stages/motion_freedom.py",
-            "    if not 0.0 < noise_rad < (1.0 - _CHANGED) * estimated.noise_rad:\n",
-            "    if True:\n",
-            f"{_BESIDE}::test_a_motion_is_as_free_as_before_against_the_noise_that_causes_leave",
-        ),
-        (
-            "spins.a_quieter_motion_is_as_stiff",
-            "twin/estimated_motion.py",
-            "self.knee_rad * (self.noise_rad / noise_rad) ** (2.0 / SPECTRAL_SLOPE)",
-            "self.knee_rad",
-            f"{_BESIDE}::test_a_motion_is_as_free_as_before_against_the_noise_that_causes_leave",
-        ),
-        (
-            "spins.edges_of_stairs_tell_of_no_shaft",
-            "diagnosis/discovery/stages/final_fit.py",
-            "on_average(with_slopes(fit))",
-            "with_slopes(fit)",
-            f"{_BESIDE}::test_stairs_behind_an_estimated_motion_tell_on_average",
-        ),
-        (
-            "spins.intervals_are_those_of_the_edges",
-            "diagnosis/discovery/fitting/intervals.py",
-            "(fit.weighting.slopes or fit.by_average)",
-            "fit.weighting.slopes",
-            f"{_BESIDE}::test_intervals_behind_such_stairs_are_those_of_the_average",
         ),
         (
             "spins.three_speeds_take_the_rotor_for_one_piece",

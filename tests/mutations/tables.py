@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tests.mutations.beside import BESIDE
 from tests.mutations.by_hand import BY_HAND
 from tests.mutations.discovery import DISCOVERY
 from tests.mutations.export import EXPORT
@@ -40,6 +41,7 @@ def mutations() -> tuple[Mutation, ...]:
         *STAGES,
         *PERIODS,
         *PAPER,
+        *BESIDE,
         *PARTS,
         *FORMS,
         *FILES,

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.coefficients import observables_to_cosine
 from diagnosis.discovery.fitting.free_parameters import Free
-from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, root_weights
+from diagnosis.discovery.fitting.joint_fit import Fit, cost_of, evaluate, root_weights
 from diagnosis.discovery.fitting.nuisance import without_nuisance
 from diagnosis.discovery.fitting.projection import projected
 from twin.angles import Array
@@ -17,6 +17,8 @@ from twin.effect import Effect
 
 _TAKEN = 0.5
 """Share of an effect's squares that a cause takes, from which on it hides the effect more than it leaves of it."""
+_SURE = 100.0
+"""Gain in chi-square beyond which nothing becomes surer."""
 
 
 def open_beside(fit: Fit) -> dict[str, Fit]:
@@ -39,6 +41,18 @@ def open_beside(fit: Fit) -> dict[str, Fit]:
         if strongest > 0.0:
             found[effect.name] = _with(fit, effect, strongest)
     return found
+
+
+def odds_of(beside: Fit, fit: Fit, name: str) -> float:
+    """How likely an effect is to stand beside the causes, against none, by what the readings say of both fits.
+
+    Beforehand as likely as not. The readings' share is the ratio of the marginal likelihoods (Laplace): what the fit
+    with the effect gains, and how much of what its strength might have been the readings leave.
+    """
+    (place,) = (place for place, one in enumerate(beside.free) if one.key == name)
+    before = find(name, beside.chain.effects).params[beside.free[place].name].prior_sd
+    gain = (cost_of(fit) - cost_of(beside)) / fit.variance
+    return float(np.sqrt(beside.covariance()[place, place])) / before * float(np.exp(0.5 * min(gain, _SURE)))
 
 
 def _may_be_there(fit: Fit, effect: Effect) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diagnosis.discovery.fitting.open_effects import open_beside
+from diagnosis.discovery.fitting.open_effects import odds_of, open_beside
 from diagnosis.discovery.search.every_start import from_every_start
 from diagnosis.discovery.search.likelihood_ratio import TO_THE_END, solve_tidy
 from diagnosis.discovery.state import State
@@ -16,5 +16,6 @@ def rival_fits(state: State) -> State:
         for name, rival in cause.rivals.items()
         for fit in from_every_start(rival, name)
     ]
-    beside = [(name, solve_tidy(fit, iterations=TO_THE_END)) for name, fit in open_beside(state.fit).items()]
+    solved = {name: solve_tidy(fit, iterations=TO_THE_END) for name, fit in open_beside(state.fit).items()}
+    beside = [(name, fit, odds_of(fit, state.fit, name)) for name, fit in solved.items()]
     return state.with_(rival_fits=tuple(found), fits_beside=tuple(beside)) if found or beside else state

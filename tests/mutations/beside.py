@@ -1,0 +1,88 @@
+"""Mutations of what stands beside the causes, a motion or an effect that they hide, with the test that notices."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation, of_one_file
+
+_D, _T = "diagnosis/discovery", "tests/diagnosis/discovery"
+_BESIDE = "tests/diagnosis/spin/test_causes_beside_motion.py"
+
+BESIDE: tuple[Mutation, ...] = (
+    *of_one_file(
+        f"{_D}/fitting/open_effects.py",
+        _T,
+        (
+            "open_effects.what_is_told_is_hidden_too",
+            "    if left**2 > (1.0 - _TAKEN) * alone**2 or alone == 0.0:\n",
+            "    if alone == 0.0:\n",
+            "fitting/test_open_effects.py::test_a_harmonic_of_another_order_hides_none",
+        ),
+        (
+            "open_effects.nothing_is_hidden",
+            "        if strongest > 0.0:\n",
+            "        if False:\n",
+            "fitting/test_open_effects.py::test_a_harmonic_of_order_4_hides_a_saturation_and_its_figures_hold_both",
+        ),
+    ),
+    *of_one_file(
+        f"{_D}/fitting/open_effects.py",
+        _T,
+        (
+            "open_effects.what_is_improbable_widens_as_much",
+            "    return float(np.sqrt(beside.covariance()[place, place])) / before * float(np.exp(0.5 * min(gain, _SURE)))\n",
+            "    return 1.0\n",
+            "fitting/test_open_effects.py::test_what_is_improbable_beside_a_cause_widens_its_interval_by_little",
+        ),
+    ),
+    *of_one_file(
+        "diagnosis/report/beside_class.py",
+        _T,
+        (
+            "beside_class.a_cause_is_as_known_as_named",
+            "    for each in beside_each(known, found).values():\n",
+            "    for each in ():\n",
+            "fitting/test_open_effects.py::test_a_harmonic_of_order_4_hides_a_saturation_and_its_figures_hold_both",
+        ),
+    ),
+    *(
+        Mutation(name, file, old, new, (test,))
+        for name, file, old, new, test in (
+            (
+                "spins.torques_scatter_about_what_was_found",
+                "diagnosis/discovery/fitting/joint_fit.py",
+                " + observations.torques\n",
+                "\n",
+                "tests/diagnosis/spin/test_search.py"
+                "::test_what_a_torque_may_be_scatters_about_none_and_not_about_what_was_found",
+            ),
+            (
+                "spins.the_motion_is_as_free_against_any_noise",
+                "diagnosis/discovery/stages/motion_freedom.py",
+                "    if not 0.0 < noise_rad < (1.0 - _CHANGED) * estimated.noise_rad:\n",
+                "    if True:\n",
+                f"{_BESIDE}::test_a_motion_is_as_free_as_before_against_the_noise_that_causes_leave",
+            ),
+            (
+                "spins.a_quieter_motion_is_as_stiff",
+                "twin/estimated_motion.py",
+                "self.knee_rad * (self.noise_rad / noise_rad) ** (2.0 / SPECTRAL_SLOPE)",
+                "self.knee_rad",
+                f"{_BESIDE}::test_a_motion_is_as_free_as_before_against_the_noise_that_causes_leave",
+            ),
+            (
+                "spins.edges_of_stairs_tell_of_no_shaft",
+                "diagnosis/discovery/stages/final_fit.py",
+                "on_average(with_slopes(fit))",
+                "with_slopes(fit)",
+                f"{_BESIDE}::test_stairs_behind_an_estimated_motion_tell_on_average",
+            ),
+            (
+                "spins.intervals_are_those_of_the_edges",
+                "diagnosis/discovery/fitting/intervals.py",
+                "(fit.weighting.slopes or fit.by_average)",
+                "fit.weighting.slopes",
+                f"{_BESIDE}::test_intervals_behind_such_stairs_are_those_of_the_average",
+            ),
+        )
+    ),
+)

@@ -29,7 +29,7 @@ BESIDE: tuple[Mutation, ...] = (
         _T,
         (
             "open_effects.what_is_improbable_widens_as_much",
-            "    return float(np.sqrt(beside.covariance()[place, place])) / before * float(np.exp(0.5 * min(gain, _SURE)))\n",
+            "    return after / before * float(np.exp(0.5 * min(gain, _SURE)))\n",
             "    return 1.0\n",
             "fitting/test_open_effects.py::test_what_is_improbable_beside_a_cause_widens_its_interval_by_little",
         ),

@@ -52,7 +52,8 @@ def odds_of(beside: Fit, fit: Fit, name: str) -> float:
     (place,) = (place for place, one in enumerate(beside.free) if one.key == name)
     before = find(name, beside.chain.effects).params[beside.free[place].name].prior_sd
     gain = (cost_of(fit) - cost_of(beside)) / fit.variance
-    return float(np.sqrt(beside.covariance()[place, place])) / before * float(np.exp(0.5 * min(gain, _SURE)))
+    after = float(np.sqrt(beside.covariance()[place, place]))
+    return after / before * float(np.exp(0.5 * min(gain, _SURE)))
 
 
 def _may_be_there(fit: Fit, effect: Effect) -> bool:

@@ -66,9 +66,8 @@ def _may_be_there(fit: Fit, effect: Effect) -> bool:
 
 
 def _column(fit: Fit, effect: Effect, size: int) -> Array:
-    """What an effect of strength one does to the whitened residual (N,), which ends with what priors hold."""
-    shape = {name: effect.params[name].null for name in effect.roles("shape")}
-    columns = without_nuisance(fit.observations, fit.linear.columns(effect, [shape])[0])
+    """What an effect of strength one does to the whitened residual (N,), at the end of which is what priors hold."""
+    columns = without_nuisance(fit.observations, fit.linear.columns(effect, [{}])[0])
     root = root_weights(fit.weighting, fit.observations.observables)
     column = (observables_to_cosine(fit.observations, columns)[0] * root).ravel()
     return np.concatenate([column, np.zeros(size - column.size)])

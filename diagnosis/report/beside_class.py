@@ -37,9 +37,12 @@ def _mixed(known: Intervals, fit: Fit, beside: Fit, odds: float) -> Intervals:
         if (key, name) not in known:
             continue
         own, other = (value_of(one.chain, Free(key, name)) for one in (fit, beside))
-        # A phase may have gone round on the way from one fit to the other.
-        is_phase = find(key, fit.chain.effects).params[name].role == "phase"
-        turned = 360.0 * round((own - other) / 360.0) if is_phase else 0.0
-        with_it = (odds, other + turned, ends[0] + turned, ends[1] + turned)
-        mixed[key, name] = mixed_95([(1.0, own, *known[key, name]), with_it])
+        param = find(key, fit.chain.effects).params[name]
+        if param.role == "phase":
+            # It may have gone round on the way from one fit to the other.
+            turned = 360.0 * round((own - other) / 360.0)
+            other, low, high = other + turned, ends[0] + turned, ends[1] + turned
+        else:
+            low, high = max(ends[0], param.lower), min(ends[1], param.upper)
+        mixed[key, name] = mixed_95([(1.0, own, *known[key, name]), (odds, other, low, high)])
     return mixed

@@ -218,7 +218,7 @@ PARTS: tuple[Mutation, ...] = (
         _T,
         (
             "rivals.not_held_against_the_cause",
-            "return trial if rival_gain > gain - _same(fit, trial) else None",
+            "return trial if gained(trial) > gain - _same(fit, trial) else None",
             "return trial",
             "search/test_rivals.py::test_as_good_is_within_three_sigma_and_beside_coarse_stairs_within_six",
         ),

@@ -24,6 +24,7 @@ from tests.mutations.scripts import SCRIPTS
 from tests.mutations.settings import settings
 from tests.mutations.setups import SETUPS
 from tests.mutations.signs import signs
+from tests.mutations.spared import SPARED
 from tests.mutations.spins import SPINS
 from tests.mutations.stages import STAGES
 from tests.mutations.studies import STUDIES
@@ -57,6 +58,7 @@ def mutations() -> tuple[Mutation, ...]:
         *WORDS,
         *SETUPS,
         *PACE,
+        *SPARED,
         *SPINS,
         *settings(),
         *signs(),

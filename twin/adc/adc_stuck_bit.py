@@ -35,23 +35,41 @@ def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Ge
     # Counted from the level at which it is held: a bit held at one does to -c what one held at zero does to c.
     side = 1.0 - 2.0 * np.asarray(values.get("level", 0.0))
     blur = 0.01 * np.asarray(values.get("blur_percent", 0.0)) / safe
-    made_up = np.asarray(values.get("in_approximation", 0.0))
-    value, exact = side * signal / safe, rng is not None or bool(np.all(blur == 0.0))
-    moved = np.where(made_up == 1.0, 0.0, _missed(value) if exact else _expected(_missed_ends, _MISSED, value, blur))
-    if np.any(made_up == 1.0):
-        cut_off = _made_up(value) if exact else _expected(_made_up_ends, _MADE_UP, value, blur)
-        moved = np.where(made_up == 1.0, cut_off, moved)
+    if rng is not None or bool(np.all(blur == 0.0)):
+        blur = np.zeros(())
+    value, cut_off = side * signal / safe, np.asarray(values.get("in_approximation", 0.0)) == 1.0
+    if np.all(cut_off) or not np.any(cut_off):
+        moved = _moved(value, blur, made_up=bool(np.any(cut_off)))
+    else:
+        # In a batch each entry has its own form.
+        moved = np.empty(np.broadcast_shapes(value.shape, blur.shape, cut_off.shape))
+        each = np.broadcast_to(cut_off, (*moved.shape[:-2], 1, 1))[..., 0, 0]
+        value, blur = np.broadcast_to(value, moved.shape), np.broadcast_to(blur, (*moved.shape[:-2], 1, 1))
+        for form in (False, True):
+            moved[each == form] = _moved(value[each == form], blur[each == form], made_up=form)
     return signal + np.where(step > 0.0, step * side * moved, 0.0)
+
+
+def _moved(value: Array, blur: Array, *, made_up: bool) -> Array:
+    """What the bit does to values, in its steps: exactly without a blur, else what is expected."""
+    if not np.any(blur):
+        return _made_up(value) if made_up else _missed(value)
+    return _expected(_made_up_ends, _MADE_UP, value, blur) if made_up else _expected(_missed_ends, _MISSED, value, blur)
+
+
+def _within_two(value: Array) -> Array:
+    """The remainder of a division by two: in a tenth of the time that the operator takes, and as exact."""
+    return np.asarray(value - 2.0 * np.floor(0.5 * value))
 
 
 def _missed(value: Array) -> Array:
     """What a bit held at zero leaves of a value, both in its steps, less its mean: half a step more, or less."""
-    return np.asarray(0.5 - np.floor(value + 0.5) % 2.0)
+    return np.asarray(0.5 - _within_two(np.floor(value + 0.5)))
 
 
 def _made_up(value: Array) -> Array:
     """The same where the lower bits fill up in its place: what is beyond them is cut off."""
-    return np.asarray(0.25 - np.maximum((value + 0.25) % 2.0 - 1.0, 0.0))
+    return np.asarray(0.25 - np.maximum(_within_two(value + 0.25) - 1.0, 0.0))
 
 
 def _expected(ends: Callable[[Array, Array], Array], waves: NDArray[np.complex128], value: Array, blur: Array) -> Array:
@@ -80,7 +98,7 @@ def _missed_ends(value: Array, blur: Array) -> Array:
     from scipy.special import ndtr
 
     # It is even about the middle of a range.
-    off = np.abs((value + 1.0) % 2.0 - 1.0)
+    off = np.abs(_within_two(value + 1.0) - 1.0)
     return np.asarray(0.5 - ndtr((off - 0.5) / blur) - ndtr((off + 0.5) / -blur) + ndtr((off - 1.5) / blur))
 
 
@@ -88,7 +106,7 @@ def _made_up_ends(value: Array, blur: Array) -> Array:
     """Where lower bits make up for it, each range begins with a slope that its end takes back by a step."""
     from scipy.special import ndtr
 
-    place = (value + 0.75) % 2.0 - 0.5
+    place = _within_two(value + 0.75) - 0.5
     out = np.full(np.broadcast_shapes(value.shape, np.shape(blur)), 0.25)
     for end, slope, step in ((-1.0, -1.0, 0.0), (0.0, 1.0, 1.0), (1.0, -1.0, 0.0), (2.0, 1.0, 1.0)):
         ahead = (place - end) / blur

@@ -21,17 +21,18 @@ RAYLEIGH = 2.0
 
 def lag(motion: Motion, lag_rad: Array, memory_rad: Array) -> Array:
     """Lag angle (..., n) [rad]: dL/d|theta| = (-d h - L)/memory, steady at the first row."""
-    out = np.empty(np.broadcast_shapes(np.shape(lag_rad), np.shape(memory_rad), (len(motion),)))
-    state = None
-    for first, last, way in motion.segments:
-        target = -way * lag_rad
-        if state is None:
-            out[..., first:last] = target
-        else:
-            path = motion.travel_rad[first:last] - motion.travel_rad[first - 1]
-            out[..., first:last] = target + (state - target) * np.exp(-path / memory_rad)
-        state = out[..., last - 1 : last]
-    return out
+    first, last = (np.array([rows[end] for rows in motion.segments], dtype=np.int64) for end in (0, 1))
+    way = np.array([way for _, _, way in motion.segments])
+    segment = np.repeat(np.arange(first.size), last - first)
+    # Ahead of the first row it has gone on for ever.
+    path = motion.travel_rad - np.where(segment > 0, motion.travel_rad[first - 1][segment], -np.inf)
+    left = np.exp(-path / memory_rad)
+    target = -way * lag_rad
+    begun = np.broadcast_to(target, np.broadcast_shapes(target.shape, np.shape(memory_rad))).copy()
+    for number, end in enumerate(last[:-1], start=1):
+        before = target[..., number - 1]
+        begun[..., number] = before + (begun[..., number - 1] - before) * left[..., end - 1]
+    return np.asarray(target[..., segment] + (begun - target)[..., segment] * left)
 
 
 def forward(signal: Array, motion: Motion, values: Parameters, rng: np.random.Generator | None) -> Array:

@@ -133,19 +133,27 @@ class UnevenField:
         """Bx + i By in the sensor's axes at the field angles whose unit vectors are ``turn``, over B on the axis."""
         if pose.centred:
             return np.asarray(turn)
+        turn = np.asarray(turn)
+        cosine, sine = np.array(turn.real), np.array(turn.imag)
+        # Real parts throughout: complex products and quotients of whole records take twice as long.
+        x, y = -np.real(pose.magnet) / self.radius_mm, -np.imag(pose.magnet) / self.radius_mm
         # A sensor on the axis sees the magnet turn rigidly: one point for the whole turn.
-        around = np.conj(turn) if np.any(pose.sensor) else 0.0
-        away = np.asarray(pose.sensor * around - pose.magnet) / self.radius_mm
-        inside = _back((away.real, away.imag, self.height), pose.magnet_tilt)
+        if np.any(pose.sensor):
+            along, across = np.real(pose.sensor) / self.radius_mm, np.imag(pose.sensor) / self.radius_mm
+            x, y = along * cosine + across * sine + x, across * cosine - along * sine + y
+        inside = _back((x, y, self.height), pose.magnet_tilt)
         x, y, z = _tilted(self._field(inside), pose.magnet_tilt)
-        plane = turn * (x + 1j * y)
+        x, y = cosine * x - sine * y, sine * x + cosine * y
         if np.any(pose.lean):
-            towards = np.exp(1j * np.angle(pose.lean))
-            along = plane * np.conj(towards)
-            x, y, z = _back((along.real, along.imag, z), (0.0, np.abs(pose.lean)))
-            plane = (x + 1j * y) * towards
-        x, y, _ = _back((plane.real, plane.imag, z), pose.sensor_tilt)
-        return np.asarray(x + 1j * y)
+            lean = np.abs(pose.lean)
+            towards = np.where(lean > 0.0, pose.lean, 1.0) / np.where(lean > 0.0, lean, 1.0)
+            along, across = towards.real, towards.imag
+            x, y, z = _back((along * x + across * y, along * y - across * x, z), (0.0, lean))
+            x, y = along * x - across * y, along * y + across * x
+        x, y, _ = _back((x, y, z), pose.sensor_tilt)
+        found: Any = np.empty(np.broadcast(x, y).shape, dtype=np.complex128)
+        found.real, found.imag = x, y
+        return np.asarray(found)
 
     def _field(self, point: Vector) -> Vector:
         """In the magnet's frame over that on the axis, at a point in radii: of a round magnet the gradient of x S."""

@@ -134,7 +134,7 @@ class Fit:
     def whitened_columns(self, places: Sequence[int], member: int | None = None) -> Array:
         """The rows (len(places), N) of the whitened Jacobian that belong to the free parameters at these places."""
         root = root_weights(self.weighting, self.observations.observables, member)
-        j = (self.cosine_jacobian[places] * root).reshape(len(places), root.size)
+        j = (self.columns.cosine_at(places) * root).reshape(len(places), root.size)
         return np.concatenate([j, self.prior_jacobian[places]], axis=1)
 
     def whitened_residual(self, member: int | None = None) -> Array:
@@ -256,17 +256,18 @@ def _scatter(fit: Fit, turns: Sequence[int], unit: float) -> float:
     zeros = from_centre(fit.chain, fit.free)[turns]
     spread = max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
     root = root_weights(fit.weighting, fit.observations.observables)
-    weight = np.sum((fit.cosine_jacobian[turns] * root) ** 2, axis=(1, 2))
+    weight = np.sum((fit.columns.cosine_at(turns) * root) ** 2, axis=(1, 2))
     held = np.where(fit.strengths[turns] > 0.0, fit.strengths[turns], unit / spread)
     share = float(np.mean(weight / (weight + held**2)))
     # Zeros that no reading tells stay as they are.
     return spread / float(np.sqrt(share)) if share > 1e-9 else spread
 
 
-def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
+def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4, least_gain: float = SMALL_GAIN) -> Fit:
     """Levenberg-Marquardt from the fit's chain: the same free parameters at their optimum.
 
-    Ends when no parameter moves by more than ``tolerance`` of its standard deviation.
+    Ends when no parameter moves by more than ``tolerance`` of its standard deviation, or a step gains less than
+    ``least_gain`` in chi-square.
     """
     if not fit.free:
         return fit
@@ -290,19 +291,22 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4) -> Fit:
             # What priors hold follows from the residual: a trial is compared by those of the fit that it starts from.
             trial = evaluate(moved_by(fit, step / unit), fit.free, fit.observations, fit.weighting, fit.strengths)
             new_cost = cost_of(trial)
+            promised = float(step @ (2.0 * gradient - normal @ step))
             if new_cost <= cost * (1.0 + 1e-12):
                 improved = True
+                break
+            if promised < least_gain * sigma**2:
+                # Not even what it promised would have counted, and a shorter step promises less.
                 break
             damping, growth = (growth * damping if damping else 1e-3), 2.0 * growth
         if not improved:
             break
         moved = float(np.max(np.abs(step)))
         gained = cost - new_cost
-        share = gained / max(float(step @ (2.0 * gradient - normal @ step)), 1e-300)
-        damping *= eased(share)
+        damping *= eased(gained / max(promised, 1e-300))
         fit = replace(trial, strengths=_prior_strengths(trial))
         cost = cost_of(fit)
-        if moved < tolerance * sigma or gained < SMALL_GAIN * sigma**2:
+        if moved < tolerance * sigma or gained < least_gain * sigma**2:
             break
     return fit
 

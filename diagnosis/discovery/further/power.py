@@ -33,6 +33,8 @@ _DEFAULTS = DiscoverySettings()
 _ITERATIONS, _MOST_SOLVED, _STILL = 4, 8, 0.95
 """A rival is solved for in so many iterations at a time, until what it misses falls by less than a twentieth of it: the
 noise that counts it is known no better from some hundred readings."""
+_LEAST_SHARE = 0.01
+"""A step that takes off less than this share of the squares ends them: four such ones are less than that twentieth."""
 _LEAST_NOISE_RAD = 1e-12
 _BASELINE_KEYS = {free.key for free in BASELINE}
 
@@ -136,7 +138,7 @@ def separation_sigma(fit: Fit, rival: Fit, motion: Motion) -> float:
     # What the rival cannot do to first order it may do exactly, and the other way round.
     missed = np.inf
     for _ in range(_MOST_SOLVED):
-        before, other = missed, solve(other, iterations=_ITERATIONS)
+        before, other = missed, solve(other, iterations=_ITERATIONS, least_gain=_LEAST_SHARE * other.freedom)
         missed = float(np.sqrt(cost_of(other))) / noise_rms
         if missed > _STILL * before:
             break

@@ -15,15 +15,15 @@ from twin.catalogue import find
 
 
 def with_detail(fit: Fit, detail: Free, level: float) -> Fit | None:
-    """The fit with a detail free; None where to first order noise gains as much, by a log probability above ``level``.
+    """The fit with a detail free; None where to first order it is far from a log probability of ``level`` by chance.
 
     One that does nothing to first order, as a lag shorter than the time between two readings, sets out from its typical
     size.
     """
     wide = evaluate(fit.chain, (*fit.free, detail), fit.observations, fit.weighting)
     if wide.jacobian[-1].any():
-        promising = _log_p(_first_order(wide), fit) <= level + fit.settings.contender_nats
-        return refit(fit.chain, wide.free, fit) if promising else None
+        reach = min(level + fit.settings.contender_nats, level * fit.settings.rival_share)
+        return refit(fit.chain, wide.free, fit) if _log_p(_first_order(wide), fit) <= reach else None
     typical = find(detail.key, fit.chain.effects).params[detail.name].typical
     chain = fit.chain.with_values({detail.key: {**fit.chain.values[detail.key], detail.name: typical}})
     begun = evaluate(chain, wide.free, fit.observations, fit.weighting)

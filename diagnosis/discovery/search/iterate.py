@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,11 +17,19 @@ from twin.effect import BoolArray, Effect
 
 
 def searched(
-    fit: Fit, effects: Sequence[Effect], keys: Sequence[str], *, step: float, also: BoolArray, tell: Tell = nobody
+    fit: Fit,
+    effects: Sequence[Effect],
+    keys: Sequence[str],
+    *,
+    step: float,
+    also: BoolArray,
+    tell: Tell = nobody,
+    promising: Callable[[Fit], bool] = lambda fit: True,
 ) -> Found:
     """Search, look again for single rows and at the blur of the stairs in what is left, until all is still.
 
-    ``step`` [rad] is that of the output's grid; raw rows in ``also`` (n_raw,) stay masked; ``tell`` hears what is held.
+    ``step`` [rad] is that of the output's grid; raw rows in ``also`` (n_raw,) stay masked; ``tell`` hears what is held;
+    the search is not made again from a fit that is not ``promising``.
     """
     found = Found(fit, tuple(keys), 0)
     for _ in range(fit.settings.most_rounds):
@@ -31,6 +39,8 @@ def searched(
         if found.keys == before and np.array_equal(refined.observations.usable, found.fit.observations.usable):
             return found
         fit = solve(refined)
+        if not promising(fit):
+            break
     return replace(found, fit=settle(fit)[0])
 
 
@@ -39,13 +49,14 @@ def trusting(fit: Fit, effects: Sequence[Effect], step: float, also: BoolArray, 
 
     A shaft's error shows in the angle alone, and it is the radius that tells it from offset, gain and phase; but a
     field that changes over the turn for reasons of its own would pass for such an error. So the search is given up
-    (None) where its causes leave some of the radius unexplained, and not made where there is nothing to explain.
+    (None) where its causes leave some of the radius unexplained, and not made where there is nothing to explain. Where
+    single rows were not it, further rounds would hardly find the cause that the first has not.
     """
     if fit.observations.observables == 1 or _radius_explained(settle(fit)[0]):
         return None
     weighting = replace(fit.weighting, radius_trusted=True)
     start = solve(evaluate(fit.chain, fit.free, fit.observations, weighting))
-    found = searched(start, effects, [], step=step, also=also, tell=tell)
+    found = searched(start, effects, [], step=step, also=also, tell=tell, promising=_radius_explained)
     return found if _radius_explained(found.fit) else None
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from diagnosis.discovery.fitting.f_test import log_probability
 from diagnosis.discovery.fitting.free_parameters import Free, declared, free_of
-from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, held_anew, solve
+from diagnosis.discovery.fitting.joint_fit import SMALL_GAIN, Fit, evaluate, held_anew, solve
 from diagnosis.discovery.fitting.noise.plausible import plausible_members, radius_noise
 from diagnosis.discovery.fitting.tidy import tidy
 from diagnosis.discovery.search.screening import Base, Candidate
@@ -70,14 +70,17 @@ def degrees(effect: Effect, terms: int) -> int:
     return terms - effect.drawn_of(terms) or 1
 
 
-def refit(chain: Chain, free: Sequence[Free], like: Fit, *, iterations: int = 12) -> Fit:
+def refit(
+    chain: Chain, free: Sequence[Free], like: Fit, *, iterations: int = 12, least_gain: float = SMALL_GAIN
+) -> Fit:
     """Fit a chain's free parameters to the observations of another fit."""
-    return solve_tidy(evaluate(chain, tuple(free), like.observations, like.weighting), iterations=iterations)
+    begun = evaluate(chain, tuple(free), like.observations, like.weighting)
+    return solve_tidy(begun, iterations=iterations, least_gain=least_gain)
 
 
-def solve_tidy(fit: Fit, *, iterations: int = 12) -> Fit:
+def solve_tidy(fit: Fit, *, iterations: int = 12, least_gain: float = SMALL_GAIN) -> Fit:
     """The fit at its optimum, phases and signs made tidy."""
-    fit = solve(fit, iterations=iterations)
+    fit = solve(fit, iterations=iterations, least_gain=least_gain)
     return replace_chain(fit, tidy(fit.chain))
 
 
@@ -121,7 +124,7 @@ def radius_as_left(fit: Fit) -> tuple[int, float]:
     return member, float(squares[member] / len(fit.observations))
 
 
-def add(fit: Fit, candidate: Candidate, *, iterations: int = 12) -> tuple[Fit, str]:
+def add(fit: Fit, candidate: Candidate, *, iterations: int = 12, least_gain: float = SMALL_GAIN) -> tuple[Fit, str]:
     """The joint fit with the candidate added, and the key it got."""
     name = candidate.effect.name
     further = (f"{name}#{number}" for number in itertools.count(2))
@@ -133,7 +136,7 @@ def add(fit: Fit, candidate: Candidate, *, iterations: int = 12) -> tuple[Fit, s
     # A detail that this kind of the effect does not have.
     idle = {one for one, column in zip(free, begun.jacobian, strict=True) if not column.any()}
     free = tuple(one for one in free if one not in idle or candidate.effect.params[one.name].role != "shape")
-    return refit(chain, (*fit.free, *free), fit, iterations=iterations), key
+    return refit(chain, (*fit.free, *free), fit, iterations=iterations, least_gain=least_gain), key
 
 
 def reweighed(fit: Fit, member: int) -> Fit:

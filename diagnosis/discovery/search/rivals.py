@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
 
 from diagnosis.discovery.fitting.free_parameters import declared
 from diagnosis.discovery.fitting.joint_fit import Fit
@@ -14,6 +17,11 @@ from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.screening import screen_one
 from twin.catalogue import base_name, unnamed
 from twin.effect import Effect
+
+ROUGH_GAIN = 0.1
+"""Gain in chi-square of a step below which a rival's first fit ends: most rivals are far from as good as a cause."""
+LEFT_OFF = 4.0
+"""What such a fit may still gain: in a curved valley each step gains a little less than the one before."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,12 +91,19 @@ def _in_its_place(fit: Fit, removal: Removal, other: Effect) -> Fit | None:
     rival = one_more(removal.base, other, there) if there else screen_one(removal.base, other)
     if rival is None or rival.gain < settings.rival_share * min(gain, own.gain if own is not None else gain) - same:
         return None
-    trial, _ = add(removal.removed, rival, iterations=TO_THE_END)
-    rival_gain = 2.0 * (likelihood(trial) - likelihood(removal.without))
-    if other.roles("per turn"):
-        # A step between two turns is a special case of a zero for each turn: what fits counts, not its price.
-        rival_gain = max(rival_gain, rival.gain)
-    return trial if rival_gain > gain - _same(fit, trial) else None
+    # A step between two turns is a special case of a zero for each turn: what fits counts, not its price.
+    least = rival.gain if other.roles("per turn") else -np.inf
+
+    def gained(trial: Fit) -> float:
+        return max(2.0 * (likelihood(trial) - likelihood(removal.without)), least)
+
+    fitted = partial(add, removal.removed, rival, iterations=TO_THE_END)
+    trial, _ = fitted(least_gain=ROUGH_GAIN)
+    if gained(trial) <= gain - _same(fit, trial) - LEFT_OFF:
+        return None
+    # From the beginning: begun anew in a curved valley, a fit may end where it stands.
+    trial, _ = fitted()
+    return trial if gained(trial) > gain - _same(fit, trial) else None
 
 
 def _same(fit: Fit, rival: Fit) -> float:

@@ -94,7 +94,8 @@ def search(
             # Two causes that take each other's place in turns.
             break
         seen.add(frozenset(held))
-    for key in [key for key in held if unnamed(key)]:
+    # Of those that were handed in it has been asked at the end of the search that they come from.
+    for key in [key for key in held if unnamed(key)] if set(held) != set(keys) else []:
         fit, held = in_its_place(fit, key, held, plan)
     return Found(fit, tuple(held), len(plan.effects), standings)
 

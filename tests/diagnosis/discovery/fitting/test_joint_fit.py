@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,9 +11,11 @@ import pytest
 from scipy.fft import dct
 from scipy.optimize import least_squares
 
+from diagnosis.discovery.fitting import joint_fit
 from diagnosis.discovery.fitting.bounded_step import eased
 from diagnosis.discovery.fitting.free_parameters import BASELINE, Free, free_of
 from diagnosis.discovery.fitting.joint_fit import SMALL_GAIN, Fit, Weighting, cost_of, evaluate, solve
+from diagnosis.discovery.fitting.linearised_chain import Linear
 from diagnosis.discovery.fitting.noise_family import noise_family
 from diagnosis.discovery.fitting.observations import collect
 from diagnosis.discovery.settings import DiscoverySettings
@@ -21,6 +24,7 @@ from tests.twin.test_mirror import MISPLACED
 from twin.angles import Array, wrap
 from twin.catalogue import find
 from twin.chain import Chain
+from twin.effect import Effect
 from twin.magnet.assembly import Assembly
 from twin.magnet.magnet_misalignment import TOLERANCE_DEG
 
@@ -161,8 +165,44 @@ def test_a_step_taken_back_costs_no_derivatives() -> None:
     assert cost_of(trial) == pytest.approx(float(np.sum(trial.whitened()[0] ** 2)))
     trial = evaluate(fit.chain, fit.free, fit.observations, fit.weighting)
     cost_of(trial)
-    assert not vars(trial.columns).keys() & {"rows", "cosine"}
+    assert "_kept" not in vars(trial.columns)
     assert "_points" not in vars(trial.linear)
+
+
+def test_only_those_columns_are_found_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    fit, _ = started(CASES["saturation and hysteresis"])
+    fit = evaluate(fit.chain, fit.free, fit.observations, fit.weighting)
+    found: list[str] = []
+    derivatives = Linear.derivatives
+
+    def counted(linear: Linear, key: str, effect: Effect, moved: Sequence[tuple[str, int | None]]) -> Array:
+        found.append(key)
+        return derivatives(linear, key, effect, moved)
+
+    monkeypatch.setattr(Linear, "derivatives", counted)
+    place = next(place for place, free in enumerate(fit.free) if free.key == "saturation")
+    (one,) = fit.whitened_columns([place])
+    assert found == ["saturation"]
+    _, every = fit.whitened()
+    assert sorted(found) == sorted({free.key for free in fit.free})
+    assert np.array_equal(one, every[place])
+
+
+def test_a_step_that_promises_nothing_is_not_tried_shorter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no step is any good, a fit at its optimum gives up after one, a fit far from it after six."""
+    fit, _ = started(CASES["saturation and hysteresis"])
+    optimum = solve(solve(fit))
+    tried: list[Fit] = []
+
+    def worse(*given: Any) -> Fit:
+        tried.append(evaluate(*given))
+        return replace(tried[-1], cosine_residual=1e3 * tried[-1].cosine_residual)
+
+    monkeypatch.setattr(joint_fit, "evaluate", worse)
+    assert solve(optimum) is optimum
+    assert len(tried) == 1
+    assert solve(fit) is fit
+    assert len(tried) == 1 + 6
 
 
 def test_what_is_likely_beforehand_pulls_as_one_more_reading_would() -> None:

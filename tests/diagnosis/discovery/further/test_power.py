@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from diagnosis import explain
+from diagnosis.discovery.fitting import joint_fit
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate, solve
+from diagnosis.discovery.further import power
 from diagnosis.discovery.further.measurements import FINEST_DEG, MENU
 from diagnosis.discovery.further.power import Option, advice, best, expected, separation_sigma
 from diagnosis.discovery.result import Discovery
@@ -139,6 +142,23 @@ def test_expected_separation_is_the_mean_of_what_noise_then_shows(name: str) -> 
     # Amplitude and phase take as much from the squares as the loss and its exponent; the fitted noise is known to 5 %.
     mean, spread = float(np.mean(gains)), 2.0 * max(told, 1.0) / np.sqrt(30.0)
     assert mean == pytest.approx(told**2, abs=3.0 * spread, rel=0.1)
+
+
+def test_a_plan_is_solved_for_as_closely_as_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps of less than a hundredth are not taken: hundredths of what the noise is known to."""
+    found = saturated(3)
+    rival, plan = found.causes[0].rivals["magnet_harmonic"], plan_of("raw channels", ONE_WAY)
+    runs: list[Fit] = []
+
+    def counted(*given: Any) -> Fit:
+        runs.append(evaluate(*given))
+        return runs[-1]
+
+    monkeypatch.setattr(joint_fit, "evaluate", counted)
+    told, taken = separation_sigma(found.fit, rival, plan), len(runs)
+    monkeypatch.setattr(power, "_LEAST_SHARE", 0.0)
+    assert told == pytest.approx(separation_sigma(found.fit, rival, plan), rel=0.01)
+    assert taken < len(runs) - taken
 
 
 def test_a_second_air_gap_parts_saturation_from_a_harmonic_of_the_magnet() -> None:

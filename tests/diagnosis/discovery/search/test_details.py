@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
 from diagnosis.discovery.fitting.free_parameters import Free
-from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
+from diagnosis.discovery.search import freed
 from diagnosis.discovery.search.details import detailed
 from diagnosis.discovery.search.likelihood_ratio import refit
 from diagnosis.discovery.stages.stepwise import stepwise
 from tests.diagnosis.discovery.searches import with_cause
 from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
 from twin.catalogue import find
+from twin.chain import Chain
 
 BACK = Made(points=180, bits=30, back=True)
 SHARE = Free("hysteresis", "on_axes")
@@ -43,6 +47,25 @@ def test_a_detail_that_says_nothing_goes_back_to_its_null(freed: bool) -> None:
     found = detailed(fit, ["hysteresis"], LEVEL)
     assert SHARE not in found.free
     assert found.chain.values["hysteresis"]["on_axes"] == 0.0
+
+
+@pytest.mark.parametrize(("share", "fitted"), [(0.9, True), (1.1, False)])
+def test_only_a_detail_that_promises_a_share_of_the_level_is_fitted(
+    share: float, fitted: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of what it has to reach, to first order: an exact fit gains up to three times that."""
+    fit = held(0.0)
+    wide = evaluate(fit.chain, (*fit.free, SHARE), fit.observations, fit.weighting)
+    first = freed._log_p(freed._first_order(wide), fit)
+    asked: list[Sequence[Free]] = []
+
+    def recorded(chain: Chain, free: Sequence[Free], like: Fit) -> Fit:
+        asked.append(free)
+        return like
+
+    monkeypatch.setattr(freed, "refit", recorded)
+    freed.with_detail(fit, SHARE, share * first / fit.settings.rival_share)
+    assert bool(asked) == fitted
 
 
 def test_a_detail_stays_at_its_null_where_another_cause_does_it() -> None:

@@ -11,6 +11,7 @@ import pytest
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
 from diagnosis.discovery.search import exchange
+from diagnosis.discovery.search import stepwise as stepwise_search
 from diagnosis.discovery.search.exchange import Search, improve, in_its_place
 from diagnosis.discovery.search.likelihood_ratio import Trial, settle
 from diagnosis.discovery.search.removal import Removal
@@ -20,11 +21,12 @@ from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.searches import candidate, with_cause
 from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual, with_settings
 from twin.angles import Array
-from twin.catalogue import CATALOGUE, in_order
+from twin.catalogue import CATALOGUE, find, in_order
 from twin.effect import Effect, Param, Parameters
 from twin.motion import Motion
 
 SATURATION, HARMONIC, LATENCY, PAIR = "saturation", "magnet_harmonic", "latency", "unnamed_pair"
+ORDER = "unnamed_order"
 BACK = Made(points=180, bits=30, back=True)
 
 
@@ -292,3 +294,20 @@ def test_named_causes_take_the_place_of_a_shape_that_they_explain(case: Pair) ->
     state = holding(state, ((PAIR, {"height_deg": 0.06}),))
     search = Search.among((*plain(TWO_SPEEDS).searched, effect), state.fit)
     assert in_its_place(state.fit, PAIR, list(state.keys), search)[1] == list(case.held)
+
+
+def test_a_search_that_changes_nothing_asks_no_shape_that_was_handed_in_to_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether several causes do what it does was asked at the end of the search that found it."""
+    asked: list[str] = []
+
+    def recorded(fit: Fit, key: str, keys: list[str], plan: Search) -> tuple[Fit, list[str]]:
+        asked.append(key)
+        return fit, keys
+
+    monkeypatch.setattr(stepwise_search, "in_its_place", recorded)
+    state = plain(BACK)
+    state = reading(state, (0.05, order(11, state.fit)))
+    found = stepwise_search.search(state.fit, [find(ORDER)])
+    assert (found.keys, asked) == ((ORDER,), [ORDER])
+    again = stepwise_search.search(found.fit, [find(ORDER)], found.keys, standings=found.standings)
+    assert (again.keys, asked) == ((ORDER,), [ORDER])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from diagnosis.discovery.fitting.joint_fit import evaluate
+from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
 from diagnosis.discovery.search import iterate
 from diagnosis.discovery.search.iterate import searched, trusting
 from diagnosis.discovery.search.stepwise import Found
@@ -76,6 +76,22 @@ def test_an_unexplained_radius_is_taken_for_noise_in_the_end() -> None:
     after = stepwise(with_order(recorded(made), 7, 6.0))
     assert not after.fit.weighting.radius_trusted
     assert after.keys == ("magnet_harmonic",)
+
+
+def test_a_radius_that_the_first_round_leaves_unexplained_is_not_searched_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Though the causes have changed, and would in each further round."""
+    state = with_order(recorded(CLEAN), 6, 6.0)
+    rounds: list[tuple[str, ...]] = []
+
+    def search(fit: Fit, effects: object, keys: tuple[str, ...], *, standings: object, tell: object) -> Found:
+        rounds.append(tuple(keys))
+        return Found(fit, (f"round {len(rounds)}",), 7)
+
+    monkeypatch.setattr(iterate, "search", search)
+    assert trusting(state.fit, state.searched, state.step, state.touched) is None
+    assert rounds == [()]
 
 
 def test_rows_that_stand_alone_only_once_the_causes_are_known_are_masked(monkeypatch: pytest.MonkeyPatch) -> None:

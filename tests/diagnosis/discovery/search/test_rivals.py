@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from diagnosis.discovery.fitting.joint_fit import SMALL_GAIN, Fit, cost_of
 from diagnosis.discovery.search import rivals
 from diagnosis.discovery.search.likelihood_ratio import add, likelihood
 from diagnosis.discovery.search.removal import Removal
 from diagnosis.discovery.search.rivals import judge
-from diagnosis.discovery.search.screening import screen_one
+from diagnosis.discovery.search.screening import Candidate, screen_one
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.state import State
@@ -129,6 +130,28 @@ def test_only_who_gains_a_share_to_first_order_is_fitted(
     monkeypatch.setattr(rivals, "screen_one", lambda base, effect: offered)
     found = rivals._in_its_place(state.fit, removal, find(HARMONIC))
     assert (found is not None) == fitted
+
+
+def test_only_who_may_be_as_good_is_fitted_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rivals are fitted roughly first: those by far worse are not asked again, and no answer holds a rough fit."""
+    state = handed(CASES["saturation in a turn"].made)
+    exact = judged(state).rivals[HARMONIC]
+    fitted: list[tuple[str, float]] = []
+
+    def counted(fit: Fit, rival: Candidate, *, iterations: int, least_gain: float = SMALL_GAIN) -> tuple[Fit, str]:
+        fitted.append((rival.effect.name, least_gain))
+        return add(fit, rival, iterations=iterations, least_gain=least_gain)
+
+    monkeypatch.setattr(rivals, "add", counted)
+    monkeypatch.setattr(rivals, "ROUGH_GAIN", np.inf)
+    monkeypatch.setattr(rivals, "LEFT_OFF", np.inf)
+    assert cost_of(judged(state).rivals[HARMONIC]) == cost_of(exact)
+    assert [gain for name, gain in fitted if name == HARMONIC] == [np.inf, SMALL_GAIN]
+    fitted.clear()
+    monkeypatch.setattr(rivals, "LEFT_OFF", -np.inf)
+    assert judged(state).rivals == {}
+    assert (HARMONIC, np.inf) in fitted
+    assert all(gain == np.inf for _, gain in fitted)
 
 
 def test_what_has_no_name_is_no_rival() -> None:

@@ -21,6 +21,7 @@ from diagnosis.discovery.stages.grid_cause import grid_cause
 from diagnosis.discovery.stages.held_out_selection import held_out_selection
 from diagnosis.discovery.stages.initial_fit import initial_fit
 from diagnosis.discovery.stages.listed import listed
+from diagnosis.discovery.stages.motion_freedom import motion_freedom
 from diagnosis.discovery.stages.observe import observe
 from diagnosis.discovery.stages.one_source import one_source
 from diagnosis.discovery.stages.own_parameters import own_parameters
@@ -52,7 +53,7 @@ from twin.chain import Chain
 from twin.sweep import Sweep
 
 LOOP: tuple[Stage, ...] = (
-    *(recording_levels, repeated_frames, variance, stepwise, ringing, one_source),
+    *(recording_levels, repeated_frames, variance, stepwise, motion_freedom, ringing, one_source),
     *(sense_check, own_shapes, spread),
 )
 """The stages that the pipeline repeats until none of them has anything more to say."""

@@ -21,6 +21,8 @@ from twin.sweep import Sweep
 
 CHANNELS_TELL = 4
 """Order up to which offset, gain, phase and saturation of the channels show in their radius."""
+_SECTORS = 36
+"""Of a turn, by which it is counted how much of it a log passes: a reading every ten degrees makes it all."""
 _FREE = 3.0
 """Times the usual: where the motion is freer than that, as in a jerk, readings tell of it and not of the sensor."""
 
@@ -87,12 +89,14 @@ def sweeps_of(spins: Sequence[Spin]) -> list[Sweep]:
 
 
 def _checked(found: Turning, spin: Spin) -> Turning:
+    """What turns of a spin, where it is enough: an error repeats at each pass of an angle, and a motion does not."""
     turns = sum(np.ptp(found.readings_rad[rows]) for rows in runs(found.stretch)) / TAU
-    if found.rows.size < FEWEST_ROWS or turns < 1.0:
+    passed = np.unique(np.floor(found.readings_rad / TAU % 1.0 * _SECTORS)).size / _SECTORS
+    if found.rows.size < FEWEST_ROWS or turns < max(1.0, 2.0 * passed):
         raise SweepError(
             f"{spin.name}: no reference_deg, and the shaft turns evenly in {found.rows.size} of {len(spin)} rows "
             f"({turns:.2g} turns); without a reference expected a shaft that coasts or turns steadily for some turns, "
-            f"at least {FEWEST_ROWS} readings one after another; or add reference_deg"
+            f"at least {FEWEST_ROWS} readings one after another and each angle passed twice; or add reference_deg"
         )
     return found
 

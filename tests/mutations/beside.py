@@ -48,6 +48,13 @@ BESIDE: tuple[Mutation, ...] = (
         Mutation(name, file, old, new, (test,))
         for name, file, old, new, test in (
             (
+                "spins.one_pass_of_an_angle_tells",
+                "diagnosis/spin/of_log.py",
+                "turns < max(1.0, 2.0 * passed)",
+                "turns < 1.0",
+                "tests/diagnosis/spin/test_explain.py::test_what_is_no_spin_is_refused_with_the_reason",
+            ),
+            (
                 "spins.torques_scatter_about_what_was_found",
                 "diagnosis/discovery/fitting/joint_fit.py",
                 " + observations.torques\n",

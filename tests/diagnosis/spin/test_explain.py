@@ -173,6 +173,8 @@ def test_compensate_takes_such_a_log(tmp_path: Path) -> None:
         ({"time_s": TIME[::-1], "measured_deg": 90.0 * TIME}, "row 2, column time_s: found 3.998 after 3.999"),
         ({"time_s": TIME[:20], "measured_deg": 90.0 * TIME[:20]}, "20 usable rows and no reference_deg"),
         ({"time_s": 0.0 * TIME, "measured_deg": 90.0 * TIME}, "column time_s: every row is 0"),
+        # At each angle once: what bends the motion there is as good an error of the sensor.
+        ({"time_s": TIME, "measured_deg": 1.8 * 90.0 * TIME % 360.0}, r"\(1.8 turns\).* each angle passed twice"),
     ],
 )
 def test_what_is_no_spin_is_refused_with_the_reason(columns: dict[str, Any], said: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 Z95 = 1.959964
@@ -27,7 +28,10 @@ def mixed_95(told: Sequence[tuple[float, float, float, float]]) -> tuple[float, 
     from scipy.special import ndtr
 
     total = sum(likely for likely, _, _, _ in told)
-    least, most = min(low for _, _, low, _ in told), max(high for _, _, _, high in told)
+    ways = [end for _, _, low, high in told for end in (low, high) if math.isfinite(end)]
+    least, most = min(ways, default=-math.inf), max(ways, default=math.inf)
+    # Where an improbable explanation has no end, the others' is a little farther out.
+    least, most = least - (most - least), most + (most - least)
 
     def below(at: float, share: float) -> float:
         found = 0.0
@@ -36,8 +40,9 @@ def mixed_95(told: Sequence[tuple[float, float, float, float]]) -> tuple[float, 
             found += likely * float(ndtr((at - value) / reach)) if reach > 0.0 else likely * float(at >= value)
         return found / total - share
 
-    ends = []
-    for share in (0.025, 0.975):
-        inside = below(least, share) < 0.0 < below(most, share)
-        ends.append(float(brentq(below, least, most, args=(share,))) if inside else (least, most)[share > 0.5])
-    return ends[0], ends[1]
+    def end(share: float, beyond: float) -> float:
+        if below(least, share) < 0.0 < below(most, share):
+            return float(brentq(below, least, most, args=(share,)))
+        return beyond
+
+    return end(0.025, min(low for _, _, low, _ in told)), end(0.975, max(high for _, _, _, high in told))

@@ -216,7 +216,9 @@ def _change(found: Discovery, change: Change) -> dict[str, Any]:
     fit, free = found.fit, change.free
     effect = find(free.key, fit.chain.effects)
     value = float(fit.chain.values[free.key][free.name])
-    low, high = intervals_95(fit).get((free.key, free.name), (value, value))
+    known = over_all_beside(with_open_torques(fit, intervals_95(fit)), found)
+    ends = known.get((free.key, free.name), (value, value))
+    low, high = ends
     return {
         "parameter": change.name,
         "effect": base_name(free.key),
@@ -227,6 +229,7 @@ def _change(found: Discovery, change: Change) -> dict[str, Any]:
         "low": low,
         "high": high,
         "unit": effect.params[free.name].unit,
+        **_as_named(fit, free.key, free.name, ends),
         "p": change.false_alarm_probability,
         "heldout_rms_deg_before": change.before_deg,
         "heldout_rms_deg_after": change.after_deg,

@@ -69,9 +69,11 @@ def _every_s(found: Discovery) -> float:
 
 def _knee_turns_per_s(found: Discovery) -> float:
     """Frequency below which the motion is freer than the readings are noisy [1/s]."""
-    estimated = found.sweep.estimated
+    observations = found.fit.observations
+    estimated = observations.motion.estimated
     assert estimated is not None
-    return float(np.median(estimated.knee_rad)) / _every_s(found) / TAU
+    every_row_s = _every_s(found) * len(found.sweep) / len(observations)
+    return float(np.median(estimated.knee_rad)) / every_row_s / TAU
 
 
 def not_separable(estimated: EstimatedMotion) -> list[int]:

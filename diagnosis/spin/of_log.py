@@ -47,8 +47,17 @@ class _Log:
 
 
 def with_motion(recordings: Sequence[Sweep | Spin]) -> list[Sweep]:
-    """Recordings of one device as sweeps: those without a reference with the motion estimated from all of them."""
+    """Recordings of one device as sweeps: those without a reference with the motion estimated from all of them.
+
+    Raises SweepError where one of the others has no time stamps: speeds of all are told together.
+    """
     spins = [one for one in recordings if isinstance(one, Spin)]
+    untimed = [one.name for one in recordings if isinstance(one, Sweep) and one.time_s is None]
+    if spins and untimed:
+        raise SweepError(
+            f"{untimed[0]}: no time_s beside {spins[0].name}, which has no reference_deg; expected the time of each "
+            "reading in all of them: record time_s, or explain it by itself"
+        )
     made = iter(sweeps_of(spins) if spins else [])
     return [next(made) if isinstance(one, Spin) else one for one in recordings]
 
@@ -90,7 +99,9 @@ def sweeps_of(spins: Sequence[Spin]) -> list[Sweep]:
 
 def _checked(found: Turning, spin: Spin) -> Turning:
     """What turns of a spin, where it is enough: an error repeats at each pass of an angle, and a motion does not."""
-    turns = sum(np.ptp(found.readings_rad[rows]) for rows in runs(found.stretch)) / TAU
+    # So many readings cover as many steps as they are, though one less lies between them.
+    stretches = [found.readings_rad[rows] for rows in runs(found.stretch)]
+    turns = sum(float(np.ptp(one)) * one.size / max(one.size - 1, 1) for one in stretches) / TAU
     passed = np.unique(np.floor(found.readings_rad / TAU % 1.0 * _SECTORS)).size / _SECTORS
     if found.rows.size < FEWEST_ROWS or turns < max(1.0, 2.0 * passed):
         raise SweepError(

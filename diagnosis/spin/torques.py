@@ -26,11 +26,11 @@ def torque_columns(motion: Motion) -> Array:
     found = motion.estimated
     if found is None:
         return np.zeros((0, len(motion)))
-    columns = [np.zeros((0, len(motion)))]
+    columns, speed = [np.zeros((0, len(motion)))], _speed(motion)
     for torque in found.torques:
         if torque.scatter_rad_s2 or torque.growing_rad_s or torque.reversing_rad_s2:
             moved = _moved(motion, torque.order)
-            rubs = torque.growing_rad_s * motion.speed_rad_s, torque.reversing_rad_s2 * np.sign(motion.speed_rad_s)
+            rubs = torque.growing_rad_s * speed, torque.reversing_rad_s2 * np.sign(speed)
             columns += [torque.scatter_rad_s2 * moved, *(each * moved for each in rubs)]
     # What was found of the torques turns the shaft as damped as it is, which is known so well.
     damped = (found_torques(motion, more_damped_per_s=RATE) - found_torques(motion)) / RATE
@@ -57,13 +57,23 @@ def _moved(motion: Motion, order: int, *, more_damped_per_s: float = 0.0) -> Arr
     """What torques of an order that give 1 rad/s^2, with its cosine and its sine, turn the shaft by (2, n) [rad]."""
     found = motion.estimated
     assert found is not None
-    return response(
+    speed = _speed(motion)
+    moved = response(
         order,
         shaft_rad=motion.shaft_rad,
-        speed_rad_s=motion.speed_rad_s,
-        acceleration_rad_s2=rate(motion.speed_rad_s, motion.time_s, found.slices),
+        speed_rad_s=speed,
+        acceleration_rad_s2=rate(speed, motion.time_s, found.slices),
         damping_per_s=found.damping_per_s + more_damped_per_s,
     )
+    return np.where(found.knee_rad > 0.0, moved, 0.0)
+
+
+def _speed(motion: Motion) -> Array:
+    """Speed (n,) [rad/s] where the motion is estimated; a usual one beside it, where a recorded reference has none."""
+    found = motion.estimated
+    assert found is not None
+    own = found.knee_rad > 0.0
+    return np.where(own, motion.speed_rad_s, float(np.median(motion.speed_rad_s[own])))
 
 
 def as_large_as_seen(motion: Motion, off_rad: Array, usable: BoolArray) -> Array:
@@ -79,7 +89,7 @@ def as_large_as_seen(motion: Motion, off_rad: Array, usable: BoolArray) -> Array
     angle = motion.shaft_rad
     waves = [np.ones_like(angle), *(wave(order * angle) for order in orders for wave in (np.cos, np.sin))]
     seen = np.linalg.lstsq(np.stack(waves).T[usable], off_rad[usable], rcond=None)[0][1:].reshape(-1, 2)
-    usual, sizes = float(np.median(np.abs(motion.speed_rad_s))), np.linalg.norm(seen, axis=1)
+    usual, sizes = float(np.median(np.abs(_speed(motion)))), np.linalg.norm(seen, axis=1)
     return np.concatenate(
         [size * (order * usual) ** 2 * _moved(motion, order) for order, size in zip(orders, sizes, strict=True)]
     )

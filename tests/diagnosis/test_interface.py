@@ -89,7 +89,7 @@ def test_results_show_themselves_in_three_lines_at_most() -> None:
     words = {
         "Explanation('bench_sweep.csv', explained: hysteresis; held-out RMS 0.134 -> 0.0248 deg": bench(),
         "Explanation('simulated', adequate; held-out RMS": clean(),
-        "Cause(hysteresis: lag_deg=0.1194 ±0.0019 deg, memory_deg=": bench().causes[0],
+        "Cause(hysteresis: lag_deg=0.1194 deg (0.1175 to 0.1205), memory_deg=": bench().causes[0],
         "Diagnosis('simulated', Vx_over_Ax=": turns()[0],
         "Diagnoses(2 sweeps: simulated, simulated)": turns(),
     }
@@ -106,7 +106,7 @@ def test_a_cause_holds_the_figures_of_the_json() -> None:
     assert cause.parameters.keys() == entry["parameters"].keys()
     for name, estimate in cause.parameters.items():
         assert vars(estimate).items() <= entry["parameters"][name].items()
-    assert str(cause.parameters["lag_deg"]) == "0.1194 ±0.0019 deg"
+    assert str(cause.parameters["lag_deg"]) == "0.1194 deg (0.1175 to 0.1205)"
 
 
 def test_an_end_that_the_sweep_does_not_set_is_infinite() -> None:
@@ -149,7 +149,7 @@ def test_the_width_of_a_summary_is_kept() -> None:
 def test_a_notebook_is_shown_verdict_and_causes() -> None:
     html = bench()._repr_html_()
     assert "bench_sweep.csv: explained" in html
-    assert "lag 0.1194 ±0.0019 deg" in html
+    assert "lag 0.1194 deg (0.1175 to 0.1205)" in html
     assert "<table" not in clean()._repr_html_()
 
 

@@ -29,8 +29,8 @@ BESIDE: tuple[Mutation, ...] = (
         _T,
         (
             "open_effects.what_is_improbable_widens_as_much",
-            "    return after / before * float(np.exp(0.5 * min(gain, _SURE)))\n",
-            "    return 1.0\n",
+            "    odds = after / before * float(np.exp(0.5 * min(gain, _SURE)))\n",
+            "    odds = 1.0\n",
             "fitting/test_open_effects.py::test_what_is_improbable_beside_a_cause_widens_its_interval_by_little",
         ),
     ),
@@ -47,6 +47,13 @@ BESIDE: tuple[Mutation, ...] = (
     *(
         Mutation(name, file, old, new, (test,))
         for name, file, old, new, test in (
+            (
+                "spins.torques_turn_a_shaft_with_a_reference",
+                "diagnosis/spin/torques.py",
+                "    return np.where(found.knee_rad > 0.0, moved, 0.0)\n",
+                "    return moved\n",
+                "tests/diagnosis/spin/test_beside_a_reference.py::test_torques_turn_no_shaft_that_a_reference_tells",
+            ),
             (
                 "spins.one_pass_of_an_angle_tells",
                 "diagnosis/spin/of_log.py",

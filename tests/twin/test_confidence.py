@@ -23,3 +23,8 @@ def test_what_is_as_likely_holds_half_of_what_is_drawn() -> None:
 
 def test_a_figure_that_is_known_exactly_has_no_width() -> None:
     assert mixed_95([(1.0, 2.0, 2.0, 2.0)]) == (2.0, 2.0)
+
+
+def test_what_is_improbable_opens_no_end() -> None:
+    assert mixed_95([(1.0, 0.0, -1.0, 1.0), (1e-9, 0.0, -np.inf, np.inf)]) == pytest.approx((-1.0, 1.0), abs=1e-6)
+    assert mixed_95([(1.0, 0.0, -1.0, 1.0), (1.0, 0.0, -np.inf, np.inf)]) == (-np.inf, np.inf)

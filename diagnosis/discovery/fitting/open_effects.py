@@ -26,7 +26,7 @@ def open_beside(fit: Fit) -> dict[str, Fit]:
 
     A harmonic of order 4 that is free in size and phase does most of what a saturation does, which is of that order.
     Were there both, the harmonic alone would be found, and the factors that a saturation moves would stand elsewhere.
-    Before a reading is seen the effect is as likely to be as strong as the cause that hides it, either way.
+    Before a reading is seen the effect is as likely to be as strong as the cause that hides it.
     """
     effects = [effect for effect in fit.chain.effects if _may_be_there(fit, effect)]
     keys = [key for key in dict.fromkeys(one.key for one in fit.free) if not find(key, fit.chain.effects).baseline]
@@ -53,7 +53,8 @@ def odds_of(beside: Fit, fit: Fit, name: str) -> float:
     before = find(name, beside.chain.effects).params[beside.free[place].name].prior_sd
     gain = (cost_of(fit) - cost_of(beside)) / fit.variance
     after = float(np.sqrt(beside.covariance()[place, place]))
-    return after / before * float(np.exp(0.5 * min(gain, _SURE)))
+    odds = after / before * float(np.exp(0.5 * min(gain, _SURE)))
+    return odds if np.isfinite(odds) else 0.0
 
 
 def _may_be_there(fit: Fit, effect: Effect) -> bool:

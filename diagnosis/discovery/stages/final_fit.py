@@ -13,4 +13,4 @@ def final_fit(state: State) -> State:
     by_values = {effect.name for effect in state.effects if effect.footprint == "values"}
     stairs = [finding.keys[0] for finding in state.findings if finding.keys[0] in by_values]
     plain = solve(evaluate(baseline.chain.without(*stairs), baseline.free, fit.observations, fit.weighting))
-    return state.with_(on_average(with_slopes(fit)), baseline=plain)
+    return state.with_(on_average(with_slopes(fit)), baseline=on_average(plain))

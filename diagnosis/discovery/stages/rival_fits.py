@@ -17,5 +17,5 @@ def rival_fits(state: State) -> State:
         for fit in from_every_start(rival, name)
     ]
     solved = {name: solve_tidy(fit, iterations=TO_THE_END) for name, fit in open_beside(state.fit).items()}
-    beside = [(name, fit, odds_of(fit, state.fit, name)) for name, fit in solved.items()]
+    beside = [(name, fit, odds) for name, fit in solved.items() if (odds := odds_of(fit, state.fit, name)) > 0.0]
     return state.with_(rival_fits=tuple(found), fits_beside=tuple(beside)) if found or beside else state

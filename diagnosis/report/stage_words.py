@@ -22,6 +22,7 @@ STAGES = {
     "own_parameters": "asking which of the twin's own parameters have moved",
     "own_shapes": "fitting the shapes of the twin's own effects",
     "changes": "proving what has changed of the twin",
+    "motion_freedom": "asking how free the shaft was against what noise is left",
     "ringing": "asking whether lines are a narrow band of noise",
     "one_source": "asking whether several lines come of one motor",
     "spread": "looking for causes in the scatter",

@@ -21,7 +21,7 @@ from diagnosis.report.factor_names import LABELS, SCALES
 from diagnosis.report.page import page
 from diagnosis.report.row_counts import explained_rows
 from diagnosis.report.sweep_words import sweep_facts
-from diagnosis.report.wording import figure
+from diagnosis.report.wording import figure, with_unit
 from scenarios.commands.protocol import Protocol
 from tests.diagnosis.report.test_page import BASE, numbers_of
 from tests.measured import DATA
@@ -184,7 +184,9 @@ def stated(answer: dict[str, Any]) -> Iterator[str]:
             yield from statements.parameter_lines(answer, cause)
         else:
             told = (one for one in cause["parameters"].values() if not one.get("hardly_told"))
-            yield from (figure(parameter)[0] for parameter in told)
+            # A lopsided one is told to the digits of its nearer end in a sentence, and to those of its width in a table.
+            values = ((figure(parameter)[0], with_unit(parameter).split()[0]) for parameter in told)
+            yield from (in_table for in_table, in_sentence in values if in_table == in_sentence)
 
 
 def figures_beside(text: str, answer: dict[str, Any]) -> Iterator[str]:

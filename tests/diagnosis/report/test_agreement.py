@@ -184,7 +184,7 @@ def stated(answer: dict[str, Any]) -> Iterator[str]:
             yield from statements.parameter_lines(answer, cause)
         else:
             told = (one for one in cause["parameters"].values() if not one.get("hardly_told"))
-            # A lopsided one is told to the digits of its nearer end in a sentence, and to those of its width in a table.
+            # A lopsided one is told to the digits of its nearer end in a sentence, to those of its width in a table.
             values = ((figure(parameter)[0], with_unit(parameter).split()[0]) for parameter in told)
             yield from (in_table for in_table, in_sentence in values if in_table == in_sentence)
 

@@ -216,8 +216,7 @@ def _change(found: Discovery, change: Change) -> dict[str, Any]:
     fit, free = found.fit, change.free
     effect = find(free.key, fit.chain.effects)
     value = float(fit.chain.values[free.key][free.name])
-    known = over_all_beside(with_open_torques(fit, intervals_95(fit)), found)
-    ends = known.get((free.key, free.name), (value, value))
+    ends = over_all_beside(found).get((free.key, free.name), (value, value))
     low, high = ends
     return {
         "parameter": change.name,
@@ -279,7 +278,7 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
     fit = found.fit
     effect = find(key, fit.chain.effects)
     values = {**effect.null(), **fit.chain.values.get(key, {}), **found.words.get(key, {})}
-    derived, known = effect.derived(values), over_all_beside(with_open_torques(fit, intervals_95(fit)), found)
+    derived, known = effect.derived(values), over_all_beside(found)
     figures: dict[str, dict[str, Any]] = {}
     for name, param in effect.params.items():
         if param.role == "per turn" or name not in values or np.ndim(values[name]):

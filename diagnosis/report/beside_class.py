@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 
 from diagnosis.discovery.fitting.free_parameters import value_of
-from diagnosis.discovery.fitting.intervals import quantile_95
+from diagnosis.discovery.fitting.intervals import intervals_95, quantile_95, with_open_torques
 from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.result import Discovery
 from twin.catalogue import find
@@ -26,8 +27,10 @@ def beside_each(known: Intervals, found: Discovery) -> dict[str, Intervals]:
     return {one[0]: _mixed(known, found.fit, one) for one in found.fits_beside}
 
 
-def over_all_beside(known: Intervals, found: Discovery) -> Intervals:
-    """The same, wide enough for any of them."""
+@lru_cache(maxsize=4)
+def over_all_beside(found: Discovery) -> Intervals:
+    """95 % intervals of the fit's parameters, wide enough for each of them and for torques that are not told."""
+    known = with_open_torques(found.fit, intervals_95(found.fit))
     wider = dict(known)
     for each in beside_each(known, found).values():
         for key, (low, high) in each.items():

@@ -16,7 +16,8 @@ _MUCH = 2.0
 def over_class(named: Mapping[str, Any], others: Sequence[tuple[str, Mapping[str, Any]]]) -> dict[str, dict[str, Any]]:
     """The factors of the answer with 95 % intervals that hold those of every other explanation.
 
-    Whichever of them is true, its own interval holds the true value with 95 %; so then does what spans them all.
+    Whichever of them is true, its own interval holds the true value with 95 %; so then does what spans them all. Of
+    an effect that may stand beside the causes it is one for both, with it and without, by how likely each is.
 
     Parameters
     ----------

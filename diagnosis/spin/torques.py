@@ -26,7 +26,7 @@ def torque_columns(motion: Motion) -> Array:
     found = motion.estimated
     if found is None:
         return np.zeros((0, len(motion)))
-    columns, speed = [np.zeros((0, len(motion)))], _speed(motion)
+    columns, speed = [np.zeros((0, len(motion)))], _rates(motion)[0]
     for torque in found.torques:
         if torque.scatter_rad_s2 or torque.growing_rad_s or torque.reversing_rad_s2:
             moved = _moved(motion, torque.order)
@@ -57,23 +57,28 @@ def _moved(motion: Motion, order: int, *, more_damped_per_s: float = 0.0) -> Arr
     """What torques of an order that give 1 rad/s^2, with its cosine and its sine, turn the shaft by (2, n) [rad]."""
     found = motion.estimated
     assert found is not None
-    speed = _speed(motion)
+    speed, acceleration = _rates(motion)
     moved = response(
         order,
         shaft_rad=motion.shaft_rad,
         speed_rad_s=speed,
-        acceleration_rad_s2=rate(speed, motion.time_s, found.slices),
+        acceleration_rad_s2=acceleration,
         damping_per_s=found.damping_per_s + more_damped_per_s,
     )
     return np.where(found.knee_rad > 0.0, moved, 0.0)
 
 
-def _speed(motion: Motion) -> Array:
-    """Speed (n,) [rad/s] where the motion is estimated; a usual one beside it, where a recorded reference has none."""
+@lru_cache(maxsize=4)
+def _rates(motion: Motion) -> tuple[Array, Array]:
+    """Speed [rad/s] and acceleration [rad/s^2] (n,) where the motion is estimated.
+
+    Beside it the speed is a usual one, as a recorded reference may have none.
+    """
     found = motion.estimated
     assert found is not None
     own = found.knee_rad > 0.0
-    return np.where(own, motion.speed_rad_s, float(np.median(motion.speed_rad_s[own])))
+    speed = np.where(own, motion.speed_rad_s, float(np.median(motion.speed_rad_s[own])))
+    return speed, rate(speed, motion.time_s, found.slices)
 
 
 def as_large_as_seen(motion: Motion, off_rad: Array, usable: BoolArray) -> Array:
@@ -89,7 +94,7 @@ def as_large_as_seen(motion: Motion, off_rad: Array, usable: BoolArray) -> Array
     angle = motion.shaft_rad
     waves = [np.ones_like(angle), *(wave(order * angle) for order in orders for wave in (np.cos, np.sin))]
     seen = np.linalg.lstsq(np.stack(waves).T[usable], off_rad[usable], rcond=None)[0][1:].reshape(-1, 2)
-    usual, sizes = float(np.median(np.abs(_speed(motion)))), np.linalg.norm(seen, axis=1)
+    usual, sizes = float(np.median(np.abs(_rates(motion)[0]))), np.linalg.norm(seen, axis=1)
     return np.concatenate(
         [size * (order * usual) ** 2 * _moved(motion, order) for order, size in zip(orders, sizes, strict=True)]
     )

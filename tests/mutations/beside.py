@@ -23,10 +23,6 @@ BESIDE: tuple[Mutation, ...] = (
             "        if False:\n",
             "fitting/test_open_effects.py::test_a_harmonic_of_order_4_hides_a_saturation_and_its_figures_hold_both",
         ),
-    ),
-    *of_one_file(
-        f"{_D}/fitting/open_effects.py",
-        _T,
         (
             "open_effects.what_is_improbable_widens_as_much",
             "    odds = after / before * float(np.exp(0.5 * min(gain, _SURE)))\n",

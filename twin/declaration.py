@@ -18,7 +18,7 @@ NEEDS = frozenset(
         *("time_s", "direction", "speed_rpm", "turn", "temperature_c", "vx", "current_a"),
         *("both directions", "two speeds", "moving shaft", "one turn", "several turns", "two temperatures"),
         *("two turns", "two air gaps", "two mountings", "two currents", "varying speed", "a reference"),
-        "whole counts",
+        *("whole counts", "three speeds"),
     }
 )
 """What :attr:`twin.motion.Motion.provides` may hold, two air gaps and mountings by several recordings only."""

@@ -12,7 +12,7 @@ import numpy as np
 from twin.angles import TAU, Array, IntArray, wrap
 from twin.direction import as_reached, way_of
 from twin.estimated_motion import EstimatedMotion
-from twin.pace import LEAST_SPEEDS, speed_over_time
+from twin.pace import LEAST_SPEEDS, speed_over_time, two_speeds_alone
 from twin.recordings import Recordings, Setup
 from twin.runs import runs
 from twin.whole_counts import WholeCounts, whole_counts
@@ -324,6 +324,8 @@ class Motion:
         slow, fast = np.quantile(np.abs(self.speed_rad_s), [0.02, 0.98]) if len(self) else (0.0, 0.0)
         if fast - slow > LEAST_SPEEDS * fast:
             found.add("two speeds")
+        if len(self) > 1 and not two_speeds_alone(self.speed_rad_s):
+            found.add("three speeds")
         if np.any(self.speed_rad_s != 0.0):
             found.add("moving shaft")
         # Where the bench goes from one steady speed to the next, a few rows alone are accelerated.
@@ -361,6 +363,7 @@ class Motion:
         shown = {
             "both directions": np.ptp(self.direction) > 0.0,
             "two speeds": fast - slow > LEAST_SPEEDS * fast,
+            "three speeds": not two_speeds_alone(self.speed_rad_s),
             "two temperatures": np.ptp(self.temperature_c) > LEAST_SPAN_K,
             "two air gaps": max(setup.field for setup in setups) > LEAST_FIELD_RATIO * min(one.field for one in setups),
             "two mountings": float(np.max(np.abs(np.exp(1j * (turned - turned[0])) - 1.0))) > LEAST_TURN_RAD,

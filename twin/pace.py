@@ -14,6 +14,8 @@ STOP_AND_MEASURE_S = 0.02
 """Readings farther apart than this, with no speed recorded, were taken at standstill."""
 LEAST_SPEEDS = 0.2
 """Difference of two speeds, as a share of the faster, from which on what follows them may show."""
+_SELDOM = 0.01
+"""Share of the readings at one speed that may be faster, and slower, than that."""
 
 _TOGETHER = (2, 4, 8, 16, 32)
 """Ticks over which the pace is taken where the clock jitters: of two that are off by a step each, 32 keep 6 %."""
@@ -210,3 +212,14 @@ def _slope(angle: Array, time: Array, at: float) -> tuple[float, float]:
     left = angle - angle[0] - powers @ found
     variance = float(left @ left) / (left.size - 3)
     return float(found[1]) / scale, float(np.sqrt(variance * inverse[1, 1])) / scale
+
+
+def two_speeds_alone(speed: Array) -> bool:
+    """Whether speeds (n,), unless all are one, are those of two steady motions, whatever lies between the two."""
+    rising = np.sort(np.abs(speed))
+    between = 1 + int(np.argmax(rising[1:] / np.maximum(rising[:-1], 1e-300)))
+    for group in (rising[:between], rising[between:]):
+        slow, fast = np.quantile(group, [_SELDOM, 1.0 - _SELDOM])
+        if fast - slow > LEAST_SPEEDS * fast:
+            return False
+    return True

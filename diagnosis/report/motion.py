@@ -13,12 +13,11 @@ from diagnosis.discovery.result import Discovery
 from diagnosis.report.sweep_words import speeds_shown
 from diagnosis.report.wording import plain
 from diagnosis.spin.smoother import HIGHEST_ORDER
-from diagnosis.spin.speeds import two_speeds_alone
 from twin.angles import TAU, Array
 from twin.catalogue import find
 from twin.confidence import Z95
 from twin.estimated_motion import EstimatedMotion, Torque
-from twin.pace import STOP_AND_MEASURE_S
+from twin.pace import STOP_AND_MEASURE_S, two_speeds_alone
 
 TORQUE = "torque_ripple"
 """What a torque locked to the angle is called where a cause may as well be one."""

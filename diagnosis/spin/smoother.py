@@ -17,7 +17,7 @@ import numpy as np
 
 from diagnosis.spin.damping import damping
 from diagnosis.spin.problem import Own, Problem, Reduced, evened, held_at, knee, likeliest
-from diagnosis.spin.speeds import several_speeds, two_speeds_alone
+from diagnosis.spin.speeds import several_speeds
 from diagnosis.spin.spline import Spline, rate
 from diagnosis.spin.torques import RATE
 from diagnosis.spin.variance_components import Drawn, drawn, solved
@@ -25,6 +25,7 @@ from twin.angles import Array
 from twin.confidence import OF_MAD
 from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import response, second_order
+from twin.pace import two_speeds_alone
 
 HIGHEST_ORDER = 32
 """Of the sensor's error and of the torques: the second harmonic of a cogging by sixteen teeth."""

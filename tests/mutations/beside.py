@@ -51,6 +51,22 @@ BESIDE: tuple[Mutation, ...] = (
                 "tests/diagnosis/spin/test_beside_a_reference.py::test_torques_turn_no_shaft_that_a_reference_tells",
             ),
             (
+                "spins.two_speeds_tell_an_order_that_follows_them",
+                "twin/motion.py",
+                "        if len(self) > 1 and not two_speeds_alone(self.speed_rad_s):\n",
+                "        if True:\n",
+                "tests/diagnosis/spin/test_search.py"
+                "::test_what_follows_the_speed_takes_a_third_one_beside_torques[speeds0]",
+            ),
+            (
+                "spins.two_logs_tell_an_order_that_follows_the_speed",
+                "twin/motion.py",
+                '            "three speeds": not two_speeds_alone(self.speed_rad_s),\n',
+                '            "three speeds": True,\n',
+                "tests/diagnosis/spin/test_search.py"
+                "::test_what_follows_the_speed_takes_a_third_one_beside_torques[speeds0]",
+            ),
+            (
                 "spins.one_pass_of_an_angle_tells",
                 "diagnosis/spin/of_log.py",
                 "turns < max(1.0, 2.0 * passed)",

@@ -242,7 +242,8 @@ UNNAMED_SPEED = Effect(
     },
     forward=_weighted(_speed),
     shapes=_speed_shapes,
-    needs=frozenset({"moving shaft", "two speeds"}),
+    # At two speeds a torque, whose response falls with the speed, and a constant order make any order that follows it.
+    needs=frozenset({"moving shaft", "two speeds", "a reference|three speeds"}),
     repeatable=True,
     kind="speed",
     words=_SPEED_WORDS,
@@ -273,7 +274,7 @@ UNNAMED_SPEED_ZERO = Effect(
     },
     forward=_moved_by_speed,
     shapes=_powers,
-    needs=frozenset({"moving shaft", "two speeds"}),
+    needs=frozenset({"moving shaft", "two speeds", "a reference"}),
     repeatable=True,
     kind="speed",
     words="the zero moves with the speed, {amplitude_deg} deg at the highest one",

@@ -16,10 +16,15 @@ from diagnosis.discovery.search.screening import Base, matched, screen_one
 from diagnosis.discovery.settings import DiscoverySettings
 from diagnosis.spin.of_log import sweeps_of
 from diagnosis.spin.torques import torque_columns
+from tests.diagnosis.spin.test_explain import even
 from tests.diagnosis.spin.test_smoother import TIME, coasting, read
+from twin.adc.xy_skew import XY_SKEW
 from twin.angles import wrap
 from twin.catalogue import CATALOGUE, find
 from twin.chain import Chain
+from twin.empirical.orders import UNNAMED_SPEED, UNNAMED_SPEED_ZERO
+from twin.motion import Motion
+from twin.recordings import Setup
 from twin.spin import Spin
 
 HARMONIC = find("magnet_harmonic", CATALOGUE)
@@ -83,3 +88,15 @@ def test_residuals_are_without_what_the_shaft_may_have_done() -> None:
     assert np.std(without_motion(observations, wave) - wave) < 0.1
     drift[:10] = np.nan
     assert np.isnan(without_motion(observations, drift)[:10]).all()
+
+
+@pytest.mark.parametrize("speeds", [(9.0, 25.0), (9.0, 15.0, 25.0)])
+def test_what_follows_the_speed_takes_a_third_one_beside_torques(speeds: tuple[float, ...]) -> None:
+    """At two, an order that grows with the speed is a constant one beside a torque, whose response falls with it."""
+    spins = [Spin.from_columns(even(one, order=3, seed=seed)) for seed, one in enumerate(speeds)]
+    motion = Motion.joined([one.motion() for one in sweeps_of(spins)], [Setup()] * len(speeds))
+    for effect in (UNNAMED_SPEED, XY_SKEW):
+        assert effect.visible_in(motion.provides) is (len(speeds) == 3)
+        assert effect.visible_in(motion.provides | {"a reference"})
+    assert XY_SKEW.visible_in(motion.provides | {"vx"})
+    assert not UNNAMED_SPEED_ZERO.visible_in(motion.provides)

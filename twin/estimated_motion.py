@@ -10,6 +10,7 @@ import numpy as np
 
 from twin.angles import Array, IntArray
 from twin.runs import runs
+from twin.second_inertia import Tied
 
 SPECTRAL_SLOPE = 6
 """Of a motion's spectrum over frequency: that of an angle whose torque is a random walk."""
@@ -67,6 +68,8 @@ class EstimatedMotion:
         Rate at which friction and the drive undo a departure from the speed [1/s].
     damping_sd_per_s : float
         Standard deviation of its error.
+    second : Tied or None
+        What a belt or a coupling ties to the rotor; None: the rotor turns as one piece.
     rows_aside : int
         Readings of the log that tell nothing: at standstill, in a jerk, or far off.
     even_clock : bool
@@ -79,6 +82,7 @@ class EstimatedMotion:
     torques: tuple[Torque, ...] = field(default=())
     damping_per_s: float = 0.0
     damping_sd_per_s: float = 0.0
+    second: Tied | None = None
     rows_aside: int = 0
     even_clock: bool = False
 
@@ -125,6 +129,7 @@ class EstimatedMotion:
             torques=known[0].torques,
             damping_per_s=known[0].damping_per_s,
             damping_sd_per_s=known[0].damping_sd_per_s,
+            second=known[0].second,
             rows_aside=sum(part.rows_aside for part in known),
             even_clock=any(part.even_clock for part in known),
         )

@@ -12,7 +12,7 @@ from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.sweep_words import speeds_shown
 from diagnosis.report.wording import plain
-from diagnosis.spin.smoother import HIGHEST_ORDER
+from diagnosis.spin.columns import HIGHEST_ORDER
 from twin.angles import TAU, Array
 from twin.catalogue import find
 from twin.confidence import Z95

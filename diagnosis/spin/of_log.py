@@ -9,13 +9,15 @@ from typing import Any
 import numpy as np
 
 from diagnosis.spin.clock import even_clock
+from diagnosis.spin.columns import HIGHEST_OF_FRICTION, HIGHEST_ORDER
 from diagnosis.spin.problem import Own
-from diagnosis.spin.smoother import ANY_GROWTH, HIGHEST_OF_FRICTION, HIGHEST_ORDER, MotionFit, fitted_motion
+from diagnosis.spin.smoother import ANY_GROWTH, MotionFit, fitted_motion
 from diagnosis.spin.stretches import Turning, turning
 from twin.angles import TAU, Array, IntArray
 from twin.errors import SweepError
 from twin.estimated_motion import EstimatedMotion, Torque
 from twin.runs import runs
+from twin.second_inertia import Tied
 from twin.spin import FEWEST_ROWS, Spin
 from twin.sweep import Sweep
 
@@ -82,15 +84,16 @@ def sweeps_of(spins: Sequence[Spin]) -> list[Sweep]:
         Where no stretch of a log shows a turning shaft.
     """
     logs = [_Log.of(spin) for spin in spins]
-    fit = _fitted(logs)
+    fit = _fitted(logs, seek_second=True)
     knees = np.split(fit.knee_rad_s, np.cumsum([log.found.rows.size for log in logs])[:-1])
     parts = [knee > _FREE * float(np.median(knee)) for knee in knees]
     if any(part.any() for part in parts):
         calmer = [replace(log, found=log.found.kept(~out)) for log, out in zip(logs, parts, strict=True)]
         if all(log.found.rows.size >= FEWEST_ROWS for log in calmer):
             logs = calmer
-            # From one speed to another a shaft goes by all between: what of a torque grows with the speed shows there.
-            fit = _fitted(logs, most_growing=fit.growing)
+            # From one speed to another a shaft goes by all between: what of a torque grows with the speed shows there,
+            # and what swings behind a belt.
+            fit = _fitted(logs, most_growing=fit.growing, second=fit.second)
     channels = all("vx" in log.spin.others for log in logs)
     torques = _torques(fit, told_by_channels=CHANNELS_TELL if channels else 0)
     ends = np.cumsum([0, *(log.found.rows.size for log in logs)])
@@ -112,10 +115,16 @@ def _checked(found: Turning, spin: Spin) -> Turning:
     return found
 
 
-def _fitted(logs: Sequence[_Log], *, most_growing: Array = ANY_GROWTH) -> MotionFit:
+def _fitted(
+    logs: Sequence[_Log],
+    *,
+    most_growing: Array = ANY_GROWTH,
+    second: Tied | None = None,
+    seek_second: bool = False,
+) -> MotionFit:
     """The motion in all logs, one behind the other: each as free, and its readings as noisy, as it is alone."""
-    own = None if len(logs) == 1 else _own([_one_behind_the_other([log]) for log in logs])
-    return _one_behind_the_other(logs, own=own, most_growing=most_growing)
+    own = None if len(logs) == 1 else _own([_one_behind_the_other([log], second=second) for log in logs])
+    return _one_behind_the_other(logs, own=own, most_growing=most_growing, second=second, seek_second=seek_second)
 
 
 def _own(alone: Sequence[MotionFit]) -> Own:
@@ -134,9 +143,7 @@ def _own(alone: Sequence[MotionFit]) -> Own:
     )
 
 
-def _one_behind_the_other(
-    logs: Sequence[_Log], *, own: Own | None = None, most_growing: Array = ANY_GROWTH
-) -> MotionFit:
+def _one_behind_the_other(logs: Sequence[_Log], **known: Any) -> MotionFit:
     times, stretches, begins, number = [], [], 0.0, 0
     for log in logs:
         taken = log.time_s[log.found.rows]
@@ -145,7 +152,7 @@ def _one_behind_the_other(
         begins, number = float(times[-1][-1]) + 1.0, int(stretches[-1][-1]) + 1
     time, stretch = np.concatenate(times), np.concatenate(stretches)
     readings = np.concatenate([log.found.readings_rad for log in logs])
-    return fitted_motion(readings, time, runs(stretch), own=own, most_growing=most_growing)
+    return fitted_motion(readings, time, runs(stretch), **known)
 
 
 def _sweep(log: _Log, fit: MotionFit, own: slice, torques: tuple[Torque, ...]) -> Sweep:
@@ -171,6 +178,7 @@ def _sweep(log: _Log, fit: MotionFit, own: slice, torques: tuple[Torque, ...]) -
             torques=torques,
             damping_per_s=fit.damping_per_s,
             damping_sd_per_s=fit.damping_sd_per_s,
+            second=fit.second,
             rows_aside=len(spin) - rows.size,
             even_clock=log.even,
         ),

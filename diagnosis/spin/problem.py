@@ -87,16 +87,12 @@ class Problem:
 
     def reduced(self, log_penalty: float, *, ridge: float = 1e-12) -> Reduced:
         """The problem with the spline eliminated, at one penalty."""
-        from scipy.linalg import cho_solve_banded, cholesky_banded
+        from scipy.linalg import cho_solve_banded
 
-        penalty = 10.0**log_penalty
-        by_readings, across, left, along, own, squares = self._of_readings
-        by_differences, differences = self._of_differences
-        held = penalty * self.stiffness * differences
-        system = by_readings + penalty * by_differences
-        # Of a knot interval without a reading in use the differences alone tell the coefficients, and not all of them.
-        system[0] += ridge * np.max(system[0])
-        factor = cholesky_banded(system, lower=True)
+        _, across, left, along, own, squares = self._of_readings
+        differences = self._of_differences[1]
+        held = 10.0**log_penalty * self.stiffness * differences
+        factor = self._factor(log_penalty, ridge)
         rhs = along - self.rough.T @ held
         solved = cho_solve_banded((factor, True), np.column_stack([rhs, across]))
         step, pulled = solved[:, 0], solved[:, 1:]
@@ -108,6 +104,43 @@ class Problem:
         log_det -= 2.0 * float(np.sum(np.log1p(0.5 * self.damping_per_s * self.spline.step_s)))
         log_det -= float(np.sum(np.log(self.stiffness)))
         return Reduced(normal, gradient, squares, log_det, step, pulled)
+
+    def _factor(self, log_penalty: float, ridge: float) -> Array:
+        """Cholesky's factor (4, k) of the spline's normal matrix."""
+        from scipy.linalg import cholesky_banded
+
+        system = self._of_readings[0] + 10.0**log_penalty * self._of_differences[0]
+        # Of a knot interval without a reading in use the differences alone tell the coefficients, and not all of them.
+        system[0] += ridge * np.max(system[0])
+        return np.asarray(cholesky_banded(system, lower=True))
+
+    def projection(self, log_penalty: float, *, ridge: float = 1e-12) -> Projection:
+        """What a column beside the spline is once that has taken what it can of it."""
+        reduced = self.reduced(log_penalty, ridge=ridge)
+        left = self.weights * (self.readings - self.spline.design @ (self.start + reduced.step))
+        return Projection(self, self._factor(log_penalty, ridge), np.asarray(left), reduced.squares)
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """Columns (m, n) less what the spline takes of them, weighed: so that products with columns are normal equations.
+
+    ``left`` (n,) is the same of the readings, and ``squares`` what of theirs is left.
+    """
+
+    problem: Problem
+    factor: Array
+    left: Array
+    squares: float
+
+    def of(self, columns: Array) -> Array:
+        """Of columns (m, n)."""
+        from scipy.linalg import cho_solve_banded
+
+        design, weights = self.problem.spline.design, self.problem.weights
+        weighed = weights * columns
+        pulled = cho_solve_banded((self.factor, True), np.asarray(design.T @ weighed.T))
+        return np.asarray(weighed - weights * np.asarray(design @ pulled).T)
 
 
 @dataclass(frozen=True, eq=False)

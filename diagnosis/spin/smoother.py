@@ -15,8 +15,10 @@ from functools import cached_property
 
 import numpy as np
 
+from diagnosis.spin.columns import HIGHEST_OF_FRICTION, HIGHEST_ORDER, ORDERS, torques, waves
 from diagnosis.spin.damping import damping
 from diagnosis.spin.problem import Own, Problem, Reduced, evened, held_at, knee, likeliest
+from diagnosis.spin.second_inertia import Torques, settled, tied
 from diagnosis.spin.speeds import several_speeds
 from diagnosis.spin.spline import Spline, rate
 from diagnosis.spin.torques import RATE
@@ -24,13 +26,10 @@ from diagnosis.spin.variance_components import Drawn, drawn, solved
 from twin.angles import Array
 from twin.confidence import OF_MAD
 from twin.effect import BoolArray
-from twin.mechanics.torque_ripple import response, second_order
+from twin.mechanics.torque_ripple import second_order
 from twin.pace import two_speeds_alone
+from twin.second_inertia import Behind, SecondInertia, Tied
 
-HIGHEST_ORDER = 32
-"""Of the sensor's error and of the torques: the second harmonic of a cogging by sixteen teeth."""
-HIGHEST_OF_FRICTION = 4
-"""Of what friction makes: what rubs is modulated by what runs out or is bent, not by teeth."""
 _OF_RUN_OUT = 2
 """Orders of a part that runs out or is bent: what it rubs has harmonics, none of them stronger."""
 _OF_ERROR, _OF_TORQUE = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
@@ -41,6 +40,8 @@ _OF_LATE = _OF_FRICTION + 2
 it, and of a late channel end; by how much the damping is other than it is taken to be follows."""
 _TOLD = 0.5
 """Share of a coefficient that the readings tell, from which on its scatter is told by them too."""
+_BEYOND_CHANCE = 9.0
+"""An order's square against its variance, from which on it is seen: chance passes it once in 8,000 times."""
 _ROUNDS = 5
 _FAR_OUT = 6.0
 
@@ -56,7 +57,7 @@ class MotionFit:
     [rad/s^2] up to the order 4, and of an error of order 2 that grows with the speed [rad for each rad/s].
     ``separable`` (orders,): whether a torque that makes all that is seen of an order would be told. ``growing`` (orders
     up to 4,) is the standard deviation of what of a torque grows with the speed [rad/s^2 for each rad/s], infinite
-    where that is not told.
+    where that is not told. ``second`` is an inertia that a belt or a coupling ties to the rotor, where one shows.
     """
 
     shaft_rad: Array
@@ -69,6 +70,7 @@ class MotionFit:
     damping_sd_per_s: float
     separable: BoolArray
     growing: Array
+    second: Tied | None = None
 
 
 ANY_GROWTH = np.full(HIGHEST_OF_FRICTION, np.inf)
@@ -99,6 +101,7 @@ class _Estimate:
     most_growing: Array = field(default_factory=lambda: ANY_GROWTH)
     turning_rad_s: Array | None = None
     largest_rad_s2: Array = field(default_factory=lambda: np.zeros(HIGHEST_ORDER))
+    second: Tied | None = None
 
     @cached_property
     def rates(self) -> tuple[Array, Array]:
@@ -160,26 +163,70 @@ class _Estimate:
 
     def _with_columns(self) -> _Estimate:
         """With the waves of the angle as it stands, and what torques at this speed and damping do to it."""
-        waves = _waves(self.shaft_rad)
+        errors = waves(self.shaft_rad)
         if not self.with_torques:
-            return replace(self, problem=replace(self.problem, columns=waves))
-        motion = (self.shaft_rad, *self.rates)
+            return replace(self, problem=replace(self.problem, columns=errors))
         damping_per_s, sd_per_s = self._damping()
-        columns = np.concatenate([waves, *_torques(*motion, damping_per_s)])
-        further = np.concatenate([waves, *_torques(*motion, damping_per_s + RATE)])
-        known = np.zeros(len(columns)) if self.terms is None else np.resize(self.terms.values, len(columns))
-        slower = known[_OF_ERROR:_OF_FRICTION] @ (further - columns)[_OF_ERROR:_OF_FRICTION] / RATE
+        second = None if self.second is None else self.second.second
+        turned = self._turned(damping_per_s, second)
+        known = np.resize(np.zeros(1) if self.terms is None else self.terms.values, _OF_LATE)[_OF_ERROR:_OF_FRICTION]
+
+        def changed(damped_per_s: float, other: SecondInertia | None) -> Array:
+            return np.asarray(known @ (self._turned(damped_per_s, other) - turned)[: known.size])
+
+        scattered = () if self.second is None else self.second.scattered()
+        further = [changed(damping_per_s + RATE, second) / RATE]
+        further += [part * changed(damping_per_s, other) for other, part in scattered]
         return replace(
             self,
             damping_per_s=damping_per_s,
             damping_sd_per_s=sd_per_s,
-            sd=np.concatenate([self.sd[:_OF_LATE], [max(sd_per_s, 1e-9)]]),
+            sd=np.concatenate([self.sd[:_OF_LATE], [max(sd_per_s, 1e-9)], np.ones(len(scattered))]),
             problem=replace(
                 self.problem,
-                columns=np.concatenate([columns, slower[None]]),
+                columns=np.concatenate([errors, turned, np.stack(further)]),
                 readings=self.readings - self._beyond_first_order(),
                 damping_per_s=damping_per_s,
             ),
+        )
+
+    def _turned(self, damping_per_s: float, second: SecondInertia | None) -> Array:
+        """What torques do to the shaft (.., n) [rad], see :func:`diagnosis.spin.columns.torques`."""
+        behind = None if second is None else Behind(second, self.problem.time_s, self.stretches)
+        return torques(self.shaft_rad, *self.rates, damping_per_s=damping_per_s, behind=behind)
+
+    def with_second(self) -> _Estimate:
+        """The rotor of two inertias where one of one piece is far less likely, and the motion with it."""
+        assert self.log_penalty is not None
+        at = {"log_penalty": self.log_penalty, "variance": self.variance}
+        second = tied(self.problem, self._torques_told(), **at)
+        if second is None:
+            return self
+        found = replace(self, second=second).next().next()
+        assert found.log_penalty is not None
+        at = {"log_penalty": found.log_penalty, "variance": found.variance}
+        return replace(found, second=settled(second, found.problem, found._torques_told(), **at)).next()
+
+    def _torques_told(self) -> Torques:
+        """Torques that are told, each as large as to make all that is seen of its order."""
+        assert self.log_penalty is not None
+        assert self.terms is not None
+        usual, of = float(np.median(np.abs(self.rates[0]))), slice(_OF_ERROR, _OF_TORQUE)
+        told = self.terms.values[of] ** 2 / np.diag(self.terms.covariance)[of]
+        seen = _seen(self.problem.reduced(self.log_penalty), self.variance)
+        makes = {
+            order: size * (order * usual) ** 2
+            for order, size, square in zip(ORDERS, seen, told.reshape(-1, 2).sum(axis=1), strict=True)
+            if square > 2.0 * _BEYOND_CHANCE
+        }
+        return Torques(
+            makes,
+            self.shaft_rad,
+            *self.rates,
+            self.damping_per_s,
+            self.problem.time_s,
+            self.stretches,
+            free_rad_s=float(np.median(knee(self.problem, self.log_penalty))),
         )
 
     def _damping(self) -> tuple[float, float]:
@@ -200,8 +247,8 @@ class _Estimate:
         """What the torques that were found turn the shaft by, (n,) [rad], beyond what is one of the columns."""
         if self.terms is None or len(self.terms.values) <= _OF_ERROR:
             return 0.0
-        torques = self.terms.values[_OF_ERROR:_OF_TORQUE].reshape(-1, 2)
-        return second_order(torques, shaft_rad=self.shaft_rad, speed_rad_s=self.rates[0])
+        known = self.terms.values[_OF_ERROR:_OF_TORQUE].reshape(-1, 2)
+        return second_order(known, shaft_rad=self.shaft_rad, speed_rad_s=self.rates[0])
 
 
 def fitted_motion(
@@ -211,6 +258,8 @@ def fitted_motion(
     *,
     most_growing: Array = ANY_GROWTH,
     own: Own | None = None,
+    second: Tied | None = None,
+    seek_second: bool = False,
 ) -> MotionFit:
     """Estimate the motion behind unwrapped readings.
 
@@ -227,8 +276,12 @@ def fitted_motion(
         What of each order's torque (orders up to 4,) is known to grow with the speed at most [rad/s^2 for each rad/s].
     own : Own, optional
         What the readings of several logs have of their own; not given: all are alike.
+    second : Tied, optional
+        An inertia that is known to be tied to the rotor.
+    seek_second : bool
+        Whether one is looked for.
     """
-    found = _set_out(readings_rad, time_s, stretches, own, most_growing)
+    found = replace(_set_out(readings_rad, time_s, stretches, own, most_growing), second=second)
     # The first round finds the motion and its speed, which what torques do follows.
     found = found.next()
     if several_speeds(found.rates[0]):
@@ -236,6 +289,8 @@ def fitted_motion(
         found = replace(found, log_penalty=None)
     for _ in range(_ROUNDS - 1):
         found = found.next()
+    if seek_second and found.with_torques:
+        found = found.with_second()
     assert found.terms is not None
     assert found.log_penalty is not None
     return MotionFit(
@@ -249,6 +304,7 @@ def fitted_motion(
         damping_sd_per_s=found.damping_sd_per_s,
         separable=found.separable,
         growing=found.growing,
+        second=found.second,
     )
 
 
@@ -371,24 +427,3 @@ def _drawn(
     if more:
         found = drawn(reduced.normal, reduced.gradient, variance, groups=[*groups, *more], sd=found.sd)
     return found, np.where(told, found.sd[[group[0] for group in growing]], np.inf)
-
-
-def _waves(shaft_rad: Array) -> Array:
-    """Cosine and sine (2 orders, n) of each order of the angle."""
-    return np.concatenate(
-        [np.stack([np.cos(k * shaft_rad), np.sin(k * shaft_rad)]) for k in range(1, HIGHEST_ORDER + 1)]
-    )
-
-
-def _torques(shaft_rad: Array, speed_rad_s: Array, acceleration_rad_s2: Array, damping_per_s: float) -> list[Array]:
-    """What torques of each order that give 1 rad/s^2, or modulate drag, add to the angle: (.., n) [rad] each.
-
-    And an error of order 2 that is as large as the speed.
-    """
-    motion = {"shaft_rad": shaft_rad, "speed_rad_s": speed_rad_s, "acceleration_rad_s2": acceleration_rad_s2}
-    moved = np.concatenate(
-        [response(order, **motion, damping_per_s=damping_per_s) for order in range(1, HIGHEST_ORDER + 1)]
-    )
-    late = speed_rad_s * np.stack([np.cos(2.0 * shaft_rad), np.sin(2.0 * shaft_rad)])
-    rubs = moved[: 2 * HIGHEST_OF_FRICTION]
-    return [moved, speed_rad_s * rubs, np.sign(speed_rad_s) * rubs, late]

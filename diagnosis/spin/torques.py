@@ -12,6 +12,7 @@ from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import response
 from twin.motion import Motion
 from twin.noise.spectrum import to_cosine, to_rows
+from twin.second_inertia import Behind, SecondInertia
 
 RATE = 1e-3
 """Damping [1/s] by which the derivative of a response is taken."""
@@ -35,35 +36,41 @@ def torque_columns(motion: Motion) -> Array:
     # What was found of the torques turns the shaft as damped as it is, which is known so well.
     damped = (found_torques(motion, more_damped_per_s=RATE) - found_torques(motion)) / RATE
     columns.append(found.damping_sd_per_s * damped[None])
+    if found.second is not None:
+        usual = found_torques(motion)
+        for other, part in found.second.scattered():
+            columns.append(part * (found_torques(motion, second=other) - usual)[None])
     return np.concatenate(columns)
 
 
 @lru_cache(maxsize=8)
-def found_torques(motion: Motion, *, more_damped_per_s: float = 0.0) -> Array:
+def found_torques(motion: Motion, *, more_damped_per_s: float = 0.0, second: SecondInertia | None = None) -> Array:
     """Angle (n,) [rad] by which the torques that were found turn the shaft, to first order.
 
     It is part of an estimated motion. What they may be scatters about none, and not about what was found: readings that
-    told it would count twice.
+    told it would count twice. ``second``: behind another inertia than the one that was found.
     """
     turned = np.zeros(len(motion))
     for torque in () if motion.estimated is None else motion.estimated.torques:
         if torque.scatter_rad_s2:
-            moved = _moved(motion, torque.order, more_damped_per_s=more_damped_per_s)
+            moved = _moved(motion, torque.order, more_damped_per_s=more_damped_per_s, second=second)
             turned += np.array([torque.cos_rad_s2, torque.sin_rad_s2]) @ moved
     return turned
 
 
-def _moved(motion: Motion, order: int, *, more_damped_per_s: float = 0.0) -> Array:
+def _moved(motion: Motion, order: int, *, more_damped_per_s: float = 0.0, second: SecondInertia | None = None) -> Array:
     """What torques of an order that give 1 rad/s^2, with its cosine and its sine, turn the shaft by (2, n) [rad]."""
     found = motion.estimated
     assert found is not None
     speed, acceleration = _rates(motion)
+    known = found.second.second if second is None and found.second is not None else second
     moved = response(
         order,
         shaft_rad=motion.shaft_rad,
         speed_rad_s=speed,
         acceleration_rad_s2=acceleration,
         damping_per_s=found.damping_per_s + more_damped_per_s,
+        behind=None if known is None else Behind(known, motion.time_s, found.slices),
     )
     return np.where(found.knee_rad > 0.0, moved, 0.0)
 

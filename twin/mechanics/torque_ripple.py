@@ -9,23 +9,34 @@ from __future__ import annotations
 import numpy as np
 
 from twin.angles import TAU, Array
+from twin.second_inertia import Behind
 
 _GRID = 4096
 """Angles of a turn: of the orders up to 64, 64 a period."""
 
 
 def response(
-    order: float, *, shaft_rad: Array, speed_rad_s: Array, acceleration_rad_s2: Array, damping_per_s: float = 0.0
+    order: float,
+    *,
+    shaft_rad: Array,
+    speed_rad_s: Array,
+    acceleration_rad_s2: Array,
+    damping_per_s: float = 0.0,
+    behind: Behind | None = None,
 ) -> Array:
     """Angles (2, n) [rad] by which accelerations cos(k theta) and sin(k theta) of 1 rad/s^2 turn a moving shaft.
 
     The first two terms of the expansion in (rate of change of the speed)/(order speed^2): with h e^(ik theta) for the
     angle, h'' + (2ikw + g) h' + (ikw' - k^2 w^2 + ikwg) h = 1, where g is the damping, by which friction and a drive
-    that holds the speed slow a departure from it. ``speed_rad_s`` must nowhere be zero.
+    that holds the speed slow a departure from it. ``speed_rad_s`` must nowhere be zero. ``behind``: the rotor is not of
+    one piece; accelerations are those of both inertias together.
     """
     turning = order * speed_rad_s
     size = (1.0 - 3.0j * order * acceleration_rad_s2 / turning**2) / (1j * turning * (1j * turning + damping_per_s))
-    wave = size * np.exp(1j * order * shaft_rad)
+    if behind is None:
+        wave = size * np.exp(1j * order * shaft_rad)
+    else:
+        wave = behind.carried(size, order, shaft_rad=shaft_rad, speed_rad_s=speed_rad_s)
     return np.stack([wave.real, wave.imag])
 
 

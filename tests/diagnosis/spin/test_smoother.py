@@ -10,8 +10,9 @@ import pytest
 from diagnosis.discovery.fitting.coefficients import observables_to_cosine
 from diagnosis.discovery.fitting.nuisance import without_nuisance
 from diagnosis.discovery.fitting.observations import collect
+from diagnosis.spin.columns import HIGHEST_ORDER
 from diagnosis.spin.of_log import sweeps_of
-from diagnosis.spin.smoother import HIGHEST_ORDER, MotionFit, fitted_motion
+from diagnosis.spin.smoother import MotionFit, fitted_motion
 from diagnosis.spin.torques import Loose, torque_columns
 from tests.hidden.spins.generator import draw
 from twin.noise.spectrum import to_cosine, to_rows

@@ -104,7 +104,7 @@ class Behind:
         pole, residue = self.second.pole, self.second.residue()
         for rows in self.stretches:
             own, angle, time = size[rows], shaft_rad[rows], self.time_s[rows]
-            turning = 1j * order * speed_rad_s[rows]
+            turning = np.asarray(1j * order * speed_rad_s[rows], dtype=np.complex128)
             # A swing the other way round is never near its resonance: it follows at once.
             near, far = (pole, pole.conjugate()) if turning[0].imag > 0.0 else (pole.conjugate(), pole)
             at_near, at_far = (residue, residue.conjugate()) if near is pole else (residue.conjugate(), residue)

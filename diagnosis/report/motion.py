@@ -18,6 +18,7 @@ from twin.catalogue import find
 from twin.confidence import Z95
 from twin.estimated_motion import EstimatedMotion, Torque
 from twin.pace import STOP_AND_MEASURE_S, two_speeds_alone
+from twin.second_inertia import Tied
 
 TORQUE = "torque_ripple"
 """What a torque locked to the angle is called where a cause may as well be one."""
@@ -29,6 +30,7 @@ USB_FRAMES_HZ = 1000.0
 """At which a full-speed USB asks a device."""
 WITHOUT_CURRENT = "a log in which the shaft coasts, the motor's current off: the current makes a torque as well"
 THIRD_SPEED = "a log at a third speed, or coasting down: a rotor of one piece answers to a torque by 1/speed^2 at all"
+_OF_SECOND = ("resonance_Hz", "damping_percent", "share_of_the_rotor")
 _BEYOND_CHANCE = 4.0
 """Standard deviations from which on a torque is listed: one of sixteen orders, of two components each, passes it by
 chance in one log of 200 (16 exp(-8))."""
@@ -52,6 +54,7 @@ def motion_answer(found: Discovery) -> dict[str, Any]:
             "torque_ripple": [_torque(one) for one in _listed(estimated)],
             "not_separable": not_separable(estimated),
             "of_one_piece": _of_one_piece(estimated, speed),
+            "second_inertia": None if estimated.second is None else _second_inertia(estimated.second),
             "times_off": [
                 one for cause in found.causes if cause.name == "unnamed" for one in _times_off(found.fit, cause.keys)
             ],
@@ -86,7 +89,18 @@ def _of_one_piece(estimated: EstimatedMotion, speed: Array) -> list[int]:
 
     Where a belt or a coupling resonates at the order's frequency, the rotor answers by more, by less, or the other way.
     """
-    return [one.order for one in _listed(estimated)] if two_speeds_alone(speed) else []
+    open_to_it = estimated.second is None and two_speeds_alone(speed)
+    return [one.order for one in _listed(estimated)] if open_to_it else []
+
+
+def _second_inertia(tied: Tied) -> dict[str, Any]:
+    """What a belt or a coupling ties to the rotor, each figure with its interval."""
+    away = Z95 * np.sqrt(np.diag(tied.covariance))
+    figures = {}
+    for name, at, far, scale in zip(_OF_SECOND, tied.logarithms, away, (1.0 / TAU, 100.0, 1.0), strict=True):
+        low, value, high = scale * np.exp([at - far, at, at + far])
+        figures[name] = {"value": float(value), "low": float(low), "high": float(high)}
+    return figures
 
 
 def _listed(estimated: EstimatedMotion) -> list[Torque]:
@@ -236,6 +250,13 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
             f"order {one['order']}: {plain(one['acceleration_rad_s2'], 3)} rad/s^2" for one in motion["torque_ripple"]
         )
         said.append(f"Torques locked to the angle, told from the sensor by the speeds: {listed}")
+    if motion["second_inertia"] is not None:
+        resonance, damping, share = (_with_range(motion["second_inertia"][name]) for name in _OF_SECOND)
+        said.append(
+            f"The rotor is not of one piece: a belt or a coupling ties an inertia to it, {share} of its own, which "
+            f"resonates at {resonance} Hz, damped by {damping} % of the critical damping; what torques do to the shaft "
+            "is worked out with it"
+        )
     if motion["not_separable"]:
         said.append(
             f"Not told from a torque locked to the angle: orders {_ranges(motion['not_separable'])}. Here all of that "
@@ -256,6 +277,10 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
     ]
     said.append("Not seen without a reference: the zero, what drifts slower than a turn, and what a reversal leaves")
     return said
+
+
+def _with_range(figure: Mapping[str, float]) -> str:
+    return f"{plain(figure['value'], 3)} ({plain(figure['low'], 3)} to {plain(figure['high'], 3)})"
 
 
 def correction_words(estimated: EstimatedMotion | None) -> list[str]:

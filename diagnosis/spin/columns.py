@@ -15,6 +15,12 @@ HIGHEST_ORDER = 32
 HIGHEST_OF_FRICTION = 4
 """Of what friction makes: what rubs is modulated by what runs out or is bent, not by teeth."""
 ORDERS = range(1, HIGHEST_ORDER + 1)
+OF_ERROR, OF_TORQUE = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
+OF_GROWING = OF_TORQUE + 2 * HIGHEST_OF_FRICTION
+OF_FRICTION = OF_GROWING + 2 * HIGHEST_OF_FRICTION
+OF_LATE = OF_FRICTION + 2
+"""Where the coefficients of the error, of torques alike at any speed, of those that grow and of those that reverse with
+it, and of a late channel end; by how much damping and second inertia are other than they are taken to be follows."""
 
 
 def waves(shaft_rad: Array) -> Array:

@@ -11,7 +11,8 @@ import numpy as np
 from diagnosis.spin.clock import even_clock
 from diagnosis.spin.columns import HIGHEST_OF_FRICTION, HIGHEST_ORDER
 from diagnosis.spin.problem import Own
-from diagnosis.spin.smoother import ANY_GROWTH, MotionFit, fitted_motion
+from diagnosis.spin.scatter import ANY_GROWTH
+from diagnosis.spin.smoother import MotionFit, fitted_motion
 from diagnosis.spin.stretches import Turning, turning
 from twin.angles import TAU, Array, IntArray
 from twin.errors import SweepError

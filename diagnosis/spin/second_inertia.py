@@ -13,12 +13,11 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.columns import HIGHEST_OF_FRICTION, HIGHEST_ORDER, moved
+from diagnosis.spin.columns import HIGHEST_OF_FRICTION, OF_ERROR, moved
 from diagnosis.spin.problem import Problem, Projection, degrees_of_freedom
 from twin.angles import TAU, Array
 from twin.second_inertia import Behind, SecondInertia, Tied
 
-_OF_ERROR = 2 * HIGHEST_ORDER
 _DAMPING, _SHARE = (0.01, 0.2), (0.03, 3.0)
 """Between which damping and share are looked for: a steel spring's to a rubber belt's, a small pulley's to a
 flywheel's. Any logarithm between is as likely."""
@@ -33,6 +32,9 @@ _SELDOM = 0.02
 """Share of the readings that may be slower, and faster, than those that count for where it is looked for."""
 _PEAKS = 3
 """Likeliest resonances of which a fit sets out."""
+_LINES = 64.0
+"""Resolved frequencies to either side of a resonance within which a wave in time is looked for at most: one that is
+wider is no wave."""
 _STEP = 1e-3
 """Of the logarithms, by which slopes are taken."""
 _STILL, _MOST_STEPS, _MOST_DAMPED = 0.1, 20, 1e3
@@ -40,8 +42,8 @@ _STILL, _MOST_STEPS, _MOST_DAMPED = 0.1, 20, 1e3
 _WAYS = _STEP * np.eye(3)
 _RIDGE = 1e-9
 """Added to the normal equations of the error's waves, whose readings are thousands."""
-_SURELY = float(np.log(1000.0))
-"""Logarithm of a thousand to one: so much likelier what would change all else has to be than none of it."""
+_SURELY = float(np.log(20.0))
+"""Logarithm of twenty to one, as a level of 95 % is: it changes what torques do, and widens what that leaves open."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,11 +131,6 @@ def _log_odds(profile: _Profile, found: Tied) -> float:
     return gain + spread - float(np.sum(np.log(np.ptp(profile.torques.bounds, axis=1))))
 
 
-def settled(found: Tied, problem: Problem, torques: Torques, *, log_penalty: float, variance: float) -> Tied:
-    """The likeliest second inertia near one that was found, of a motion that was estimated with it."""
-    return _Profile.of(problem, torques, log_penalty, variance).best(found.logarithms)
-
-
 @dataclass(frozen=True, eq=False)
 class _Profile:
     """The restricted likelihood of a second inertia, motion and error of the sensor at their best.
@@ -152,7 +149,7 @@ class _Profile:
     @classmethod
     def of(cls, problem: Problem, torques: Torques, log_penalty: float, variance: float) -> _Profile:
         projection = problem.projection(log_penalty)
-        return cls._with(torques, projection, problem.columns[:_OF_ERROR], variance)
+        return cls._with(torques, projection, problem.columns[:OF_ERROR], variance)
 
     @classmethod
     def _with(cls, torques: Torques, projection: Projection, columns: Array, variance: float) -> _Profile:
@@ -165,13 +162,21 @@ class _Profile:
 
     def beside_a_wave(self, second: SecondInertia) -> _Profile:
         """The same, with the strongest wave in time within the width of a resonance beside the error."""
+        from scipy.optimize import minimize_scalar
+
         problem = self.projection.problem
         left, time_s = self.projection.left - self.errors.T @ self.along, problem.time_s - problem.time_s[0]
-        wide = max(-2.0 * second.pole.real, TAU / time_s[-1])
-        tried = second.resonance_rad_s + np.arange(-wide, wide, 0.5 * TAU / time_s[-1])
-        loud = [abs(np.exp(-1j * one * time_s) @ left) for one in tried]
-        phase = tried[int(np.argmax(loud))] * time_s
-        columns = np.concatenate([problem.columns[:_OF_ERROR], [np.cos(phase), np.sin(phase)]])
+        resolved = TAU / float(time_s[-1])
+        wide = resolved * float(np.clip(-2.0 * second.pole.real / resolved, 1.0, _LINES))
+
+        def silence(frequency_rad_s: float) -> float:
+            return -abs(complex(np.exp(-1j * frequency_rad_s * time_s) @ left))
+
+        tried = second.resonance_rad_s + np.arange(-wide, wide, 0.5 * resolved)
+        loudest = float(tried[np.argmin([silence(float(one)) for one in tried])])
+        bounds = (loudest - 0.5 * resolved, loudest + 0.5 * resolved)
+        phase = float(minimize_scalar(silence, bounds=bounds, method="bounded").x) * time_s
+        columns = np.concatenate([problem.columns[:OF_ERROR], [np.cos(phase), np.sin(phase)]])
         return self._with(self.torques, self.projection, columns, self.variance)
 
     def cost(self, second: SecondInertia | None) -> float:
@@ -199,7 +204,7 @@ class _Profile:
                 damped *= 10.0
             else:
                 break
-        return Tied(_of(at), np.linalg.inv(told))
+        return Tied(_of(at), np.asarray(np.linalg.inv(told)))
 
     def _slopes(self, at: Array) -> tuple[float, Array, Array]:
         """The cost at logarithms (3,), what readings and bounds tell of them (3, 3), and the score (3,)."""

@@ -15,31 +15,21 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.columns import HIGHEST_OF_FRICTION, HIGHEST_ORDER, ORDERS, torques, waves
+from diagnosis.spin.columns import HIGHEST_ORDER, OF_ERROR, OF_FRICTION, OF_LATE, OF_TORQUE, ORDERS, torques, waves
 from diagnosis.spin.damping import damping
-from diagnosis.spin.problem import Own, Problem, Reduced, evened, held_at, knee, likeliest
-from diagnosis.spin.second_inertia import Torques, settled, tied
+from diagnosis.spin.problem import Own, Problem, evened, held_at, knee, likeliest
+from diagnosis.spin.scatter import ANY_GROWTH, amplitudes_seen, coefficients, separable_orders
+from diagnosis.spin.second_inertia import Torques, tied
 from diagnosis.spin.speeds import several_speeds
 from diagnosis.spin.spline import Spline, rate
 from diagnosis.spin.torques import RATE
-from diagnosis.spin.variance_components import Drawn, drawn, solved
+from diagnosis.spin.variance_components import Drawn
 from twin.angles import Array
 from twin.confidence import OF_MAD
 from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import second_order
-from twin.pace import two_speeds_alone
 from twin.second_inertia import Behind, SecondInertia, Tied
 
-_OF_RUN_OUT = 2
-"""Orders of a part that runs out or is bent: what it rubs has harmonics, none of them stronger."""
-_OF_ERROR, _OF_TORQUE = 2 * HIGHEST_ORDER, 4 * HIGHEST_ORDER
-_OF_GROWING = _OF_TORQUE + 2 * HIGHEST_OF_FRICTION
-_OF_FRICTION = _OF_GROWING + 2 * HIGHEST_OF_FRICTION
-_OF_LATE = _OF_FRICTION + 2
-"""Where the coefficients of the error, of torques alike at any speed, of those that grow and of those that reverse with
-it, and of a late channel end; by how much the damping is other than it is taken to be follows."""
-_TOLD = 0.5
-"""Share of a coefficient that the readings tell, from which on its scatter is told by them too."""
 _BEYOND_CHANCE = 9.0
 """An order's square against its variance, from which on it is seen: chance passes it once in 8,000 times."""
 _ROUNDS = 5
@@ -71,9 +61,6 @@ class MotionFit:
     separable: BoolArray
     growing: Array
     second: Tied | None = None
-
-
-ANY_GROWTH = np.full(HIGHEST_OF_FRICTION, np.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +100,7 @@ class _Estimate:
     @property
     def with_torques(self) -> bool:
         """Whether torques are among the columns."""
-        return len(self.sd) > _OF_ERROR
+        return len(self.sd) > OF_ERROR
 
     def next(self) -> _Estimate:
         """One round: damping, penalty, coefficients, and which readings count, one after the other."""
@@ -124,8 +111,8 @@ class _Estimate:
             made.problem, made.sd, made.variance, around=self.log_penalty, turning_rad_s=turning
         )
         reduced = made.problem.reduced(log_penalty)
-        separable = _separable(reduced, variance, usual, self.largest_rad_s2)
-        terms, growing = _drawn(
+        separable = separable_orders(reduced, variance, usual, self.largest_rad_s2)
+        terms, growing = coefficients(
             reduced,
             made.sd,
             variance,
@@ -133,7 +120,7 @@ class _Estimate:
             separable,
             most_growing=self.most_growing,
         )
-        moved = np.r_[_OF_ERROR : min(_OF_FRICTION, len(terms.values)), _OF_LATE : len(terms.values)]
+        moved = np.r_[OF_ERROR : min(OF_FRICTION, len(terms.values)), OF_LATE : len(terms.values)]
         start = made.problem.start + reduced.step - reduced.pulled @ terms.values
         smooth = made.problem.spline.design @ start
         left = made.problem.readings - smooth - terms.values @ made.problem.columns
@@ -169,7 +156,7 @@ class _Estimate:
         damping_per_s, sd_per_s = self._damping()
         second = None if self.second is None else self.second.second
         turned = self._turned(damping_per_s, second)
-        known = np.resize(np.zeros(1) if self.terms is None else self.terms.values, _OF_LATE)[_OF_ERROR:_OF_FRICTION]
+        known = np.resize(np.zeros(1) if self.terms is None else self.terms.values, OF_LATE)[OF_ERROR:OF_FRICTION]
 
         def changed(damped_per_s: float, other: SecondInertia | None) -> Array:
             return np.asarray(known @ (self._turned(damped_per_s, other) - turned)[: known.size])
@@ -181,7 +168,7 @@ class _Estimate:
             self,
             damping_per_s=damping_per_s,
             damping_sd_per_s=sd_per_s,
-            sd=np.concatenate([self.sd[:_OF_LATE], [max(sd_per_s, 1e-9)], np.ones(len(scattered))]),
+            sd=np.concatenate([self.sd[:OF_LATE], [max(sd_per_s, 1e-9)], np.ones(len(scattered))]),
             problem=replace(
                 self.problem,
                 columns=np.concatenate([errors, turned, np.stack(further)]),
@@ -198,22 +185,16 @@ class _Estimate:
     def with_second(self) -> _Estimate:
         """The rotor of two inertias where one of one piece is far less likely, and the motion with it."""
         assert self.log_penalty is not None
-        at = {"log_penalty": self.log_penalty, "variance": self.variance}
-        second = tied(self.problem, self._torques_told(), **at)
-        if second is None:
-            return self
-        found = replace(self, second=second).next().next()
-        assert found.log_penalty is not None
-        at = {"log_penalty": found.log_penalty, "variance": found.variance}
-        return replace(found, second=settled(second, found.problem, found._torques_told(), **at)).next()
+        second = tied(self.problem, self._torques_told(), log_penalty=self.log_penalty, variance=self.variance)
+        return self if second is None else replace(self, second=second).next().next()
 
     def _torques_told(self) -> Torques:
         """Torques that are told, each as large as to make all that is seen of its order."""
         assert self.log_penalty is not None
         assert self.terms is not None
-        usual, of = float(np.median(np.abs(self.rates[0]))), slice(_OF_ERROR, _OF_TORQUE)
+        usual, of = float(np.median(np.abs(self.rates[0]))), slice(OF_ERROR, OF_TORQUE)
         told = self.terms.values[of] ** 2 / np.diag(self.terms.covariance)[of]
-        seen = _seen(self.problem.reduced(self.log_penalty), self.variance)
+        seen = amplitudes_seen(self.problem.reduced(self.log_penalty), self.variance)
         makes = {
             order: size * (order * usual) ** 2
             for order, size, square in zip(ORDERS, seen, told.reshape(-1, 2).sum(axis=1), strict=True)
@@ -231,7 +212,7 @@ class _Estimate:
 
     def _damping(self) -> tuple[float, float]:
         """Of the shaft at this penalty, and its standard deviation [1/s]; none is looked for in the first round."""
-        if self.log_penalty is None or self.terms is None or len(self.terms.values) <= _OF_ERROR:
+        if self.log_penalty is None or self.terms is None or len(self.terms.values) <= OF_ERROR:
             return 0.0, 0.0
         fastest = float(np.max(np.abs(self.rates[0])))
         return damping(
@@ -245,9 +226,9 @@ class _Estimate:
 
     def _beyond_first_order(self) -> Array | float:
         """What the torques that were found turn the shaft by, (n,) [rad], beyond what is one of the columns."""
-        if self.terms is None or len(self.terms.values) <= _OF_ERROR:
+        if self.terms is None or len(self.terms.values) <= OF_ERROR:
             return 0.0
-        known = self.terms.values[_OF_ERROR:_OF_TORQUE].reshape(-1, 2)
+        known = self.terms.values[OF_ERROR:OF_TORQUE].reshape(-1, 2)
         return second_order(known, shaft_rad=self.shaft_rad, speed_rad_s=self.rates[0])
 
 
@@ -285,7 +266,7 @@ def fitted_motion(
     # The first round finds the motion and its speed, which what torques do follows.
     found = found.next()
     if several_speeds(found.rates[0]):
-        found = replace(found, sd=np.concatenate([found.sd, np.ones(_OF_LATE + 1 - _OF_ERROR)]))
+        found = replace(found, sd=np.concatenate([found.sd, np.ones(OF_LATE + 1 - OF_ERROR)]))
         found = replace(found, log_penalty=None)
     for _ in range(_ROUNDS - 1):
         found = found.next()
@@ -328,7 +309,7 @@ def _set_out(
         held = held_at(problem, own.knee_rad_s)
         problem = replace(problem, stiffness=held / float(np.median(held)))
     start = problem.reduced(0.0).step
-    shaft, free = np.asarray(spline.design @ start), np.full(_OF_ERROR, np.inf)
+    shaft, free = np.asarray(spline.design @ start), np.full(OF_ERROR, np.inf)
     return _Estimate(
         replace(problem, start=start),
         readings_rad,
@@ -340,90 +321,3 @@ def _set_out(
         turning_rad_s=None if own is None else own.usual_rad_s,
         largest_rad_s2=np.zeros(HIGHEST_ORDER) if own is None else own.largest_rad_s2,
     )
-
-
-def _seen(reduced: Reduced, variance: float) -> Array:
-    """Amplitude [rad] of each order (orders,): without any torque, all of it is the sensor's."""
-    own = slice(_OF_ERROR)
-    seen = np.linalg.solve(reduced.normal[own, own] + 1e-12 * np.eye(_OF_ERROR), reduced.gradient[own])
-    noise = variance / np.diag(reduced.normal)[own]
-    return np.asarray(np.sqrt(np.sum((seen**2 + noise).reshape(-1, 2), axis=1)))
-
-
-def _separable(reduced: Reduced, variance: float, usual_rad_s: float, largest_rad_s2: Array) -> BoolArray:
-    """Whether of each order (orders,) a torque that makes all that is seen of it would be told from an error."""
-    if len(reduced.gradient) <= _OF_ERROR:
-        return np.zeros(HIGHEST_ORDER, dtype=bool)
-    orders = np.arange(1, HIGHEST_ORDER + 1)
-    makes = np.maximum(_seen(reduced, variance) * (orders * usual_rad_s) ** 2, largest_rad_s2)
-    return _told(reduced, variance, np.repeat(makes, 2))[:HIGHEST_ORDER]
-
-
-def _late_channel_told(reduced: Reduced, variance: float, usual_rad_s: float) -> bool:
-    """Whether an error of order 2 that grows with the speed is told from torques, were either all that is seen."""
-    orders = np.arange(1, HIGHEST_ORDER + 1)
-    seen = _seen(reduced, variance)
-    makes = np.repeat(seen * (orders * usual_rad_s) ** 2, 2)
-    late = np.full(2, seen[1] / usual_rad_s)
-    rubs = makes[: 2 * HIGHEST_OF_FRICTION]
-    told = _told(reduced, variance, np.concatenate([makes, rubs / usual_rad_s, 1e-9 * rubs, late]))
-    return bool(told[1] and told[-1])
-
-
-def _told(reduced: Reduced, variance: float, sd: Array) -> BoolArray:
-    """Of which pairs beside the error of the sensor the readings tell most, were they to scatter so (2 pairs,)."""
-    count = _OF_ERROR + sd.size
-    scatter = np.concatenate([np.full(_OF_ERROR, np.inf), sd])
-    told = solved(reduced.normal[:count, :count], reduced.gradient[:count], variance, scatter).told[_OF_ERROR:]
-    return np.asarray(np.mean(told.reshape(-1, 2), axis=1) > _TOLD)
-
-
-def _drawn(
-    reduced: Reduced,
-    sd: Array,
-    variance: float,
-    speed_rad_s: Array,
-    separable: BoolArray,
-    *,
-    most_growing: Array,
-) -> tuple[Drawn, Array]:
-    """The coefficients, each order's torque by a scatter of its own; none where it would not be told.
-
-    A torque that grows with the speed, as a modulated viscous friction does, is told from a constant one by three
-    speeds or more: at two alone it would be by how each of them wavers, which a drive that holds it answers to in its
-    own way. Where it is not told, it is taken to be there, half as large in the mean square over the readings, but no
-    larger than it is known to be at most, nor than those of the orders 1 and 2: a torque of a higher order is a
-    cogging, which does not grow. One that reverses with the speed, as a modulated dry friction does, is told by a log
-    that has both directions. An error of order 2 that grows with the speed, as of a channel that is read late, is told
-    by three speeds; where it is not, none is taken to be there.
-    """
-    if len(sd) <= _OF_ERROR:
-        return solved(reduced.normal, reduced.gradient, variance, sd), ANY_GROWTH
-    usual_rad_s = float(np.median(np.abs(speed_rad_s)))
-    both_ways, third_speed = bool(np.ptp(np.sign(speed_rad_s)) > 0.0), not two_speeds_alone(speed_rad_s)
-    pairs = [np.arange(place, place + 2) for place in range(_OF_ERROR, _OF_LATE, 2)]
-    growing = pairs[HIGHEST_ORDER:][:HIGHEST_OF_FRICTION]
-    reversing = pairs[HIGHEST_ORDER + HIGHEST_OF_FRICTION : -1] if both_ways else []
-    groups = [pair for all_of in (pairs, reversing) for pair, told in zip(all_of, separable, strict=False) if told]
-    sd = sd.copy()
-    sd[_OF_ERROR:_OF_FRICTION] = 1e-9 * usual_rad_s
-    sd[_OF_FRICTION:_OF_LATE] = 1e-9 / usual_rad_s
-    sd[np.concatenate([np.zeros(0, dtype=np.int64), *groups])] = usual_rad_s**2
-    if third_speed and _late_channel_told(reduced, variance, usual_rad_s):
-        # Between two speeds it does what a torque of order 2 does, and would put another error in the sensor.
-        sd[pairs[-1]] = 1.0 / usual_rad_s
-        groups = [*groups, pairs[-1]]
-    found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
-    sd = found.sd.copy()
-    half = 0.5 * sd[[pair[0] for pair in pairs[: len(growing)]]] / float(np.sqrt(np.mean(speed_rad_s**2)))
-    if separable[:_OF_RUN_OUT].any():
-        beyond = half[_OF_RUN_OUT:]
-        half[_OF_RUN_OUT:] = np.clip(np.max(half[:_OF_RUN_OUT]), np.minimum(1e-9, beyond), beyond)
-    for group, size in zip(growing, np.minimum(half, most_growing), strict=True):
-        sd[group] = size
-    found = drawn(reduced.normal, reduced.gradient, variance, groups=groups, sd=sd)
-    told = np.array([third_speed and bool(np.mean(found.told[group]) > _TOLD) for group in growing])
-    more = [group for group, is_told in zip(growing, told, strict=True) if is_told]
-    if more:
-        found = drawn(reduced.normal, reduced.gradient, variance, groups=[*groups, *more], sd=found.sd)
-    return found, np.where(told, found.sd[[group[0] for group in growing]], np.inf)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from tests.mutations.mutation import Mutation, of_one_file
 
 _D, _T = "diagnosis/discovery", "tests/diagnosis/discovery"
+_SECOND = "tests/diagnosis/spin/test_second_inertia.py"
+_SWUNG = "tests/twin/test_second_inertia.py"
 _BESIDE = "tests/diagnosis/spin/test_causes_beside_motion.py"
 
 BESIDE: tuple[Mutation, ...] = (
@@ -49,6 +51,76 @@ BESIDE: tuple[Mutation, ...] = (
                 "    return np.where(found.knee_rad > 0.0, moved, 0.0)\n",
                 "    return moved\n",
                 "tests/diagnosis/spin/test_beside_a_reference.py::test_torques_turn_no_shaft_that_a_reference_tells",
+            ),
+            *(
+                (f"second_inertia.{name}", file, old, new, f"{_SECOND}::{test}")
+                for name, file, old, new, test in (
+                    (
+                        "a_rotor_is_always_of_one_piece",
+                        "diagnosis/spin/smoother.py",
+                        "    if seek_second and found.with_torques:\n",
+                        "    if False:\n",
+                        "test_a_coast_tells_the_belt_and_with_it_the_sensor",
+                    ),
+                    (
+                        "a_hum_is_a_resonance",
+                        "diagnosis/spin/second_inertia.py",
+                        "    beside = profile.beside_a_wave(found.second)\n",
+                        "    beside = profile\n",
+                        "test_a_hum_of_the_torque_is_no_resonance",
+                    ),
+                    (
+                        "any_gain_will_do",
+                        "diagnosis/spin/second_inertia.py",
+                        "    return best if odds > _SURELY else None\n",
+                        "    return best\n",
+                        "test_a_rotor_of_one_piece_has_none",
+                    ),
+                    (
+                        "the_way_between_two_speeds_is_forgotten",
+                        "diagnosis/spin/of_log.py",
+                        "most_growing=fit.growing, second=fit.second)",
+                        "most_growing=fit.growing)",
+                        "test_the_way_from_one_speed_to_another_tells_it",
+                    ),
+                    (
+                        "it_is_known_exactly",
+                        "diagnosis/spin/torques.py",
+                        "    if found.second is not None:\n",
+                        "    if False:\n",
+                        "test_the_way_from_one_speed_to_another_tells_it",
+                    ),
+                    (
+                        "it_is_not_of_one_piece_for_all_that",
+                        "diagnosis/report/motion.py",
+                        "    open_to_it = estimated.second is None and two_speeds_alone(speed)\n",
+                        "    open_to_it = two_speeds_alone(speed)\n",
+                        "test_the_answer_says_so",
+                    ),
+                )
+            ),
+            *(
+                (
+                    f"second_inertia.{name}",
+                    "twin/second_inertia.py",
+                    old,
+                    new,
+                    f"tests/twin/test_second_inertia.py::{test}",
+                )
+                for name, old, new, test in (
+                    (
+                        "a_swing_follows_at_once",
+                        "        out[0] = size[0] / (turning[0] - pole)\n",
+                        "        return size / (turning - pole)\n",
+                        "test_a_coast_passes_the_resonance_as_the_equations_of_motion_say",
+                    ),
+                    (
+                        "a_swing_never_dies_in_one_piece",
+                        "_BLOCK = 20.0\n",
+                        "_BLOCK = 1e9\n",
+                        "test_a_swing_that_has_long_died_away_is_worked_out_without_overflow",
+                    ),
+                )
             ),
             (
                 "spins.two_speeds_tell_an_order_that_follows_them",

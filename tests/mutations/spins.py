@@ -33,14 +33,14 @@ SPINS: tuple[Mutation, ...] = tuple(
         ),
         (
             "spins.a_late_channel_is_a_torque",
-            "diagnosis/spin/smoother.py",
+            "diagnosis/spin/scatter.py",
             "    if third_speed and _late_channel_told(reduced, variance, usual_rad_s):\n",
             "    if False:\n",
             f"{_SMOOTHER}::test_an_error_that_grows_with_the_speed_is_no_torque",
         ),
         (
             "spins.a_torque_is_a_late_channel",
-            "diagnosis/spin/smoother.py",
+            "diagnosis/spin/scatter.py",
             "    if third_speed and _late_channel_told(reduced, variance, usual_rad_s):\n",
             "    if True:\n",
             f"{_SMOOTHER}::test_a_torque_at_two_speeds_is_no_channel_read_late",
@@ -48,8 +48,8 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.three_speeds_take_the_rotor_for_one_piece",
             "diagnosis/report/motion.py",
-            "if two_speeds_alone(speed) else []",
-            "if True else []",
+            "estimated.second is None and two_speeds_alone(speed)\n",
+            "True\n",
             f"{_EXPLAIN}::test_what_two_speeds_tell_takes_the_rotor_for_one_piece",
         ),
         (
@@ -68,14 +68,14 @@ SPINS: tuple[Mutation, ...] = tuple(
         ),
         (
             "spins.two_speeds_tell_what_grows",
-            "diagnosis/spin/smoother.py",
+            "diagnosis/spin/scatter.py",
             "not two_speeds_alone(speed_rad_s)",
             "True",
             f"{_SMOOTHER}::test_what_grows_with_the_speed_takes_a_third_one",
         ),
         (
             "spins.what_grows_does_so_by_half_at_the_median",
-            "diagnosis/spin/smoother.py",
+            "diagnosis/spin/scatter.py",
             "float(np.sqrt(np.mean(speed_rad_s**2)))",
             "usual_rad_s",
             f"{_SMOOTHER}::test_what_is_not_told_to_grow_is_taken_to_by_about_half_in_the_mean_square",
@@ -145,7 +145,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         ),
         (
             "spins.dry_friction_stays",
-            "diagnosis/spin/smoother.py",
+            "diagnosis/spin/scatter.py",
             "if both_ways else []",
             "if False else []",
             f"{_SMOOTHER}::test_dry_friction_reverses_with_the_direction",
@@ -166,14 +166,14 @@ SPINS: tuple[Mutation, ...] = tuple(
         ),
         (
             "spins.what_grows_at_most_is_forgotten",
-            "diagnosis/spin/smoother.py",
+            "diagnosis/spin/scatter.py",
             "np.minimum(half, most_growing)",
             "half",
             f"{_SMOOTHER}::test_what_is_known_to_grow_no_more_leaves_an_error_better_known",
         ),
         (
             "spins.a_cogging_grows_with_the_speed",
-            "diagnosis/spin/smoother.py",
+            "diagnosis/spin/scatter.py",
             "np.clip(np.max(half[:_OF_RUN_OUT]), np.minimum(1e-9, beyond), beyond)",
             "beyond",
             f"{_EXPLAIN}::test_at_two_speeds_a_cogging_does_not_grow[not seen]",

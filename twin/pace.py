@@ -215,8 +215,11 @@ def _slope(angle: Array, time: Array, at: float) -> tuple[float, float]:
 
 
 def two_speeds_alone(speed: Array) -> bool:
-    """Whether speeds (n,), unless all are one, are those of two steady motions, whatever lies between the two."""
+    """Whether speeds (n,), unless all are one, are those of two steady motions, but for a hundredth of the readings."""
     rising = np.sort(np.abs(speed))
+    # A few readings far from all others would be a group of their own.
+    few = int(_SELDOM * rising.size)
+    rising = rising[few : rising.size - few]
     between = 1 + int(np.argmax(rising[1:] / np.maximum(rising[:-1], 1e-300)))
     for group in (rising[:between], rising[between:]):
         slow, fast = np.quantile(group, [_SELDOM, 1.0 - _SELDOM])

@@ -7,7 +7,8 @@ shaft answers at s by
     G(s) = (1 + 2 z s/w + s^2/w^2) / (1 + 2 z s/w + s^2/(w^2 (1 + m))),
 
 as much where it turns slowly, next to nothing at w, by far more at the resonance, and 1 + m as much beyond (J. P. Den
-Hartog, Mechanical Vibrations (1956), on the dynamic absorber).
+Hartog, Mechanical Vibrations (1956), on the dynamic absorber). Torque and sensor are on the same side of the spring: of
+a sensor on the other one, the response has no numerator's zero.
 """
 
 from __future__ import annotations
@@ -128,7 +129,10 @@ class Behind:
             last = int(np.searchsorted(-total.real, _BLOCK - total.real[first], side="right")) - 1
             last = min(max(last, first + 1), size.size - 1)
             factor = np.exp(total[first + 1 : last + 1] - total[first])
-            out[first + 1 : last + 1] = factor * (out[first] + np.cumsum(forced[first:last] / factor))
+            if last == first + 1:
+                out[last] = factor[0] * out[first] + forced[first]
+            else:
+                out[first + 1 : last + 1] = factor * (out[first] + np.cumsum(forced[first:last] / factor))
             first = last
         return out
 

@@ -29,7 +29,7 @@ from diagnosis.report.wording import (
 _LACKS = {
     "a reference": ("no reference", "record a reference encoder beside it"),
     "a reference|two speeds|vx": ("one speed, no reference", "measure at a second speed, or record vx and vy"),
-    "a reference|three speeds|both directions|vx": ("two speeds, no reference", "let the shaft coast down"),
+    "a reference|three speeds|vx": ("two speeds, no reference", "let the shaft coast down"),
     "both directions": ("one direction", "turn in both directions"),
     "moving shaft": ("at rest at each reading, or no speed_rpm", "record speed_rpm while the shaft moves, with time_s"),
     "one turn": ("less than a turn", "cover a whole turn"),
@@ -66,7 +66,7 @@ _ALSO_SAYS = {
     "two temperatures": "temperature_c",
     "two turns": "turn",
     "two speeds|both directions": "moving shaft",
-    "a reference|three speeds|both directions|vx": "two speeds|both directions",
+    "a reference|three speeds|vx": "two speeds|both directions",
     "two currents|two speeds|both directions": "two currents|moving shaft",
 }
 """A want that goes without saying where the second one is wanted too."""

@@ -18,12 +18,11 @@ from diagnosis.spin.problem import Problem, Projection, degrees_of_freedom
 from twin.angles import TAU, Array
 from twin.second_inertia import Behind, SecondInertia, Tied
 
-_DAMPING, _SHARE = (0.01, 0.2), (0.03, 3.0)
+_DAMPING, _SHARE = (0.005, 0.3), (0.03, 8.0)
 """Between which damping and share are looked for: a steel spring's to a rubber belt's, a small pulley's to a
 flywheel's. Any logarithm between is as likely."""
-_AROUND = 1.5
-"""By how much a resonance lies above the slowest torque and what the shaft does by itself, and at most above the
-fastest: it is met by none beyond, and the rotor is of one piece."""
+_AROUND = 1.2
+"""By how much a resonance may lie beyond the slowest and the fastest torque: farther off none meets it."""
 _FINENESS = 0.06
 """Steps of the logarithm of the resonance from which a fit sets out: less than the width of one that is damped so."""
 _SET_OUT = (0.1, 0.25)
@@ -88,7 +87,7 @@ class Torques:
         """Between which logarithms (3, 2) of resonance, damping and share a second inertia is looked for."""
         slow, fast = np.quantile(np.abs(self.speed_rad_s), [_SELDOM, 1.0 - _SELDOM])
         orders = [*self.scatter_rad_s2]
-        lowest = max(min(orders) * slow, self.free_rad_s) * _AROUND
+        lowest = max(min(orders) * slow / _AROUND, self.free_rad_s)
         return np.log([[lowest, max(max(orders) * fast, lowest) * _AROUND], _DAMPING, _SHARE])
 
 
@@ -115,9 +114,11 @@ def tied(problem: Problem, torques: Torques, *, log_penalty: float, variance: fl
     costs = np.array([profile.cost(_of(at)) for at in grid])
     before, behind = np.r_[np.inf, costs[:-1]], np.r_[costs[1:], np.inf]
     peaks = np.flatnonzero((costs <= before) & (costs <= behind))
-    likeliest = [profile.best(grid[peak]) for peak in peaks[np.argsort(costs[peaks])][:_PEAKS]]
-    odds, best = max(((_log_odds(profile, one), one) for one in likeliest), key=lambda pair: pair[0])
-    return best if odds > _SURELY else None
+    found = [profile.best(grid[peak]) for peak in peaks[np.argsort(costs[peaks])][:_PEAKS]]
+    # At an end of what is looked for there is none: a wave that comes and goes is a resonance without a damping.
+    within = [one for one in found if np.all(np.abs(one.logarithms[:, None] - bounds) > _STEP)]
+    told = [one for one in within if _log_odds(profile, one) > _SURELY]
+    return min(told, key=lambda one: profile.cost(one.second), default=None)
 
 
 def _log_odds(profile: _Profile, found: Tied) -> float:
@@ -129,6 +130,11 @@ def _log_odds(profile: _Profile, found: Tied) -> float:
     gain = 0.5 * (beside.cost(None) - beside.cost(found.second))
     spread = 0.5 * float(np.linalg.slogdet(TAU * found.covariance)[1])
     return gain + spread - float(np.sum(np.log(np.ptp(profile.torques.bounds, axis=1))))
+
+
+def settled(found: Tied, problem: Problem, torques: Torques, *, log_penalty: float, variance: float) -> Tied:
+    """The likeliest second inertia near one that was found, of a motion that was estimated with it."""
+    return _Profile.of(problem, torques, log_penalty, variance).best(found.logarithms)
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,7 @@ from diagnosis.spin.columns import HIGHEST_ORDER, OF_ERROR, OF_FRICTION, OF_LATE
 from diagnosis.spin.damping import damping
 from diagnosis.spin.problem import Own, Problem, evened, held_at, knee, likeliest
 from diagnosis.spin.scatter import ANY_GROWTH, amplitudes_seen, coefficients, separable_orders
-from diagnosis.spin.second_inertia import Torques, tied
+from diagnosis.spin.second_inertia import Torques, settled, tied
 from diagnosis.spin.speeds import several_speeds
 from diagnosis.spin.spline import Spline, rate
 from diagnosis.spin.torques import RATE
@@ -28,6 +28,7 @@ from twin.angles import Array
 from twin.confidence import OF_MAD
 from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import second_order
+from twin.pace import two_speeds_alone
 from twin.second_inertia import Behind, SecondInertia, Tied
 
 _BEYOND_CHANCE = 9.0
@@ -89,6 +90,7 @@ class _Estimate:
     turning_rad_s: Array | None = None
     largest_rad_s2: Array = field(default_factory=lambda: np.zeros(HIGHEST_ORDER))
     second: Tied | None = None
+    damped: bool = True
 
     @cached_property
     def rates(self) -> tuple[Array, Array]:
@@ -156,7 +158,9 @@ class _Estimate:
         damping_per_s, sd_per_s = self._damping()
         second = None if self.second is None else self.second.second
         turned = self._turned(damping_per_s, second)
-        known = np.resize(np.zeros(1) if self.terms is None else self.terms.values, OF_LATE)[OF_ERROR:OF_FRICTION]
+        known = np.zeros(OF_FRICTION - OF_ERROR)
+        if self.terms is not None and len(self.terms.values) > OF_ERROR:
+            known = self.terms.values[OF_ERROR:OF_FRICTION]
 
         def changed(damped_per_s: float, other: SecondInertia | None) -> Array:
             return np.asarray(known @ (self._turned(damped_per_s, other) - turned)[: known.size])
@@ -182,11 +186,34 @@ class _Estimate:
         behind = None if second is None else Behind(second, self.problem.time_s, self.stretches)
         return torques(self.shaft_rad, *self.rates, damping_per_s=damping_per_s, behind=behind)
 
-    def with_second(self) -> _Estimate:
-        """The rotor of two inertias where one of one piece is far less likely, and the motion with it."""
+    def rounds(self) -> _Estimate:
+        """Round for round."""
+        # The first round finds the motion and its speed, which what torques do follows.
+        found = self.next()
+        if several_speeds(found.rates[0]):
+            found = replace(found, sd=np.concatenate([found.sd, np.ones(OF_LATE + 1 - OF_ERROR)]), log_penalty=None)
+        for _ in range(_ROUNDS - 1):
+            found = found.next()
+        return found
+
+    def undamped(self) -> _Estimate:
+        """The same without a damping."""
+        return replace(self, damped=False).rounds()
+
+    def with_second(self, second: Tied, *, settles: bool = False) -> _Estimate:
+        """The same of a rotor with a second inertia; ``settles``: with the likeliest one near this."""
+        found = replace(self, second=second).undamped()
+        if settles:
+            found = replace(found, second=found.tied(near=second))
+        return replace(found, damped=True).next().next()
+
+    def tied(self, near: Tied | None = None) -> Tied | None:
+        """An inertia that is tied to the rotor; ``near``: the likeliest one near one that is known."""
         assert self.log_penalty is not None
-        second = tied(self.problem, self._torques_told(), log_penalty=self.log_penalty, variance=self.variance)
-        return self if second is None else replace(self, second=second).next().next()
+        at = {"log_penalty": self.log_penalty, "variance": self.variance}
+        if near is None:
+            return tied(self.problem, self._torques_told(), **at)
+        return settled(near, self.problem, self._torques_told(), **at)
 
     def _torques_told(self) -> Torques:
         """Torques that are told, each as large as to make all that is seen of its order."""
@@ -212,7 +239,7 @@ class _Estimate:
 
     def _damping(self) -> tuple[float, float]:
         """Of the shaft at this penalty, and its standard deviation [1/s]; none is looked for in the first round."""
-        if self.log_penalty is None or self.terms is None or len(self.terms.values) <= OF_ERROR:
+        if not self.damped or self.log_penalty is None or self.terms is None or len(self.terms.values) <= OF_ERROR:
             return 0.0, 0.0
         fastest = float(np.max(np.abs(self.rates[0])))
         return damping(
@@ -260,18 +287,18 @@ def fitted_motion(
     second : Tied, optional
         An inertia that is known to be tied to the rotor.
     seek_second : bool
-        Whether one is looked for.
+        Whether one is looked for: where the shaft went by more than two speeds, as none is passed otherwise.
     """
-    found = replace(_set_out(readings_rad, time_s, stretches, own, most_growing), second=second)
-    # The first round finds the motion and its speed, which what torques do follows.
-    found = found.next()
-    if several_speeds(found.rates[0]):
-        found = replace(found, sd=np.concatenate([found.sd, np.ones(OF_LATE + 1 - OF_ERROR)]))
-        found = replace(found, log_penalty=None)
-    for _ in range(_ROUNDS - 1):
-        found = found.next()
-    if seek_second and found.with_torques:
-        found = found.with_second()
+    begun = _set_out(readings_rad, time_s, stretches, own, most_growing)
+    if second is not None:
+        found = begun.with_second(second)
+    else:
+        found = begun.rounds()
+        passes = seek_second and found.with_torques and not two_speeds_alone(found.rates[0])
+        # A swing that is not known passes for a damping, which then holds the torques that would tell it.
+        second = begun.undamped().tied() if passes else None
+        if second is not None:
+            found = begun.with_second(second, settles=True)
     assert found.terms is not None
     assert found.log_penalty is not None
     return MotionFit(

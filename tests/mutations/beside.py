@@ -58,8 +58,8 @@ BESIDE: tuple[Mutation, ...] = (
                     (
                         "a_rotor_is_always_of_one_piece",
                         "diagnosis/spin/smoother.py",
-                        "    if seek_second and found.with_torques:\n",
-                        "    if False:\n",
+                        "undamped().tied() if passes else None\n",
+                        "undamped().tied() if False else None\n",
                         "test_a_coast_tells_the_belt_and_with_it_the_sensor",
                     ),
                     (
@@ -72,9 +72,30 @@ BESIDE: tuple[Mutation, ...] = (
                     (
                         "any_gain_will_do",
                         "diagnosis/spin/second_inertia.py",
-                        "    return best if odds > _SURELY else None\n",
-                        "    return best\n",
+                        "if _log_odds(profile, one) > _SURELY]\n",
+                        "if True]\n",
                         "test_a_rotor_of_one_piece_has_none",
+                    ),
+                    (
+                        "a_swing_passes_for_a_damping",
+                        "diagnosis/spin/smoother.py",
+                        "        return replace(self, damped=False).rounds()\n",
+                        "        return self.rounds()\n",
+                        "test_a_swing_does_not_pass_for_a_damping",
+                    ),
+                    (
+                        "two_steady_speeds_are_searched",
+                        "diagnosis/spin/smoother.py",
+                        "and not two_speeds_alone(found.rates[0])",
+                        "",
+                        "test_two_steady_speeds_pass_no_resonance",
+                    ),
+                    (
+                        "a_resonance_needs_no_damping",
+                        "diagnosis/spin/second_inertia.py",
+                        "    told = [one for one in within if",
+                        "    told = [one for one in found if",
+                        "test_two_hums_of_the_torque_are_no_resonance",
                     ),
                     (
                         "the_way_between_two_speeds_is_forgotten",
@@ -113,6 +134,12 @@ BESIDE: tuple[Mutation, ...] = (
                         "        out[0] = size[0] / (turning[0] - pole)\n",
                         "        return size / (turning - pole)\n",
                         "test_a_coast_passes_the_resonance_as_the_equations_of_motion_say",
+                    ),
+                    (
+                        "a_step_is_no_longer_than_a_swing",
+                        "            if last == first + 1:\n",
+                        "            if False:\n",
+                        "test_of_one_step_longer_than_any_swing_the_next_is_steady",
                     ),
                     (
                         "a_swing_never_dies_in_one_piece",

@@ -83,7 +83,7 @@ SPINS: tuple[Mutation, ...] = tuple(
         (
             "spins.a_shaft_is_undamped",
             "diagnosis/spin/smoother.py",
-            "        if self.log_penalty is None or self.terms is None or",
+            "        if not self.damped or",
             "        if True or",
             f"{_SMOOTHER}::test_how_a_shaft_goes_over_to_a_speed_tells_how_it_answers_to_a_torque",
         ),

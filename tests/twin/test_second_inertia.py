@@ -74,3 +74,12 @@ def test_a_swing_that_has_long_died_away_is_worked_out_without_overflow() -> Non
     )
     assert np.all(np.isfinite(told))
     assert told[1000:] * np.exp(-0.1j * times[1000:]) == pytest.approx(1.0, rel=1e-4)
+
+
+def test_of_one_step_longer_than_any_swing_the_next_is_steady() -> None:
+    """A gap in which the swing dies by more than the numbers' range holds."""
+    times = np.concatenate([np.arange(50) * 0.01, 1000.0 + np.arange(50) * 0.01])
+    even = {"shaft_rad": 0.1 * times, "speed_rad_s": np.full(100, 0.1)}
+    behind = Behind(SECOND, times, (slice(0, 100),))
+    told = behind.carried(np.ones(100, dtype=np.complex128), 1.0, **even)
+    assert told * np.exp(-0.1j * times) == pytest.approx(1.0, rel=1e-4)

@@ -24,8 +24,9 @@ XY_SKEW = Effect(
         "delay_us": Param(unit="us", null=0.0, lower=-1e5, upper=1e5, doc="y sampled this much after x", typical=20.0)
     },
     forward=forward,
-    # Without a reference a torque of order 2 does the same at two speeds; the channels' radius tells them apart.
-    needs=frozenset({"two speeds|both directions", "moving shaft", "a reference|three speeds|both directions|vx"}),
+    # Without a reference a torque of order 2 does the same at two speeds, and friction of order 2 both ways; the
+    # channels' radius tells them apart.
+    needs=frozenset({"two speeds|both directions", "moving shaft", "a reference|three speeds|vx"}),
     drawing=delay,
     source="sequential conversion of x and y by one multiplexed converter",
     signature="order 0 and order 2, proportional to speed times delay",

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 
 from diagnosis import explain
+from diagnosis.spin import smoother
 from diagnosis.spin.of_log import sweeps_of
 from diagnosis.spin.smoother import MotionFit, fitted_motion
 from diagnosis.spin.torques import torque_columns
@@ -46,6 +48,44 @@ def test_a_coast_tells_the_belt_and_with_it_the_sensor() -> None:
     sd = np.sqrt(np.diag(found.terms.covariance))
     assert error_of(found, 3) == pytest.approx([0.004, 0.0], abs=5.0 * sd[4])
     assert np.median(found.noise_rad) == pytest.approx(3e-4, rel=0.1)
+
+
+def test_a_swing_does_not_pass_for_a_damping() -> None:
+    """Of three torques, of which two pass the resonance: a damping of 100/s would hold them all."""
+    rotor = Rotor(
+        coulomb=18.0,
+        viscous=0.05,
+        waves=(Wave(1, 3.0, 0.4), Wave(3, 24.0, 1.0), Wave(8, 78.0, 2.0)),
+        belt=Belt(frequency_Hz=25.0, damping=0.05, inertia=0.4),
+    )
+    path = integrate(rotor, None, speed=125.0, duration_s=float(TIME[-1]) + 0.01)
+    found = fitted_motion(read(path.at(TIME)[0]), TIME, [slice(0, TIME.size)], seek_second=True)
+    assert found.second is not None
+    away = found.second.logarithms - np.log([2.0 * np.pi * 25.0 * np.sqrt(1.4), 0.05, 0.4])
+    assert np.all(np.abs(away) < 4.0 * np.sqrt(np.diag(found.second.covariance)))
+    assert found.damping_per_s < 2.0
+    assert np.median(found.noise_rad) == pytest.approx(3e-4, rel=0.1)
+
+
+def test_two_steady_speeds_pass_no_resonance() -> None:
+    """What wavers a little about each of them would have to tell it."""
+    logs = []
+    for seed, (speed, wavers) in enumerate(((60.0, 0.02), (130.0, 0.03))):
+        angle = speed * (TIME + wavers / 9.0 * np.sin(9.0 * TIME))
+        torque = 0.004 * (60.0 / speed) ** 2 * np.cos(3.0 * angle + 1.0)
+        logs.append(read(angle + torque, seed=seed + 1))
+    slices = [slice(0, TIME.size), slice(TIME.size, 2 * TIME.size)]
+    time = np.concatenate([TIME, TIME[-1] + 1.0 + TIME])
+    with patch.object(smoother, "tied", side_effect=AssertionError("looked for")):
+        found = fitted_motion(np.concatenate(logs), time, slices, seek_second=True)
+    assert found.second is None
+
+
+def test_two_hums_of_the_torque_are_no_resonance() -> None:
+    """Of 47 and 49 Hz: one wave does not take both away, and what is left has no damping."""
+    rotor = Rotor(coulomb=15.0, waves=(Wave(3, 60.0, 0.7),), hums=(Hum(47.0, 100.0, 0.2), Hum(49.0, 100.0, 1.2)))
+    path = integrate(rotor, None, speed=120.0, duration_s=float(TIME[-1]) + 0.01)
+    assert fitted_motion(read(path.at(TIME)[0]), TIME, [slice(0, TIME.size)], seek_second=True).second is None
 
 
 def test_without_it_the_coast_is_off() -> None:

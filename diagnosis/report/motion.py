@@ -29,8 +29,12 @@ STAMPS = "time_stamps"
 USB_FRAMES_HZ = 1000.0
 """At which a full-speed USB asks a device."""
 WITHOUT_CURRENT = "a log in which the shaft coasts, the motor's current off: the current makes a torque as well"
-THIRD_SPEED = "a log at a third speed, or coasting down: a rotor of one piece answers to a torque by 1/speed^2 at all"
+THIRD_SPEED = (
+    "a log at a third speed, or coasting down: a rotor of one piece answers to a torque by 1/speed^2 at every speed"
+)
 _OF_SECOND = ("resonance_Hz", "damping_percent", "share_of_the_rotor")
+_LONG_MS = 1000.0 * STOP_AND_MEASURE_S
+"""Seconds between two readings from which on they are too far apart for milliseconds as well."""
 _BEYOND_CHANCE = 4.0
 """Standard deviations from which on a torque is listed: one of sixteen orders, of two components each, passes it by
 chance in one log of 200 (16 exp(-8))."""
@@ -238,11 +242,7 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
         + (f"; {motion['rows_aside']} rows without an even turning are left out" if motion["rows_aside"] else "")
     ]
     if motion["reading_every_s"] > STOP_AND_MEASURE_S:
-        said.append(
-            f"By their stamps readings are {plain(motion['reading_every_s'], 3)} s apart, which is long for a shaft "
-            "that spins: if these are milliseconds, its speeds and frequencies are a thousand times as high; "
-            "--columns with time_s='...':ms reads them so"
-        )
+        said.append(_far_apart(motion["reading_every_s"]))
     if motion["even_clock"]:
         said.append("The readings are taken to be evenly spaced in time: their stamps are coarser than their spacing")
     if motion["torque_ripple"]:
@@ -251,12 +251,7 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
         )
         said.append(f"Torques locked to the angle, told from the sensor by the speeds: {listed}")
     if motion["second_inertia"] is not None:
-        resonance, damping, share = (_with_range(motion["second_inertia"][name]) for name in _OF_SECOND)
-        said.append(
-            f"The rotor is not of one piece: a belt or a coupling ties an inertia to it, {share} of its own, which "
-            f"resonates at {resonance} Hz, damped by {damping} % of the critical damping; what torques do to the shaft "
-            "is worked out with it"
-        )
+        said.append(_not_of_one_piece(motion["second_inertia"]))
     if motion["not_separable"]:
         said.append(
             f"Not told from a torque locked to the angle: orders {_ranges(motion['not_separable'])}. Here all of that "
@@ -277,6 +272,25 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
     ]
     said.append("Not seen without a reference: the zero, what drifts slower than a turn, and what a reversal leaves")
     return said
+
+
+def _far_apart(every_s: float) -> str:
+    """That readings are far apart for a shaft that spins, and in which unit their times may be instead."""
+    unit, column, times = ("milli", "ms", "thousand") if every_s < _LONG_MS else ("micro", "us", "million")
+    return (
+        f"By their stamps readings are {plain(every_s, 3)} s apart, which is long for a shaft that spins: if these are "
+        f"{unit}seconds, its speeds and frequencies are a {times} times as high; "
+        f'--columns "time_s=time_s:{column},measured_deg=measured_deg", with the names of the file, reads them so'
+    )
+
+
+def _not_of_one_piece(second: Mapping[str, Any]) -> str:
+    resonance, damping, share = (_with_range(second[name]) for name in _OF_SECOND)
+    return (
+        f"The rotor is not of one piece: a belt or a coupling ties an inertia to it, {share} times the rotor's, which "
+        f"resonates at {resonance} Hz, damped by {damping} % of the critical damping; what torques do to the shaft is "
+        "worked out with it"
+    )
 
 
 def _with_range(figure: Mapping[str, float]) -> str:

@@ -57,7 +57,7 @@ SPINS: tuple[Mutation, ...] = tuple(
             "diagnosis/report/motion.py",
             '    if motion["reading_every_s"] > STOP_AND_MEASURE_S:\n',
             "    if False:\n",
-            f"{_EXPLAIN}::test_a_reading_each_second_may_be_one_each_millisecond[1000.0]",
+            f"{_EXPLAIN}::test_a_reading_each_second_may_be_one_each_millisecond",
         ),
         (
             "spins.a_high_order_is_no_torque",

@@ -239,12 +239,14 @@ def test_what_two_speeds_tell_takes_the_rotor_for_one_piece(speeds: tuple[float,
     assert ("if the rotor turns as one piece" in text(answer, width=600)) is (len(speeds) == 2)
 
 
-@pytest.mark.parametrize("scale", [1.0, 1000.0])
-def test_a_reading_each_second_may_be_one_each_millisecond(scale: float) -> None:
+@pytest.mark.parametrize(("scale", "unit", "reads"), [(1.0, "", ""), (1e3, "milli", ":ms,"), (1e6, "micro", ":us,")])
+def test_a_reading_each_second_may_be_one_each_millisecond(scale: float, unit: str, reads: str) -> None:
     columns = even(9.0, order=5)
     answer = explain(columns | {"time_s": scale * TIME}, progress=stop_with_one).to_dict()
     assert answer["motion"]["reading_every_s"] == pytest.approx(0.001 * scale)
-    assert ("if these are milliseconds" in text(answer, width=600)) is (scale > 1.0)
+    words = text(answer, width=600)
+    assert (f"if these are {unit}seconds" in words) is bool(unit)
+    assert (f'--columns "time_s=time_s{reads}measured_deg=measured_deg"' in words) is bool(unit)
 
 
 @pytest.mark.parametrize(("frequency", "usb"), [(1000.0, True), (870.0, False)])

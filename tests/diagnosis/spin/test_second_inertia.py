@@ -130,6 +130,17 @@ def test_the_way_from_one_speed_to_another_tells_it() -> None:
     assert len(torque_columns(motion)) == len(torque_columns(of_one_piece)) + 3
 
 
+def test_the_way_from_one_speed_to_another_of_one_piece_tells_none() -> None:
+    """A log of an independent bench, with mains in the torque: what gains by chance does not do."""
+    drawn = draw("two_speeds", seed=1957853800)
+    assert not drawn.truth["belt"]
+    (sweep,) = sweeps_of(
+        [Spin.from_columns({name: drawn.logs[0].columns[name] for name in ("time_s", "measured_deg")})]
+    )
+    assert sweep.estimated is not None
+    assert sweep.estimated.second is None
+
+
 def test_the_answer_says_so() -> None:
     spin, _ = of_two_speeds()
     found = explain(spin, progress=stop_with_one)

@@ -13,7 +13,6 @@ from diagnosis.discovery.fitting.intervals import (
     interval_of_derived,
     intervals_95,
     parabola_95,
-    quantile_95,
     standard_deviations,
     with_open_torques,
 )
@@ -23,7 +22,7 @@ from diagnosis.discovery.marks.row_numbers import number_in_file
 from diagnosis.discovery.proof.changes import Change
 from diagnosis.discovery.proof.predictive_check import why_not_checked
 from diagnosis.discovery.result import Discovery
-from diagnosis.report.as_read import as_read, values_as_read
+from diagnosis.report.as_read import as_read, phase_at_first_row, values_as_read
 from diagnosis.report.as_well import as_well
 from diagnosis.report.beside_class import beside_each, over_all_beside
 from diagnosis.report.facts import facts, recorded_columns
@@ -37,7 +36,6 @@ from diagnosis.report.rounded import rounded
 from diagnosis.report.row_counts import MOST_LISTED
 from diagnosis.report.senses import senses
 from diagnosis.setup.checks import checked_sweep
-from twin.angles import wrap_deg
 from twin.baseline import FACTORS
 from twin.catalogue import base_name, find
 from twin.confidence import Z95
@@ -299,7 +297,7 @@ def _instance(found: Discovery, key: str, deviation: Deviations) -> dict[str, di
             figures[name] |= _between_readings(fit, value)
     if effect.line is not None and effect.line.clock == "time":
         name = effect.roles("phase")[0]
-        figures[name] |= _phase_at_first_row(
+        figures[name] |= phase_at_first_row(
             fit,
             figures[name],
             frequency_Hz=float(values[effect.line.param]),
@@ -361,17 +359,6 @@ def _between_readings(fit: Fit, value_s: float) -> dict[str, float]:
         "low": float(min(clock[max(place - 2, 0)], value_s)),
         "high": float(max(clock[min(place + 1, clock.size - 1)], value_s)),
     }
-
-
-def _phase_at_first_row(
-    fit: Fit, phase: dict[str, Any], *, frequency_Hz: float, deviation_Hz: float
-) -> dict[str, float]:
-    """A phase [deg], fitted in the middle of the record, where it is known best, as it is at the record's first row."""
-    half_s = 0.5 * float(np.ptp(fit.observations.motion.time_s))
-    value = float(wrap_deg(phase["value"] - 360.0 * frequency_Hz * half_s))
-    by_frequency = 360.0 * half_s * quantile_95(fit) * deviation_Hz
-    down, up = (float(np.hypot(end - phase["value"], by_frequency)) for end in (phase["low"], phase["high"]))
-    return {"value": value, "low": value - down, "high": value + up}
 
 
 def _counted(found: Discovery, cause: Finding) -> dict[str, dict[str, Any]]:

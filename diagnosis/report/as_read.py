@@ -1,9 +1,14 @@
-"""Signs as the reading counts: what is added to the computed angle, where the output counts against it."""
+"""Figures as whoever looks at the readings sees them: signs as these count, phases at the first row."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from diagnosis.discovery.fitting.intervals import quantile_95
+from diagnosis.discovery.fitting.joint_fit import Fit
+from twin.angles import wrap_deg
 from twin.effect import Effect, Parameters
 
 Figures = dict[str, dict[str, Any]]
@@ -43,10 +48,32 @@ def as_read(effect: Effect, figures: Figures, *, output_sense: int) -> Figures:
     }
 
 
+def phase_at_first_row(
+    fit: Fit, phase: dict[str, Any], *, frequency_Hz: float, deviation_Hz: float
+) -> dict[str, float | list[float]]:
+    """A phase [deg], fitted in the middle of the record, where it is known best, as it is at the record's first row."""
+    half_s = 0.5 * float(np.ptp(fit.observations.motion.time_s))
+    value = float(wrap_deg(phase["value"] - 360.0 * frequency_Hz * half_s))
+    by_frequency = 360.0 * half_s * quantile_95(fit) * deviation_Hz
+
+    def moved(low: float, high: float) -> list[float]:
+        down, up = (float(np.hypot(end - phase["value"], by_frequency)) for end in (low, high))
+        return [value - down, value + up]
+
+    low, high = moved(phase["low"], phase["high"])
+    named = {"as_named": moved(*phase["as_named"])} if "as_named" in phase else {}
+    return {"value": value, "low": low, "high": high, **named}
+
+
 def _turned(figure: dict[str, Any], value: float, *, phase: bool) -> dict[str, Any]:
-    """A figure at its mirrored value: with the interval of a phase half a turn on, or on the other side of zero."""
-    was, low, high = figure["value"], figure["low"], figure["high"]
+    """A figure at its mirrored value: with the intervals of a phase half a turn on, or on the other side of zero."""
+    was = figure["value"]
     if value == was:
         return figure
-    ends = (low + value - was, high + value - was) if phase else (-high, -low)
-    return {**figure, "value": value, "low": ends[0], "high": ends[1]}
+
+    def turned(low: float, high: float) -> list[float]:
+        return [low + value - was, high + value - was] if phase else [-high, -low]
+
+    low, high = turned(figure["low"], figure["high"])
+    named = {"as_named": turned(*figure["as_named"])} if "as_named" in figure else {}
+    return {**figure, "value": value, "low": low, "high": high, **named}

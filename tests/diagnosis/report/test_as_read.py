@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import cast
+from unittest.mock import patch
+
 import numpy as np
 import pytest
 
 from diagnosis import explain
-from diagnosis.report.as_read import as_read, values_as_read
+from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.report.as_read import as_read, phase_at_first_row, values_as_read
 from tests.diagnosis.discovery.test_forms import channels, sweep, turns
 from twin.catalogue import find
 
@@ -55,3 +60,19 @@ def test_what_acts_elsewhere_stays() -> None:
     """A harmonic of the magnet turns the field, which every chain counts with the shaft."""
     values = {"order": 4.0, "amplitude_deg": 0.2, "phase_deg": 30.0}
     assert values_as_read(find("magnet_harmonic"), values, output_sense=-1) == values
+
+
+def test_the_interval_as_named_turns_with_the_figure() -> None:
+    """Of a wave in time told at the first row, and of one that the output counts backwards."""
+    figure = {"value": 100.0, "low": 80.0, "high": 120.0, "as_named": [95.0, 105.0]}
+    fit = SimpleNamespace(observations=SimpleNamespace(motion=SimpleNamespace(time_s=np.array([0.0, 2.0]))))
+    with patch("diagnosis.report.as_read.quantile_95", return_value=2.0):
+        told = phase_at_first_row(cast("Fit", fit), figure, frequency_Hz=0.1, deviation_Hz=0.01)
+    # Half of the record lies 36 deg behind; the frequency's own part is 360 deg/s x 1 s x 2 x 0.01.
+    assert told["value"] == pytest.approx(64.0)
+    assert told["as_named"] == pytest.approx([64.0 - np.hypot(5.0, 7.2), 64.0 + np.hypot(5.0, 7.2)])
+    assert [told["low"], told["high"]] == pytest.approx([64.0 - np.hypot(20.0, 7.2), 64.0 + np.hypot(20.0, 7.2)])
+    own = {"value": 30.0, "low": 20.0, "high": 45.0, "as_named": [25.0, 35.0]}
+    wave = {"order": {"value": 11.0, "low": 11.0, "high": 11.0}, "amplitude_deg": {**own, "value": 0.2}}
+    backwards = as_read(find("unnamed_order"), {**wave, "phase_deg": own}, output_sense=-1)
+    assert backwards["phase_deg"]["as_named"] == [-155.0, -145.0]

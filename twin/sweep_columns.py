@@ -42,9 +42,7 @@ def lacking(names: Collection[str], *, spin: bool = False) -> str | None:
     if spin and "measured_deg" in names and "reference_deg" not in names:
         return "column time_s is missing, as without reference_deg the time tells the motion"
     if is_spin(names):
-        return (
-            "column reference_deg is missing, which is needed here; explain and compensate make their answer without it"
-        )
+        return "column reference_deg is missing, which is needed here: explain and compensate take a log without it"
     return next((f"column {needed} is missing" for needed in REQUIRED if needed not in names), None)
 
 

@@ -31,6 +31,9 @@ _SELDOM = 0.02
 """Share of the readings that may be slower, and faster, than those that count for where it is looked for."""
 _PEAKS = 3
 """Likeliest resonances of which a fit sets out."""
+_LINES = 64.0
+"""Resolved frequencies to either side of a resonance within which a wave in time is looked for at most: one that is
+wider is no wave."""
 _STEP = 1e-3
 """Of the logarithms, by which slopes are taken."""
 _STILL, _MOST_STEPS, _MOST_DAMPED = 0.1, 20, 1e3
@@ -119,8 +122,12 @@ def tied(problem: Problem, torques: Torques, *, log_penalty: float, variance: fl
 
 
 def _log_odds(profile: _Profile, found: Tied) -> float:
-    """Logarithm of how much likelier the readings are with it than with a rotor of one piece."""
-    gain = 0.5 * (profile.cost(None) - profile.cost(found.second))
+    """Logarithm of how much likelier the readings are with it than with a rotor of one piece.
+
+    Beside the strongest wave in time near its resonance, as of the mains: that is no swing.
+    """
+    beside = profile.beside_a_wave(found.second)
+    gain = 0.5 * (beside.cost(None) - beside.cost(found.second))
     spread = 0.5 * float(np.linalg.slogdet(TAU * found.covariance)[1])
     return gain + spread - float(np.sum(np.log(np.ptp(profile.torques.bounds, axis=1))))
 
@@ -147,12 +154,36 @@ class _Profile:
 
     @classmethod
     def of(cls, problem: Problem, torques: Torques, log_penalty: float, variance: float) -> _Profile:
-        projection, columns = problem.projection(log_penalty), problem.columns[:OF_ERROR]
+        projection = problem.projection(log_penalty)
+        return cls._with(torques, projection, problem.columns[:OF_ERROR], variance)
+
+    @classmethod
+    def _with(cls, torques: Torques, projection: Projection, columns: Array, variance: float) -> _Profile:
+        """With these columns (p, n) as the error's."""
         own = projection.of(columns)
-        factor = np.linalg.cholesky(own @ columns.T + _RIDGE * np.eye(OF_ERROR))
+        factor = np.linalg.cholesky(own @ columns.T + _RIDGE * np.eye(len(columns)))
         errors, along = np.linalg.solve(factor, own), np.linalg.solve(factor, columns @ projection.left)
-        rows = degrees_of_freedom(problem, np.full(OF_ERROR, np.inf))
+        rows = degrees_of_freedom(projection.problem, np.full(len(columns), np.inf))
         return cls(torques, projection, errors, along, variance, rows)
+
+    def beside_a_wave(self, second: SecondInertia) -> _Profile:
+        """The same, with the strongest wave in time within the width of a resonance beside the error."""
+        from scipy.optimize import minimize_scalar
+
+        problem = self.projection.problem
+        left, time_s = self.projection.left - self.errors.T @ self.along, problem.time_s - problem.time_s[0]
+        resolved = TAU / float(time_s[-1])
+        wide = resolved * float(np.clip(-2.0 * second.pole.real / resolved, 1.0, _LINES))
+
+        def silence(frequency_rad_s: float) -> float:
+            return -abs(complex(np.exp(-1j * frequency_rad_s * time_s) @ left))
+
+        tried = second.resonance_rad_s + np.arange(-wide, wide, 0.5 * resolved)
+        loudest = float(tried[np.argmin([silence(float(one)) for one in tried])])
+        bounds = (loudest - 0.5 * resolved, loudest + 0.5 * resolved)
+        phase = float(minimize_scalar(silence, bounds=bounds, method="bounded").x) * time_s
+        columns = np.concatenate([problem.columns[:OF_ERROR], [np.cos(phase), np.sin(phase)]])
+        return self._with(self.torques, self.projection, columns, self.variance)
 
     def cost(self, second: SecondInertia | None) -> float:
         """Minus twice its logarithm, the noise's variance at its best."""

@@ -63,6 +63,13 @@ BESIDE: tuple[Mutation, ...] = (
                         "test_a_coast_tells_the_belt_and_with_it_the_sensor",
                     ),
                     (
+                        "a_hum_is_a_resonance",
+                        "diagnosis/spin/second_inertia.py",
+                        "    beside = profile.beside_a_wave(found.second)\n",
+                        "    beside = profile\n",
+                        "test_the_way_from_one_speed_to_another_of_one_piece_tells_none",
+                    ),
+                    (
                         "any_gain_will_do",
                         "diagnosis/spin/second_inertia.py",
                         "if _log_odds(profile, one) > _SURELY]\n",

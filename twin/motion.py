@@ -324,7 +324,7 @@ class Motion:
         slow, fast = np.quantile(np.abs(self.speed_rad_s), [0.02, 0.98]) if len(self) else (0.0, 0.0)
         if fast - slow > LEAST_SPEEDS * fast:
             found.add("two speeds")
-        if len(self) > 1 and not two_speeds_alone(self.speed_rad_s):
+        if not two_speeds_alone(self.speed_rad_s):
             found.add("three speeds")
         if np.any(self.speed_rad_s != 0.0):
             found.add("moving shaft")

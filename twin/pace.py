@@ -220,6 +220,8 @@ def two_speeds_alone(speed: Array) -> bool:
     # A few readings far from all others would be a group of their own.
     few = int(_SELDOM * rising.size)
     rising = rising[few : rising.size - few]
+    if rising.size < 2:
+        return True
     between = 1 + int(np.argmax(rising[1:] / np.maximum(rising[:-1], 1e-300)))
     for group in (rising[:between], rising[between:]):
         slow, fast = np.quantile(group, [_SELDOM, 1.0 - _SELDOM])

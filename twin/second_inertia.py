@@ -26,9 +26,8 @@ _BLOCK = 20.0
 """Decay, in natural logarithms, that is worked out in one piece: beyond it nothing of a swing is left."""
 _SERIES = 1e-3
 """Exponents below which the series is used: what it leaves out is less than rounding makes of the quotients."""
-
-_CHANGE = 1e-3
-"""Of a logarithm, by which slopes are taken."""
+CHANGE = 1e-3
+"""Of the logarithms of a second inertia's attributes, by which slopes are taken."""
 
 
 @dataclass(frozen=True)
@@ -49,12 +48,18 @@ class SecondInertia:
     damping: float
     share: float
 
+    @classmethod
+    def of(cls, logarithms: Array) -> SecondInertia:
+        """From the logarithms (3,) of its attributes."""
+        return cls(*np.exp(logarithms).tolist())
+
     @property
     def pole(self) -> complex:
         """The decaying swing goes as exp(pole t) [1/s]."""
         dies = self.damping * float(np.sqrt(1.0 + self.share)) * self.resonance_rad_s
         return complex(-dies, float(np.sqrt(max(self.resonance_rad_s**2 - dies**2, 0.0))))
 
+    @property
     def residue(self) -> complex:
         """Of the response at the pole [1/s]."""
         held = self.resonance_rad_s / float(np.sqrt(1.0 + self.share))
@@ -82,7 +87,7 @@ class Tied:
         """
         size, turned = np.linalg.eigh(self.covariance)
         return tuple(
-            (SecondInertia(*np.exp(self.logarithms + _CHANGE * way).tolist()), float(np.sqrt(max(one, 0.0))) / _CHANGE)
+            (SecondInertia.of(self.logarithms + CHANGE * way), float(np.sqrt(max(one, 0.0))) / CHANGE)
             for one, way in zip(size, turned.T, strict=True)
         )
 
@@ -102,13 +107,13 @@ class Behind:
         there before is not told, and dies away.
         """
         out = np.empty(size.size, dtype=np.complex128)
-        pole, residue = self.second.pole, self.second.residue()
+        pole, residue = self.second.pole, self.second.residue
         for rows in self.stretches:
             own, angle, time = size[rows], shaft_rad[rows], self.time_s[rows]
             turning = np.asarray(1j * order * speed_rad_s[rows], dtype=np.complex128)
+            swings = (pole, residue), (pole.conjugate(), residue.conjugate())
+            (near, at_near), (far, at_far) = swings if turning[0].imag > 0.0 else swings[::-1]
             # A swing the other way round is never near its resonance: it follows at once.
-            near, far = (pole, pole.conjugate()) if turning[0].imag > 0.0 else (pole.conjugate(), pole)
-            at_near, at_far = (residue, residue.conjugate()) if near is pole else (residue.conjugate(), residue)
             swing = at_near * self._driven(own, order * angle, turning, time, near) + at_far * own / (turning - far)
             out[rows] = ((1.0 + self.second.share) * own + swing) * np.exp(1j * order * angle)
         return out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -60,9 +61,7 @@ def phase_at_first_row(
         down, up = (float(np.hypot(end - phase["value"], by_frequency)) for end in (low, high))
         return [value - down, value + up]
 
-    low, high = moved(phase["low"], phase["high"])
-    named = {"as_named": moved(*phase["as_named"])} if "as_named" in phase else {}
-    return {"value": value, "low": low, "high": high, **named}
+    return _with_ends(phase, value, moved)
 
 
 def _turned(figure: dict[str, Any], value: float, *, phase: bool) -> dict[str, Any]:
@@ -74,6 +73,13 @@ def _turned(figure: dict[str, Any], value: float, *, phase: bool) -> dict[str, A
     def turned(low: float, high: float) -> list[float]:
         return [low + value - was, high + value - was] if phase else [-high, -low]
 
-    low, high = turned(figure["low"], figure["high"])
-    named = {"as_named": turned(*figure["as_named"])} if "as_named" in figure else {}
-    return {**figure, "value": value, "low": low, "high": high, **named}
+    return {**figure, **_with_ends(figure, value, turned)}
+
+
+def _with_ends(
+    figure: dict[str, Any], value: float, moved: Callable[[float, float], list[float]]
+) -> dict[str, float | list[float]]:
+    """A figure's value elsewhere, and its intervals, each with its ends where they then are."""
+    low, high = moved(figure["low"], figure["high"])
+    named = {"as_named": moved(*figure["as_named"])} if "as_named" in figure else {}
+    return {"value": value, "low": low, "high": high, **named}

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from twin.angles import Array
 from twin.mechanics.torque_ripple import response
-from twin.second_inertia import Behind
+from twin.second_inertia import Behind, SecondInertia
 
 HIGHEST_ORDER = 32
 """Of the sensor's error and of the torques: the second harmonic of a cogging by sixteen teeth."""
@@ -28,40 +29,41 @@ def waves(shaft_rad: Array) -> Array:
     return np.concatenate([np.stack([np.cos(k * shaft_rad), np.sin(k * shaft_rad)]) for k in ORDERS])
 
 
-def moved(
-    orders: Iterable[int],
-    *,
-    shaft_rad: Array,
-    speed_rad_s: Array,
-    acceleration_rad_s2: Array,
-    damping_per_s: float,
-    behind: Behind | None,
-) -> Array:
-    """What torques of these orders that give 1 rad/s^2 turn the shaft by (2 orders, n) [rad]."""
-    motion = {"shaft_rad": shaft_rad, "speed_rad_s": speed_rad_s, "acceleration_rad_s2": acceleration_rad_s2}
-    return np.concatenate([response(k, **motion, damping_per_s=damping_per_s, behind=behind) for k in orders])
+@dataclass(frozen=True, eq=False)
+class Path:
+    """How a shaft moves (n,), in stretches one behind the other, and how fast a departure from its speed is undone."""
+
+    shaft_rad: Array
+    speed_rad_s: Array
+    acceleration_rad_s2: Array
+    time_s: Array
+    stretches: Sequence[slice]
+    damping_per_s: float
+
+    def turned(self, orders: Iterable[int], second: SecondInertia | None) -> Array:
+        """What torques of these orders that give 1 rad/s^2 turn the shaft by (2 orders, n) [rad]."""
+        behind = None if second is None else Behind(second, self.time_s, self.stretches)
+        return np.concatenate(
+            [
+                response(
+                    order,
+                    shaft_rad=self.shaft_rad,
+                    speed_rad_s=self.speed_rad_s,
+                    acceleration_rad_s2=self.acceleration_rad_s2,
+                    damping_per_s=self.damping_per_s,
+                    behind=behind,
+                )
+                for order in orders
+            ]
+        )
 
 
-def torques(
-    shaft_rad: Array,
-    speed_rad_s: Array,
-    acceleration_rad_s2: Array,
-    *,
-    damping_per_s: float,
-    behind: Behind | None,
-) -> Array:
+def torques(path: Path, second: SecondInertia | None) -> Array:
     """What torques of each order that give 1 rad/s^2, or modulate drag, add to the angle: (.., n) [rad].
 
     And an error of order 2 that is as large as the speed.
     """
-    all_of = moved(
-        ORDERS,
-        shaft_rad=shaft_rad,
-        speed_rad_s=speed_rad_s,
-        acceleration_rad_s2=acceleration_rad_s2,
-        damping_per_s=damping_per_s,
-        behind=behind,
-    )
-    late = speed_rad_s * np.stack([np.cos(2.0 * shaft_rad), np.sin(2.0 * shaft_rad)])
+    all_of, speed = path.turned(ORDERS, second), path.speed_rad_s
+    late = speed * np.stack([np.cos(2.0 * path.shaft_rad), np.sin(2.0 * path.shaft_rad)])
     rubs = all_of[: 2 * HIGHEST_OF_FRICTION]
-    return np.concatenate([all_of, speed_rad_s * rubs, np.sign(speed_rad_s) * rubs, late])
+    return np.concatenate([all_of, speed * rubs, np.sign(speed) * rubs, late])

@@ -145,6 +145,7 @@ def _own(alone: Sequence[MotionFit]) -> Own:
 
 
 def _one_behind_the_other(logs: Sequence[_Log], **known: Any) -> MotionFit:
+    """The motion in logs, one behind the other; ``known``: what :func:`fitted_motion` takes beside the readings."""
     times, stretches, begins, number = [], [], 0.0, 0
     for log in logs:
         taken = log.time_s[log.found.rows]

@@ -7,16 +7,16 @@ what is tied to the rotor, the shaft answers by more, by less or the other way r
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.columns import HIGHEST_OF_FRICTION, OF_ERROR, moved
+from diagnosis.spin.columns import HIGHEST_OF_FRICTION, OF_ERROR, Path
 from diagnosis.spin.problem import Problem, Projection, degrees_of_freedom
 from twin.angles import TAU, Array
-from twin.second_inertia import Behind, SecondInertia, Tied
+from twin.second_inertia import CHANGE, SecondInertia, Tied
 
 _DAMPING, _SHARE = (0.005, 0.3), (0.03, 8.0)
 """Between which damping and share are looked for: a steel spring's to a rubber belt's, a small pulley's to a
@@ -34,11 +34,9 @@ _PEAKS = 3
 _LINES = 64.0
 """Resolved frequencies to either side of a resonance within which a wave in time is looked for at most: one that is
 wider is no wave."""
-_STEP = 1e-3
-"""Of the logarithms, by which slopes are taken."""
 _STILL, _MOST_STEPS, _MOST_DAMPED = 0.1, 20, 1e3
 """A fit ends where a step gains less than this of twice the logarithm, or after so many."""
-_WAYS = _STEP * np.eye(3)
+_WAYS = CHANGE * np.eye(3)
 _RIDGE = 1e-9
 """Added to the normal equations of the error's waves, whose readings are thousands."""
 _SURELY = float(np.log(20.0))
@@ -47,35 +45,22 @@ _SURELY = float(np.log(20.0))
 
 @dataclass(frozen=True, eq=False)
 class Torques:
-    """Torques locked to the angle that may turn a shaft, and how that moves, (n,) each.
+    """Torques locked to the angle that may turn a shaft, and how that moves.
 
     ``scatter_rad_s2`` is the standard deviation of what a torque of each order may be. ``free_rad_s`` is the usual
     angular frequency below which the shaft may move by itself: a swing is not told from that.
     """
 
     scatter_rad_s2: Mapping[int, float]
-    shaft_rad: Array
-    speed_rad_s: Array
-    acceleration_rad_s2: Array
-    damping_per_s: float
-    time_s: Array
-    stretches: Sequence[slice]
-    free_rad_s: float = 0.0
+    path: Path
+    free_rad_s: float
 
     def turned(self, second: SecondInertia | None) -> Array:
         """Angles (m, n) [rad] by which they turn the shaft, each one standard deviation of what they may be.
 
         Those of friction grow with the speed as well, or reverse with it.
         """
-        speed = self.speed_rad_s
-        all_of = moved(
-            self.scatter_rad_s2,
-            shaft_rad=self.shaft_rad,
-            speed_rad_s=speed,
-            acceleration_rad_s2=self.acceleration_rad_s2,
-            damping_per_s=self.damping_per_s,
-            behind=None if second is None else Behind(second, self.time_s, self.stretches),
-        )
+        speed, all_of = self.path.speed_rad_s, self.path.turned(self.scatter_rad_s2, second)
         all_of *= np.repeat([*self.scatter_rad_s2.values()], 2)[:, None]
         rubs = all_of[: 2 * sum(order <= HIGHEST_OF_FRICTION for order in self.scatter_rad_s2)]
         grows = 0.5 * speed / float(np.sqrt(np.mean(speed**2)))
@@ -85,7 +70,7 @@ class Torques:
     @cached_property
     def bounds(self) -> Array:
         """Between which logarithms (3, 2) of resonance, damping and share a second inertia is looked for."""
-        slow, fast = np.quantile(np.abs(self.speed_rad_s), [_SELDOM, 1.0 - _SELDOM])
+        slow, fast = np.quantile(np.abs(self.path.speed_rad_s), [_SELDOM, 1.0 - _SELDOM])
         orders = [*self.scatter_rad_s2]
         lowest = max(min(orders) * slow / _AROUND, self.free_rad_s)
         return np.log([[lowest, max(max(orders) * fast, lowest) * _AROUND], _DAMPING, _SHARE])
@@ -111,12 +96,12 @@ def tied(problem: Problem, torques: Torques, *, log_penalty: float, variance: fl
     profile, bounds = _Profile.of(problem, torques, log_penalty, variance), torques.bounds
     steps = np.arange(float(bounds[0, 0]), float(bounds[0, 1]), _FINENESS)
     grid = np.array([[at, *np.log(_SET_OUT)] for at in steps])
-    costs = np.array([profile.cost(_of(at)) for at in grid])
+    costs = np.array([profile.cost(SecondInertia.of(at)) for at in grid])
     before, behind = np.r_[np.inf, costs[:-1]], np.r_[costs[1:], np.inf]
     peaks = np.flatnonzero((costs <= before) & (costs <= behind))
     found = [profile.best(grid[peak]) for peak in peaks[np.argsort(costs[peaks])][:_PEAKS]]
     # At an end of what is looked for there is none: a wave that comes and goes is a resonance without a damping.
-    within = [one for one in found if np.all(np.abs(one.logarithms[:, None] - bounds) > _STEP)]
+    within = [one for one in found if np.all(np.abs(one.logarithms[:, None] - bounds) > CHANGE)]
     told = [one for one in within if _log_odds(profile, one) > _SURELY]
     return min(told, key=lambda one: profile.cost(one.second), default=None)
 
@@ -201,7 +186,7 @@ class _Profile:
         for _ in range(_MOST_STEPS):
             step = np.linalg.solve(told + damped * np.diag(np.diag(told)), score)
             tried = np.clip(at + step, *bounds.T)
-            if self.cost(_of(tried)) < cost:
+            if self.cost(SecondInertia.of(tried)) < cost:
                 before, at, damped = cost, tried, 0.1 * damped
                 cost, told, score = self._slopes(at)
                 if before - cost < _STILL:
@@ -210,14 +195,16 @@ class _Profile:
                 damped *= 10.0
             else:
                 break
-        return Tied(_of(at), np.asarray(np.linalg.inv(told)))
+        return Tied(SecondInertia.of(at), np.asarray(np.linalg.inv(told)))
 
     def _slopes(self, at: Array) -> tuple[float, Array, Array]:
         """The cost at logarithms (3,), what readings and bounds tell of them (3, 3), and the score (3,)."""
-        columns = self.torques.turned(_of(at))
+        columns = self.torques.turned(SecondInertia.of(at))
         system, gradient = self._system(columns)
         found = np.linalg.solve(system, gradient)
-        slopes = np.stack([(found @ self.torques.turned(_of(at + way)) - found @ columns) / _STEP for way in _WAYS])
+        slopes = np.stack(
+            [(found @ self.torques.turned(SecondInertia.of(at + way)) - found @ columns) / CHANGE for way in _WAYS]
+        )
         beside, along = self.errors @ slopes.T, self.projection.of(slopes)
         across = along @ columns.T - beside.T @ (self.errors @ columns.T)
         own = along @ slopes.T - beside.T @ beside
@@ -232,7 +219,3 @@ class _Profile:
         normal = self.projection.of(columns) @ columns.T - across.T @ across
         gradient = columns @ self.projection.left - across.T @ self.along
         return normal + self.variance * np.eye(len(columns)), gradient
-
-
-def _of(logarithms: Array) -> SecondInertia:
-    return SecondInertia(*np.exp(logarithms).tolist())

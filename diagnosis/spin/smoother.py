@@ -15,7 +15,17 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.spin.columns import HIGHEST_ORDER, OF_ERROR, OF_FRICTION, OF_LATE, OF_TORQUE, ORDERS, torques, waves
+from diagnosis.spin.columns import (
+    HIGHEST_ORDER,
+    OF_ERROR,
+    OF_FRICTION,
+    OF_LATE,
+    OF_TORQUE,
+    ORDERS,
+    Path,
+    torques,
+    waves,
+)
 from diagnosis.spin.damping import damping
 from diagnosis.spin.problem import Own, Problem, evened, held_at, knee, likeliest
 from diagnosis.spin.scatter import ANY_GROWTH, amplitudes_seen, coefficients, separable_orders
@@ -29,7 +39,7 @@ from twin.confidence import OF_MAD
 from twin.effect import BoolArray
 from twin.mechanics.torque_ripple import second_order
 from twin.pace import two_speeds_alone
-from twin.second_inertia import Behind, SecondInertia, Tied
+from twin.second_inertia import SecondInertia, Tied
 
 _BEYOND_CHANCE = 9.0
 """An order's square against its variance, from which on it is seen: chance passes it once in 8,000 times."""
@@ -157,13 +167,13 @@ class _Estimate:
             return replace(self, problem=replace(self.problem, columns=errors))
         damping_per_s, sd_per_s = self._damping()
         second = None if self.second is None else self.second.second
-        turned = self._turned(damping_per_s, second)
+        turned = torques(self._path(damping_per_s), second)
         known = np.zeros(OF_FRICTION - OF_ERROR)
         if self.terms is not None and len(self.terms.values) > OF_ERROR:
             known = self.terms.values[OF_ERROR:OF_FRICTION]
 
         def changed(damped_per_s: float, other: SecondInertia | None) -> Array:
-            return np.asarray(known @ (self._turned(damped_per_s, other) - turned)[: known.size])
+            return np.asarray(known @ (torques(self._path(damped_per_s), other) - turned)[: known.size])
 
         scattered = () if self.second is None else self.second.scattered()
         further = [changed(damping_per_s + RATE, second) / RATE]
@@ -181,10 +191,9 @@ class _Estimate:
             ),
         )
 
-    def _turned(self, damping_per_s: float, second: SecondInertia | None) -> Array:
-        """What torques do to the shaft (.., n) [rad], see :func:`diagnosis.spin.columns.torques`."""
-        behind = None if second is None else Behind(second, self.problem.time_s, self.stretches)
-        return torques(self.shaft_rad, *self.rates, damping_per_s=damping_per_s, behind=behind)
+    def _path(self, damping_per_s: float) -> Path:
+        """How the shaft moves, so damped."""
+        return Path(self.shaft_rad, *self.rates, self.problem.time_s, self.stretches, damping_per_s)
 
     def rounds(self) -> _Estimate:
         """Round for round."""
@@ -227,15 +236,8 @@ class _Estimate:
             for order, size, square in zip(ORDERS, seen, told.reshape(-1, 2).sum(axis=1), strict=True)
             if square > 2.0 * _BEYOND_CHANCE
         }
-        return Torques(
-            makes,
-            self.shaft_rad,
-            *self.rates,
-            self.damping_per_s,
-            self.problem.time_s,
-            self.stretches,
-            free_rad_s=float(np.median(knee(self.problem, self.log_penalty))),
-        )
+        free_rad_s = float(np.median(knee(self.problem, self.log_penalty)))
+        return Torques(makes, self._path(self.damping_per_s), free_rad_s)
 
     def _damping(self) -> tuple[float, float]:
         """Of the shaft at this penalty, and its standard deviation [1/s]; none is looked for in the first round."""

@@ -6,13 +6,13 @@ from functools import lru_cache
 
 import numpy as np
 
+from diagnosis.spin.columns import Path
 from diagnosis.spin.spline import rate
 from twin.angles import Array
 from twin.effect import BoolArray
-from twin.mechanics.torque_ripple import response
 from twin.motion import Motion
 from twin.noise.spectrum import to_cosine, to_rows
-from twin.second_inertia import Behind, SecondInertia
+from twin.second_inertia import SecondInertia
 
 RATE = 1e-3
 """Damping [1/s] by which the derivative of a response is taken."""
@@ -62,16 +62,10 @@ def _moved(motion: Motion, order: int, *, more_damped_per_s: float = 0.0, second
     """What torques of an order that give 1 rad/s^2, with its cosine and its sine, turn the shaft by (2, n) [rad]."""
     found = motion.estimated
     assert found is not None
-    speed, acceleration = _rates(motion)
+    damping_per_s = found.damping_per_s + more_damped_per_s
+    path = Path(motion.shaft_rad, *_rates(motion), motion.time_s, found.slices, damping_per_s)
     known = found.second.second if second is None and found.second is not None else second
-    moved = response(
-        order,
-        shaft_rad=motion.shaft_rad,
-        speed_rad_s=speed,
-        acceleration_rad_s2=acceleration,
-        damping_per_s=found.damping_per_s + more_damped_per_s,
-        behind=None if known is None else Behind(known, motion.time_s, found.slices),
-    )
+    moved = path.turned((order,), known)
     return np.where(found.knee_rad > 0.0, moved, 0.0)
 
 

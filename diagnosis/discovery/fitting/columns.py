@@ -40,7 +40,7 @@ class Columns:
 
     def cosine_at(self, places: Sequence[int]) -> Array:
         """The coefficients (len(places), O, n) of the parameters at these places."""
-        return np.asarray(self._found(places)[1][places])
+        return np.asarray(self._found(places)[1][_span(places)])
 
     @cached_property
     def _kept(self) -> tuple[Array, Array, set[str]]:
@@ -57,8 +57,16 @@ class Columns:
             for key in asked:
                 own = [place for place in new if self.moved[place][0] == key]
                 effect = find(key, self.linear.chain.effects)
-                rows[own] = self.linear.derivatives(key, effect, [self.moved[place][1:] for place in own])
-            rows[new] = without_nuisance(self.observations, rows[new])
-            cosine[new] = observables_to_cosine(self.observations, rows[new])
+                rows[_span(own)] = self.linear.derivatives(key, effect, [self.moved[place][1:] for place in own])
+            part = _span(new)
+            rows[part] = without_nuisance(self.observations, rows[part])
+            cosine[part] = observables_to_cosine(self.observations, rows[part])
             known.update(asked)
         return rows, cosine
+
+
+def _span(places: Sequence[int]) -> slice | list[int]:
+    """Places that follow one another as a slice: nothing is copied then."""
+    if not places or list(places) != list(range(places[0], places[-1] + 1)):
+        return list(places)
+    return slice(places[0], places[-1] + 1)

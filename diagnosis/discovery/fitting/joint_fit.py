@@ -134,8 +134,11 @@ class Fit:
     def whitened_columns(self, places: Sequence[int], member: int | None = None) -> Array:
         """The rows (len(places), N) of the whitened Jacobian that belong to the free parameters at these places."""
         root = root_weights(self.weighting, self.observations.observables, member)
-        j = (self.columns.cosine_at(places) * root).reshape(len(places), root.size)
-        return np.concatenate([j, self.prior_jacobian[places]], axis=1)
+        prior = self.prior_jacobian[places]
+        out = np.empty((len(places), root.size + prior.shape[1]))
+        np.multiply(self.columns.cosine_at(places), root, out=out[:, : root.size].reshape(len(places), *root.shape))
+        out[:, root.size :] = prior
+        return out
 
     def whitened_residual(self, member: int | None = None) -> Array:
         """The residual (N,) alone."""
@@ -256,7 +259,8 @@ def _scatter(fit: Fit, turns: Sequence[int], unit: float) -> float:
     zeros = from_centre(fit.chain, fit.free)[turns]
     spread = max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
     root = root_weights(fit.weighting, fit.observations.observables)
-    weight = np.sum((fit.columns.cosine_at(turns) * root) ** 2, axis=(1, 2))
+    columns = fit.columns.cosine_at(turns)
+    weight = np.einsum("pon,pon,on->p", columns, columns, root**2)
     held = np.where(fit.strengths[turns] > 0.0, fit.strengths[turns], unit / spread)
     share = float(np.mean(weight / (weight + held**2)))
     # Zeros that no reading tells stay as they are.
@@ -275,12 +279,12 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4, least_gain
     cost = cost_of(fit)
     for _ in range(iterations):
         r, j = fit.whitened()
-        scale = np.linalg.norm(j, axis=1)
+        gram = j @ j.T
+        scale = np.sqrt(np.diag(gram))
         alive = scale > 1e-12 * max(scale.max(), 1e-300)
         unit = np.where(alive, scale, 1.0)
-        a = j / unit[:, None]
-        normal = a @ a.T
-        gradient = a @ r
+        normal = gram / np.outer(unit, unit)
+        gradient = (j @ r) / unit
         sigma = np.sqrt(cost / max(fit.rows - len(fit.free), 1))
         lower, upper = (room * unit for room in _room(fit))
         growth = 2.0

@@ -111,7 +111,7 @@ def _held_or_exchanged(fit: Fit, key: str, keys: list[str], plan: Search, stood:
     idle = paying is None and removal.log_p + handicap(removal.effect, fit) > level
     if idle or ends_at_bound(fit, key) or lacks_a_part(fit, key, fit.settings.footprint_log_p):
         return _Examined(removal.without, others, plan)
-    ranked = candidates(removal.base, contenders, others)
+    ranked = candidates(removal.base, contenders, others, known=removal.own)
     if paying is not None and paying.beats_still(removal, _rivals(fit, removal, ranked, log_p=paying.now(removal))):
         return _Examined(fit, keys, plan, replace(paying, seen_in=fit))
     contests: dict[Form, Contest] = {}

@@ -32,11 +32,15 @@ _HIGHEST_SHARE = 0.9
 """Highest order looked at as a multiple, as a share of the points a turn."""
 
 
-def candidates(base: Base, effects: Sequence[Effect], keys: Sequence[str]) -> list[Candidate]:
-    """Every effect that may still be added, at its best shape, best first after the handicap."""
+def candidates(
+    base: Base, effects: Sequence[Effect], keys: Sequence[str], *, known: Candidate | None = None
+) -> list[Candidate]:
+    """Every effect that may still be added, at its best shape, best first after the handicap; one may be known."""
     present = {base_name(key) for key in keys}
     absent = [effect for effect in effects if effect.name not in present]
-    found = screen(base, [form for effect in absent for form in (effect, *effect.sought_alone)])
+    found = [] if known is None else [known for effect in absent if effect is known.effect]
+    sought = [form for effect in absent for form in (effect, *effect.sought_alone)]
+    found += screen(base, [form for form in sought if not found or form is not found[0].effect])
     further = (one_more(base, effect, keys) for effect in effects if effect.name in present)
     found += [candidate for candidate in further if candidate is not None]
     found += multiples(base, effects, keys)

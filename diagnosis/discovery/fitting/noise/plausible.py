@@ -22,8 +22,12 @@ if TYPE_CHECKING:
     from diagnosis.discovery.fitting.observations import Observations
 
 
+@lru_cache(maxsize=4)
 def plausible_members(fit: Fit) -> tuple[int, ...]:
-    """The family members that the noise may be, given the fit's residual; all where there are too few turns to tell."""
+    """The family members that the noise may be, given the fit's residual; all where there are too few turns to tell.
+
+    A fit is asked once for each rival that it is held against: found once.
+    """
     everyone = tuple(range(len(fit.weighting.family.members)))
     motion = fit.observations.motion
     if motion.turns < fit.settings.noise_turns:

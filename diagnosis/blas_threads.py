@@ -1,5 +1,4 @@
-"""What a diagnosis computes with: one thread for its linear algebra, memory that it keeps, and numpy's own way with
-what overflows.
+"""What a diagnosis computes with: one thread of linear algebra, memory that it keeps, numpy's own way with overflows.
 
 Its matrices are small, and threads cost more than they bring.
 """

@@ -7,7 +7,7 @@ from tests.mutations.mutation import Mutation
 _JOINT_FIT = "tests/diagnosis/discovery/fitting/test_joint_fit.py"
 _SEARCH = "tests/diagnosis/discovery/search"
 
-SPARED: tuple[Mutation, ...] = tuple(
+_OF_SEARCHES: tuple[Mutation, ...] = tuple(
     Mutation(f"spared.{name}", f"diagnosis/discovery/{file}", old, new, (test,))
     for name, file, old, new, test in (
         (
@@ -60,6 +60,27 @@ SPARED: tuple[Mutation, ...] = tuple(
             f"{_SEARCH}/test_rivals.py::test_only_who_may_be_as_good_is_fitted_to_the_end",
         ),
         (
+            "all_contenders_are_fitted_beside_a_detail",
+            "search/forward_step.py",
+            "        if score < enough and",
+            "        if False and",
+            f"{_SEARCH}/test_details.py::test_one_cause_that_does_more_than_a_detail_is_enough",
+        ),
+        (
+            "a_cause_is_looked_at_twice_in_its_place",
+            "search/exchange.py",
+            ", known=removal.own)",
+            ")",
+            f"{_SEARCH}/test_exchange.py::test_a_cause_is_looked_at_in_its_own_place_once",
+        ),
+        (
+            "plausible_noises_are_found_anew_for_each_rival",
+            "fitting/noise/plausible.py",
+            "@lru_cache(maxsize=4)\ndef plausible_members",
+            "def plausible_members",
+            "tests/diagnosis/discovery/fitting/test_plausible.py::test_a_fit_is_asked_for_its_plausible_members_once",
+        ),
+        (
             "plans_are_solved_for_to_the_end",
             "further/power.py",
             ", least_gain=_LEAST_SHARE * other.freedom",
@@ -68,3 +89,11 @@ SPARED: tuple[Mutation, ...] = tuple(
         ),
     )
 )
+_MEMORY = Mutation(
+    "spared.freed_memory_goes_back",
+    "diagnosis/blas_threads.py",
+    "    keep_freed_memory()\n",
+    "",
+    ("tests/diagnosis/test_freed_memory.py",),
+)
+SPARED = (*_OF_SEARCHES, _MEMORY)

@@ -12,6 +12,7 @@ import pytest
 from scipy.fft import dct
 
 from diagnosis.discovery.fitting.joint_fit import Fit
+from diagnosis.discovery.fitting.noise import plausible
 from diagnosis.discovery.fitting.noise.plausible import either, locked_shapes, plausible_members
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.state import State
@@ -61,10 +62,10 @@ def test_members_within_reach_of_the_best_are_plausible(correlation: float) -> N
     state = clean(4)
     fit = with_residual(state, correlated(len(state.sweep), correlation)).fit
     behind = np.max(score := restricted_log_likelihoods(fit)) - score
-    plausible = np.isin(np.arange(score.size), plausible_members(fit))
+    found = np.isin(np.arange(score.size), plausible_members(fit))
     # At the very edge either may be right: some of the shapes that are set aside are nearly the same.
-    assert np.all(plausible[behind < REACH - EDGE])
-    assert not np.any(plausible[behind > REACH + EDGE])
+    assert np.all(found[behind < REACH - EDGE])
+    assert not np.any(found[behind > REACH + EDGE])
 
 
 @pytest.mark.parametrize(("turns", "told"), [(3, False), (4, True)])
@@ -87,6 +88,13 @@ def test_structure_that_repeats_with_the_angle_is_no_colour() -> None:
     shaft = state.fit.observations.motion.shaft_rad
     structure = sum(np.radians(0.1) * np.sin(order * shaft + order) for order in (3, 4, 5, 7))
     assert plausible_members(with_residual(state, noise(shaft.size) + structure).fit) == (0,)
+
+
+def test_a_fit_is_asked_for_its_plausible_members_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    fit = with_residual(clean(4), noise(len(clean(4).sweep))).fit
+    first = plausible_members(fit)
+    monkeypatch.setattr(plausible, "_scores", None)
+    assert plausible_members(fit) == first
 
 
 def test_either_has_the_members_of_any_once() -> None:

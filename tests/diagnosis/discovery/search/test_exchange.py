@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
-from diagnosis.discovery.search import exchange
+from diagnosis.discovery.search import exchange, screening
+from diagnosis.discovery.search import removal as removal_module
 from diagnosis.discovery.search import stepwise as stepwise_search
 from diagnosis.discovery.search.exchange import Search, improve, in_its_place
 from diagnosis.discovery.search.likelihood_ratio import Trial, settle
 from diagnosis.discovery.search.removal import Removal
-from diagnosis.discovery.search.screening import Candidate
+from diagnosis.discovery.search.screening import Base, Candidate
 from diagnosis.discovery.stages.stepwise import stepwise
 from diagnosis.discovery.state import State
 from tests.diagnosis.discovery.searches import candidate, with_cause
@@ -184,6 +185,27 @@ def test_what_stood_is_asked_again_once_it_pays_less(monkeypatch: pytest.MonkeyP
     _, held, _ = improve(after.fit, after.keys, search, standings)
     assert f"no {HARMONIC}" in asked
     assert held == [SATURATION]
+
+
+def test_a_cause_is_looked_at_in_its_own_place_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its removal has done so already: among its rivals it is taken as known."""
+    state = plain(BACK)
+    state = holding(reading(state, (0.05, order(4, state.fit))), (_AS_SATURATION, _AS_FIFTH))
+    looked_at: list[str] = []
+    screened = screening.screen_one
+
+    def counted(base: Base, effect: Effect) -> Candidate | None:
+        looked_at.append(effect.name)
+        return screened(base, effect)
+
+    monkeypatch.setattr(screening, "screen_one", counted)
+    monkeypatch.setattr(removal_module, "screen_one", counted)
+    examined = exchange._held_or_exchanged(
+        state.fit, SATURATION, list(state.keys), Search.among(state.searched, state.fit), None
+    )
+    assert examined.keys == list(state.keys)
+    assert looked_at.count(SATURATION) == 1
+    assert len(looked_at) > 10
 
 
 def test_only_those_are_tried_that_contended_for_its_place() -> None:

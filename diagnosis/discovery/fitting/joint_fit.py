@@ -259,8 +259,7 @@ def _scatter(fit: Fit, turns: Sequence[int], unit: float) -> float:
     zeros = from_centre(fit.chain, fit.free)[turns]
     spread = max(float(np.std(zeros, ddof=1)) if zeros.size > 1 else 0.0, 1e-4)
     root = root_weights(fit.weighting, fit.observations.observables)
-    columns = fit.columns.cosine_at(turns)
-    weight = np.einsum("pon,pon,on->p", columns, columns, root**2)
+    weight = np.sum((fit.columns.cosine_at(turns) * root) ** 2, axis=(1, 2))
     held = np.where(fit.strengths[turns] > 0.0, fit.strengths[turns], unit / spread)
     share = float(np.mean(weight / (weight + held**2)))
     # Zeros that no reading tells stay as they are.
@@ -279,12 +278,12 @@ def solve(fit: Fit, *, iterations: int = 12, tolerance: float = 1e-4, least_gain
     cost = cost_of(fit)
     for _ in range(iterations):
         r, j = fit.whitened()
-        gram = j @ j.T
-        scale = np.sqrt(np.diag(gram))
+        scale = np.linalg.norm(j, axis=1)
         alive = scale > 1e-12 * max(scale.max(), 1e-300)
         unit = np.where(alive, scale, 1.0)
-        normal = gram / np.outer(unit, unit)
-        gradient = (j @ r) / unit
+        a = j / unit[:, None]
+        normal = a @ a.T
+        gradient = a @ r
         sigma = np.sqrt(cost / max(fit.rows - len(fit.free), 1))
         lower, upper = (room * unit for room in _room(fit))
         growth = 2.0

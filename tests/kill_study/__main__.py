@@ -15,7 +15,7 @@ from pathlib import Path
 from tests.kill_study.disks import can_mount, fill
 from tests.kill_study.kills import kill
 from tests.kill_study.pairs import pair
-from tests.kill_study.trials import COMMANDS, Command, Trial, ended, write_encoder
+from tests.kill_study.trials import COMMANDS, Command, Trial, ended, write_inputs
 
 KINDS = {"kill": "kill -9", "disk": "full disk", "pair": "two at once"}
 
@@ -58,7 +58,7 @@ def _try_all(commands: Sequence[Command], work: Path, asked: argparse.Namespace,
     disks = asked.disks if asked.disks and can_mount() else 0
     if disks < asked.disks:
         print("full disks are not tried: this user may not mount one (unshare -rm, tmpfs)", file=sys.stderr)
-    write_encoder(work)
+    write_inputs(work)
     for command in commands:
         calm = work / f"{command.name}-calm"
         process = command.start(calm)

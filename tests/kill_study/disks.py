@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 
-from tests.kill_study.trials import COMMANDS, ROOT, TWIN, Command, Tell, Trial, resumed
+from tests.kill_study.trials import COMMANDS, DEVICES, ROOT, TWIN, Command, Tell, Trial, resumed
 
 SIZE = "256m"
 
@@ -43,6 +43,7 @@ def fill(command: Command, calm: Path, *, levels: int, tell: Tell) -> None:
 def levels_of(command: Command, disk: Path, calm: Path, levels: int) -> Iterator[Trial]:
     """One trial a level on the disk mounted there."""
     shutil.copy(calm.parent / TWIN, disk / TWIN)
+    shutil.copytree(calm.parent / DEVICES, disk / DEVICES)
     need = _needed(disk, calm)
     for level in range(levels):
         place, ballast = disk / f"disk-{level}", disk / "ballast"

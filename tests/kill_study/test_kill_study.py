@@ -9,7 +9,7 @@ import pytest
 from tests.kill_study.__main__ import main
 from tests.kill_study.kills import kill
 from tests.kill_study.pairs import pair
-from tests.kill_study.trials import BENCH, Command, Trial, files, write_encoder
+from tests.kill_study.trials import BENCH, Command, Trial, files, write_inputs
 
 
 def test_generate_killed_while_its_store_is_made_is_as_undisturbed(tmp_path: Path) -> None:
@@ -29,7 +29,7 @@ def test_generate_killed_while_its_store_is_made_is_as_undisturbed(tmp_path: Pat
 def test_two_benches_at_once_leave_one_sweep(tmp_path: Path) -> None:
     pytest.importorskip("can", reason="needs the extra 'bench'")
     pytest.importorskip("cantools", reason="needs the extra 'bench'")
-    write_encoder(tmp_path)
+    write_inputs(tmp_path)
     command = Command("bench", (*BENCH[:1], "--points", "300"), study=False)
     trials: list[Trial] = []
     assert command.run(tmp_path / "calm").code == 0

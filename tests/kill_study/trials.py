@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.hidden.fleets.generator import Plan, write
 from twin.files import write_twin
 from twin.presets import read_preset
 from twin.sweep_reader import read_columns
@@ -18,33 +19,40 @@ from twin.sweep_reader import read_columns
 ROOT = Path(__file__).parents[2]
 LONGEST_S = 300.0
 """No run takes so long, be the machine ever so busy: one that does is taken to hang."""
-STUDY, SWEEP, TWIN = "study", "sweep.csv", "encoder.toml"
+STUDY, SWEEP, TWIN, DEVICES = "study", "sweep.csv", "encoder.toml", "devices"
 GENERATE = ("generate", "-n", "1600", "--chunk", "40")
 RECOVER = (
     *("recover", "--cause", "baseline", "--cause", "clean", "--noise", "0.02,0.05"),
     *("--points", "36,48,60,72", "--turns", "1", "--fits", "20", "--sweeps", "1"),
 )
 DESIGN = ("design", "--diameter", "4:8:0.5", "--height", "2.5,3", "--air-gap", "1:3:0.5", "--mountings", "60")
+FLEET = Plan(count=400, cause="hysteresis", strength_deg=0.006, points=180, odd={4: ("drive_ripple", 0.1)})
+"""Two looks at each device, and one that stands apart and is explained."""
 BENCH = ("bench", "--points", "300", "--both-directions")
 
 
 @dataclass(frozen=True)
 class Command:
-    """A command of halltwin that works in a folder of a trial: a study on a pool of processes, or a bench."""
+    """A command of halltwin that works in a folder of a trial: a study on a pool of processes, or a bench.
+
+    ``of_devices``: the study is of the files of devices beside the trial.
+    """
 
     name: str
     given: tuple[str, ...]
     study: bool = True
     workers: int = 2
+    of_devices: bool = False
 
     def arguments(self, place: Path) -> list[str]:
         """The whole command line."""
+        devices = (str(place.parent / DEVICES),) if self.of_devices else ()
         where = (
             ("--workers", str(self.workers), "-o", str(place / STUDY))
             if self.study
             else ("--twin", str(place.parent / TWIN), "-o", str(place / SWEEP))
         )
-        return [sys.executable, "-m", "scenarios.cli.main", *self.given, *where]
+        return [sys.executable, "-m", "scenarios.cli.main", *self.given, *devices, *where]
 
     def start(self, place: Path) -> subprocess.Popen[str]:
         """Start it in a process group of its own."""
@@ -97,6 +105,7 @@ COMMANDS = (
     Command("generate", GENERATE),
     Command("recover", RECOVER),
     Command("design", DESIGN),
+    Command("fleet", ("fleet",), of_devices=True),
     Command("bench", BENCH, study=False),
 )
 
@@ -155,9 +164,10 @@ def resumed(command: Command, place: Path, calm: Path) -> tuple[str, bool]:
     return f"{said}; {difference}" if difference else said, not difference
 
 
-def write_encoder(work: Path) -> None:
-    """The encoder on the bench: one without noise, since a bench that goes on draws other noise."""
+def write_inputs(work: Path) -> None:
+    """The encoder on the bench, without noise since a bench that goes on draws other noise; devices of a batch."""
     write_twin(work / TWIN, read_preset("paper-encoder").without("noise"))
+    write(FLEET, work / DEVICES, seed=3)
 
 
 def files(place: Path) -> dict[str, bytes]:

@@ -1,4 +1,4 @@
-"""What a diagnosis computes with: one thread of linear algebra, memory that it keeps, numpy's own way with overflows.
+"""What a diagnosis computes with: one thread for its linear algebra, and numpy's own way with what overflows.
 
 Its matrices are small, and threads cost more than they bring.
 """
@@ -9,8 +9,6 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
-
-from diagnosis.freed_memory import keep_freed_memory
 
 
 class _Limit:
@@ -50,12 +48,10 @@ _NUMPYS_OWN: Any = {"divide": "warn", "over": "warn", "under": "ignore", "invali
 def one_blas_thread() -> Iterator[None]:
     """Run the body with BLAS on one thread and numpy's own error handling; afterwards both are as before.
 
-    Memory that is freed is kept, see :func:`~diagnosis.freed_memory.keep_freed_memory`, also afterwards.
     Calls may be nested and may run in several threads of Python at once.
     """
     import numpy as np
 
-    keep_freed_memory()
     _LIMIT.hold()
     try:
         with np.errstate(**_NUMPYS_OWN):

@@ -251,7 +251,7 @@ FORMS: tuple[Mutation, ...] = tuple(
         (
             "forms.a_detail_before_another_cause",
             "diagnosis/discovery/search/details.py",
-            "return plain if _by_another_cause(plain, effects, keys, surely)",
+            "return plain if _by_another_cause(plain, effects, keys, min(level, surely))",
             "return plain if np.inf",
             f"{_DETAILS}::test_a_detail_stays_at_its_null_where_another_cause_does_it",
         ),

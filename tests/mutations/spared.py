@@ -7,7 +7,7 @@ from tests.mutations.mutation import Mutation
 _JOINT_FIT = "tests/diagnosis/discovery/fitting/test_joint_fit.py"
 _SEARCH = "tests/diagnosis/discovery/search"
 
-_OF_SEARCHES: tuple[Mutation, ...] = tuple(
+SPARED: tuple[Mutation, ...] = tuple(
     Mutation(f"spared.{name}", f"diagnosis/discovery/{file}", old, new, (test,))
     for name, file, old, new, test in (
         (
@@ -60,13 +60,6 @@ _OF_SEARCHES: tuple[Mutation, ...] = tuple(
             f"{_SEARCH}/test_rivals.py::test_only_who_may_be_as_good_is_fitted_to_the_end",
         ),
         (
-            "all_contenders_are_fitted_beside_a_detail",
-            "search/forward_step.py",
-            "        if score < enough and",
-            "        if False and",
-            f"{_SEARCH}/test_details.py::test_one_cause_that_does_more_than_a_detail_is_enough",
-        ),
-        (
             "a_cause_is_looked_at_twice_in_its_place",
             "search/exchange.py",
             ", known=removal.own)",
@@ -89,11 +82,3 @@ _OF_SEARCHES: tuple[Mutation, ...] = tuple(
         ),
     )
 )
-_MEMORY = Mutation(
-    "spared.freed_memory_goes_back",
-    "diagnosis/blas_threads.py",
-    "    keep_freed_memory()\n",
-    "",
-    ("tests/diagnosis/test_freed_memory.py",),
-)
-SPARED = (*_OF_SEARCHES, _MEMORY)

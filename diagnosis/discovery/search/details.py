@@ -44,16 +44,16 @@ def _judged(fit: Fit, detail: Free, level: float, *, effects: Sequence[Effect], 
     if log_p >= level:
         return plain
     surely = log_p - fit.settings.swap_log_odds
-    return plain if _by_another_cause(plain, effects, keys, surely) < surely else wide
+    return plain if _by_another_cause(plain, effects, keys, min(level, surely)) < surely else wide
 
 
 def _by_another_cause(plain: Fit, effects: Sequence[Effect], keys: Sequence[str], level: float) -> float:
-    """The log probability by chance of what a further cause explains beside causes without the detail.
+    """The log probability by chance of what the best further cause explains beside causes without the detail.
 
-    Those are fitted that to first order may come below the level, up to the first that does; 0 where none does.
+    Those are fitted that to first order may come below the level; 0 where none does.
     """
     without, base = settle(plain)
-    step = best_addition(without, base, effects, keys, level + plain.settings.contender_nats, enough=level)
+    step = best_addition(without, base, effects, keys, level + plain.settings.contender_nats)
     if step is None:
         return 0.0
     members = either(plausible_members(without), plausible_members(step.fit))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.discovery.fitting.joint_fit import SMALL_GAIN, Fit, evaluate, solve
-from diagnosis.discovery.fitting.noise.plausible import either, plausible_members
+from diagnosis.discovery.fitting.noise.plausible import either
 from diagnosis.discovery.search.freed import in_detail
 from diagnosis.discovery.search.likelihood_ratio import (
     Trial,
@@ -112,18 +112,9 @@ class Step:
 
 
 def best_addition(
-    fit: Fit,
-    base: Base,
-    effects: Sequence[Effect],
-    keys: Sequence[str],
-    threshold: float,
-    *,
-    enough: float = -np.inf,
+    fit: Fit, base: Base, effects: Sequence[Effect], keys: Sequence[str], threshold: float
 ) -> Step | None:
-    """The joint fit with the best significant candidate, contenders compared by exact fits; None if there is none.
-
-    No further one is fitted where one has a log probability below ``enough``.
-    """
+    """The joint fit with the best significant candidate, contenders compared by exact fits; None if there is none."""
     ranked = [c for c in candidates(base, effects, keys) if c.log_p + handicap(c.effect, base.fit) < threshold]
     if not ranked:
         return None
@@ -132,9 +123,8 @@ def best_addition(
     reach = max(settings.contender_nats, -settings.contender_share * top)
     near = [c for c in ranked if c.log_p + handicap(c.effect, base.fit) < top + reach][: settings.most_contenders]
     near += _asked_as_well(ranked, near, fit.settings.fair_share)
-    trials = _fitted(fit, base, near, enough)
-    if len(trials) == len(near):
-        trials += _in_the_place_of_a_shape(fit, ranked, near, threshold)
+    trials = [Trial.of(fit, c) for c in near]
+    trials += _in_the_place_of_a_shape(fit, ranked, near, threshold)
     # All are judged by the same noises: those that any of them leaves.
     members = either(*(t.members for t in trials))
     judged = [t.log_p(fit, members, base.dof) + handicap(t.candidate.effect, fit) for t in trials]
@@ -146,8 +136,7 @@ def best_addition(
     if ends_at_bound(trials[place].fit, trials[place].key) or (score > threshold and of_parts(near[0].effect)):
         # Of lines that one cause joins first order may promise what the cause does not keep: they are asked alone.
         tried = trials[place].candidate.effect if score <= threshold else near[0].effect
-        others = [one for one in effects if one.name != tried.name]
-        return best_addition(fit, base, others, keys, threshold, enough=enough)
+        return best_addition(fit, base, [one for one in effects if one.name != tried.name], keys, threshold)
     if score > threshold:
         return None
     trial, chosen = trials[place], trials[place].candidate
@@ -158,19 +147,6 @@ def best_addition(
         degrees(chosen.effect, chosen.terms),
         float(np.log(chosen.looks)) + handicap(chosen.effect, fit),
     )
-
-
-def _fitted(fit: Fit, base: Base, near: Sequence[Candidate], enough: float) -> list[Trial]:
-    """The candidates fitted exactly, as far as the first that has a log probability below ``enough``."""
-    trials: list[Trial] = []
-    for candidate in near:
-        trial = Trial.of(fit, candidate)
-        trials.append(trial)
-        score = trial.log_p(fit, either(plausible_members(fit), trial.members), base.dof)
-        score += handicap(candidate.effect, fit)
-        if score < enough and not ends_at_bound(trial.fit, trial.key):
-            break
-    return trials
 
 
 def _asked_as_well(ranked: Sequence[Candidate], near: Sequence[Candidate], share: float) -> list[Candidate]:

@@ -11,9 +11,7 @@ from diagnosis.discovery.fitting.free_parameters import Free
 from diagnosis.discovery.fitting.joint_fit import Fit, evaluate
 from diagnosis.discovery.search import freed
 from diagnosis.discovery.search.details import detailed
-from diagnosis.discovery.search.forward_step import best_addition
-from diagnosis.discovery.search.likelihood_ratio import Trial, refit, settle
-from diagnosis.discovery.search.screening import Candidate
+from diagnosis.discovery.search.likelihood_ratio import refit
 from diagnosis.discovery.stages.stepwise import stepwise
 from tests.diagnosis.discovery.searches import with_cause
 from tests.diagnosis.discovery.sweeps import Made, before, noise, with_residual
@@ -83,31 +81,6 @@ def test_a_detail_stays_at_its_null_where_another_cause_does_it() -> None:
     assert SHARE not in detailed(fit, ["hysteresis"], LEVEL, [find("saturation")]).free
     # Where the axes do lag, no saturation says it better.
     assert SHARE in detailed(held(1.0), ["hysteresis"], LEVEL, [find("saturation")]).free
-
-
-def test_one_cause_that_does_more_than_a_detail_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whether another is better still is a matter of the search that follows."""
-    state = before(stepwise, BACK)
-    chain = state.fit.chain.with_effect("hysteresis", lag_deg=0.1, memory_deg=8.0)
-    chain = chain.with_effect("saturation", k_percent=0.4)
-    shape = chain.readings(state.fit.observations.motion) - state.fit.linear.angle
-    fit = with_cause(
-        with_residual(state, shape + noise(len(state.sweep))), "hysteresis", lag_deg=0.1, memory_deg=8.0
-    ).fit
-    effects = [find("saturation"), find("magnet_harmonic")]
-    fitted: list[str] = []
-    trial = Trial.of
-
-    def counted(given: Fit, candidate: Candidate) -> Trial:
-        fitted.append(candidate.effect.name)
-        return trial(given, candidate)
-
-    monkeypatch.setattr(Trial, "of", counted)
-    best_addition(*settle(fit), effects, ["hysteresis"], LEVEL)
-    assert len(fitted) == 2
-    fitted.clear()
-    assert SHARE not in detailed(fit, ["hysteresis"], LEVEL, effects).free
-    assert len(fitted) == 1
 
 
 def test_a_cause_without_details_is_left_alone() -> None:

@@ -13,8 +13,8 @@ from twin.spin import FEWEST_ROWS
 _GAP = 20.0
 """Spacings of readings without one, from which on nobody knows how far the shaft has turned meanwhile."""
 _SLOW = 0.1
-"""Largest change of the speed in a radian, as a share of it: beyond it the response to a torque is no longer that of
-a turning shaft (its third term is a hundredth)."""
+"""Largest change of the speed in a radian, as a share of it: there the response to a torque is told to 0.04 of it, by
+an acceleration that itself changes, as by friction that goes with the speed; beyond, it grows with the square."""
 _REPAIR = 9
 
 

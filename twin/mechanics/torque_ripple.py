@@ -26,13 +26,17 @@ def response(
 ) -> Array:
     """Angles (2, n) [rad] by which accelerations cos(k theta) and sin(k theta) of 1 rad/s^2 turn a moving shaft.
 
-    The first two terms of the expansion in (rate of change of the speed)/(order speed^2): with h e^(ik theta) for the
-    angle, h'' + (2ikw + g) h' + (ikw' - k^2 w^2 + ikwg) h = 1, where g is the damping, by which friction and a drive
-    that holds the speed slow a departure from it. ``speed_rad_s`` must nowhere be zero. ``behind``: the rotor is not of
-    one piece; accelerations are those of both inertias together.
+    With h e^(ik theta) for the angle, h'' + (2ikw + g) h' + (ikw' - k^2 w^2 + ikwg) h = 1, where g is the damping, by
+    which friction and a drive that holds the speed slow a departure from it. Undamped and evenly accelerated, h is
+    -1/(kw)^2 times 1 - 3x + 15x^2 - 105x^3 + ... with x = i w'/(k w^2), a series that converges nowhere. Its diagonal
+    Pade approximant of order 2 is taken (G. A. Baker, P. Graves-Morris, Pade Approximants (1996), on Stieltjes series):
+    off by 0.003 where the speed changes by a tenth in a radian. ``speed_rad_s`` must nowhere be zero. ``behind``: the
+    rotor is not of one piece; accelerations are those of both inertias together.
     """
     turning = order * speed_rad_s
-    size = (1.0 - 3.0j * order * acceleration_rad_s2 / turning**2) / (1j * turning * (1j * turning + damping_per_s))
+    x = 1j * order * acceleration_rad_s2 / turning**2
+    even = (1.0 + 11.0 * x + 8.0 * x**2) / (1.0 + 14.0 * x + 35.0 * x**2)
+    size = even / (1j * turning * (1j * turning + damping_per_s))
     if behind is None:
         wave = size * np.exp(1j * order * shaft_rad)
     else:

@@ -142,9 +142,7 @@ def explain(
     from diagnosis.discovery.pipeline import discover
     from diagnosis.discovery.settings import DiscoverySettings
     from diagnosis.discovery.watch import Watch, ended_by_budget, stopped_by_interrupt
-    from diagnosis.known_periods import check_periods, check_seen
     from diagnosis.report.provenance import Provenance
-    from twin.hall.multipole import with_periods
     from twin.log import LOG
 
     rng = np.random.default_rng(checked_seed(seed))
@@ -153,19 +151,16 @@ def explain(
     _check_on_interrupt(on_interrupt)
     each_s = _checked_budget(budget_s)
     searched = _searched(effects, twin)
-    read = _read(sweep, mounting, pole_pairs, columns)
-    if pole_pairs is not None and pole_pairs > 1:
-        check_seen(read, pole_pairs)
-        searched = with_periods(searched, pole_pairs, given=twin is not None)
-    given = as_twin(twin, effects=searched)
-    if given is not None and pole_pairs is not None:
-        check_periods(given, pole_pairs)
-    start = _start(searched, mounting, given)
-    used = vars(settings or DiscoverySettings()).items()
-    LOG.info("seed %d; settings: %s", seed, ", ".join(f"{name} {value}" for name, value in used))
-    watch = Watch(progress, budget_s=each_s * len(read))
+    sources = _sources(sweep)
+    watch = Watch(progress, budget_s=each_s * len(sources))
     listening = stopped_by_interrupt(watch) if on_interrupt == "answer" else nullcontext()
     with one_blas_thread(), listening, ended_by_budget(watch):
+        read = as_sweeps(sources, pole_pairs=pole_pairs, columns=columns, begins=lambda stage: watch.told(stage, ()))
+        _check_mounting(read, mounting)
+        searched, given = _with_periods(read, searched, twin, pole_pairs)
+        start = _start(searched, mounting, given)
+        used = vars(settings or DiscoverySettings()).items()
+        LOG.info("seed %d; settings: %s", seed, ", ".join(f"{name} {value}" for name, value in used))
         state = _begun(read, given=given, start=start, mounting=mounting, settings=settings, rng=rng, watch=watch)
         found = discover(state)
         whole = _whole_record(read, found, state)
@@ -184,22 +179,39 @@ def _whole_record(read: list[Sweep], found: Discovery, handed_in: State) -> Whol
     return None if means is None else searched(means, handed_in)
 
 
-def _read(
-    sweep: SweepLike | Spin | Sequence[SweepLike | Spin],
-    mounting: Mounting | None,
-    pole_pairs: int | None,
-    columns: str | None,
-) -> list[Sweep]:
-    """The sweeps that are meant. Raises UserError for a list of none, or where more or fewer are mounted."""
+def _sources(sweep: SweepLike | Spin | Sequence[SweepLike | Spin]) -> Sequence[SweepLike | Spin]:
+    """What is given, one by one. Raises UserError for a list of none."""
     from typing import cast
 
     from twin.errors import UserError
 
     several = isinstance(sweep, list | tuple)
     sources = cast("Sequence[SweepLike | Spin]", sweep) if several else [cast("SweepLike | Spin", sweep)]
-    sweeps = as_sweeps(sources, pole_pairs=pole_pairs, columns=columns)
-    if not sweeps:
+    if not sources:
         raise UserError("found a list of no sweep; give one sweep, or several recordings of one device")
+    return sources
+
+
+def _with_periods(
+    sweeps: Sequence[Sweep], searched: tuple[Effect, ...], twin: TwinLike | None, pole_pairs: int | None
+) -> tuple[tuple[Effect, ...], Chain | None]:
+    """The effects, and the twin that is given, with these pole pairs. Raises UserError where it has others."""
+    from diagnosis.known_periods import check_periods, check_seen
+    from twin.hall.multipole import with_periods
+
+    if pole_pairs is not None and pole_pairs > 1:
+        check_seen(sweeps, pole_pairs)
+        searched = with_periods(searched, pole_pairs, given=twin is not None)
+    given = as_twin(twin, effects=searched)
+    if given is not None and pole_pairs is not None:
+        check_periods(given, pole_pairs)
+    return searched, given
+
+
+def _check_mounting(sweeps: Sequence[Sweep], mounting: Mounting | None) -> None:
+    """Refuse where more or fewer are mounted than there are. Raises UserError."""
+    from twin.errors import UserError
+
     gaps, angles = (1, 0) if mounting is None else (len(mounting.air_gap_mm), len(mounting.turned_deg))
     if gaps not in (1, len(sweeps)):
         expected = "one, that of the sweep" if len(sweeps) == 1 else "one, or one for each sweep in their order"
@@ -212,7 +224,6 @@ def _read(
     if angles not in (0, len(sweeps)):
         count = f"{angles} angle{'s' if angles > 1 else ''}"
         raise UserError(f"found {count} of the sensor for {len(sweeps)} sweeps; expected one for each")
-    return sweeps
 
 
 def _begun(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from numbers import Real
@@ -39,19 +39,24 @@ TwinLike: TypeAlias = "str | os.PathLike[str] | Chain"
 
 
 def as_sweeps(
-    sources: Sequence[SweepLike | Spin], *, pole_pairs: int | None = None, columns: str | None = None
+    sources: Sequence[SweepLike | Spin],
+    *,
+    pole_pairs: int | None = None,
+    columns: str | None = None,
+    begins: Callable[[str], object] = lambda stage: None,
 ) -> list[Sweep]:
     """Several sweeps, see :func:`as_sweep`; files that share a name bear as much of their paths as tells them apart.
 
     A log without a reference is one with the motion that is estimated from its readings
-    (:func:`diagnosis.spin.of_log.with_motion`).
+    (:func:`diagnosis.spin.of_log.with_motion`), of which ``begins`` hears before.
     """
     from dataclasses import replace
 
     from diagnosis.spin.of_log import with_motion
     from twin.shown_name import distinct_names
 
-    sweeps = with_motion([_recording(source, pole_pairs, spin=True, columns=columns) for source in sources])
+    read = [_recording(source, pole_pairs, spin=True, columns=columns) for source in sources]
+    sweeps = with_motion(read, begins=begins)
     files = [place for place, source in enumerate(sources) if isinstance(source, str | os.PathLike)]
     names = distinct_names([os.fspath(sources[place]) for place in files])  # type: ignore[arg-type]
     for place, name in zip(files, names, strict=True):

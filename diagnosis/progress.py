@@ -15,8 +15,9 @@ class Progress:
     Attributes
     ----------
     stage : str
-        Name of the step that runs: a stage of the discovery, ``"search"`` where its loop begins, ``"error_model"``;
-        of several sweeps ``"reading"``, ``"error_model"`` and ``"judging"``.
+        Name of the step that runs: a stage of the discovery, ``"search"`` where its loop begins, ``"error_model"``,
+        ``"estimated_motion"`` where a log has no reference; of several sweeps ``"reading"``, ``"error_model"`` and
+        ``"judging"``.
     elapsed_s : float
         Seconds since the call began.
     causes : tuple of str

@@ -40,9 +40,12 @@ def lacking(names: Collection[str], *, spin: bool = False) -> str | None:
     if spin and is_spin(names):
         return None
     if spin and "measured_deg" in names and "reference_deg" not in names:
-        return "column time_s is missing, as without reference_deg the time tells the motion"
+        return (
+            "column time_s is missing, as without reference_deg the time tells the motion (of 1000 even readings a "
+            'second --columns "time_s=index/1000,measured_deg=measured_deg" makes it)'
+        )
     if is_spin(names):
-        return "column reference_deg is missing, which is needed here: explain and compensate take a log without it"
+        return "column reference_deg is missing, needed here: explain, compensate and export take a log without it"
     return next((f"column {needed} is missing" for needed in REQUIRED if needed not in names), None)
 
 

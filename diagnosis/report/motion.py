@@ -12,7 +12,7 @@ from diagnosis.discovery.fitting.joint_fit import Fit
 from diagnosis.discovery.result import Discovery
 from diagnosis.report.sweep_words import speeds_shown
 from diagnosis.report.wording import plain
-from diagnosis.spin.columns import HIGHEST_ORDER
+from diagnosis.spin.columns import HIGHEST_ORDER, ORDERS
 from twin.angles import TAU, Array
 from twin.catalogue import find
 from twin.confidence import Z95
@@ -22,7 +22,9 @@ from twin.second_inertia import Tied
 
 TORQUE = "torque_ripple"
 """What a torque locked to the angle is called where a cause may as well be one."""
-SECOND_SPEED = "a log at a second speed, or coasting down: what a torque does falls as 1/speed^2"
+_FALLS = "what a torque does falls as 1/speed^2"
+SECOND_SPEED = f"a log at a second speed, or coasting down: {_FALLS}"
+FURTHER_SPEED = f"a log at speeds further apart, or coasting down: {_FALLS}"
 IN_TIME = "a log at another speed: a wave that the motor's supply or its drive makes in the torque keeps its frequency"
 STAMPS = "time_stamps"
 """What the times of the readings are called where these, told wrong, would make a wave in time."""
@@ -88,6 +90,11 @@ def not_separable(estimated: EstimatedMotion) -> list[int]:
     return sorted({one.order for one in estimated.torques} - told)
 
 
+def _to_part(open_orders: Sequence[int]) -> str:
+    """The log that tells torques of these orders from the sensor: of a log at one speed, all orders are open."""
+    return FURTHER_SPEED if set(ORDERS) - set(open_orders) else SECOND_SPEED
+
+
 def _of_one_piece(estimated: EstimatedMotion, speed: Array) -> list[int]:
     """Orders whose torque two speeds tell from the sensor, and no third one checks that it falls as 1/speed^2.
 
@@ -150,7 +157,7 @@ def may_be_torque(found: Discovery, cause: Finding) -> list[tuple[str, str]]:
     rows = fit.rows
     # What no torque can do stands out of the noise as any cause has to.
     told = float(np.sum(beyond[fit.observations.usable] ** 2)) / max(fit.variance, 1e-300)
-    return [] if told > -2.0 * fit.settings.effect_log_p(rows) else [(TORQUE, SECOND_SPEED)]
+    return [] if told > -2.0 * fit.settings.effect_log_p(rows) else [(TORQUE, _to_part(open_orders))]
 
 
 def _orders_beyond(fit: Fit, keys: Sequence[str]) -> list[int]:
@@ -255,7 +262,7 @@ def motion_words(answer: Mapping[str, Any]) -> list[str]:
     if motion["not_separable"]:
         said.append(
             f"Not told from a torque locked to the angle: orders {_ranges(motion['not_separable'])}. Here all of that "
-            f"counts as the sensor's; to part them: {SECOND_SPEED}"
+            f"counts as the sensor's; to part them: {_to_part(motion['not_separable'])}"
         )
     if motion["of_one_piece"]:
         said.append(
@@ -308,9 +315,16 @@ def correction_words(estimated: EstimatedMotion | None) -> list[str]:
     if orders:
         said.append(
             f"caution: orders {_ranges(orders)} of it may be a torque's (cogging, an unbalance, a bearing) in place of "
-            f"the sensor's, and would then put a movement of the shaft into the table; to part them: {SECOND_SPEED}"
+            f"the sensor's, and would then put a movement of the shaft into the table; to part them: {_to_part(orders)}"
         )
     return said
+
+
+def judged_words(estimated: EstimatedMotion) -> str:
+    """What has to be kept in mind of errors that are told without a reference."""
+    orders = not_separable(estimated)
+    said = "no reference: the errors are told against the shaft's own even turning"
+    return f"{said}, and in orders {_ranges(orders)} with what torques turn it by" if orders else said
 
 
 def _ranges(orders: Sequence[int]) -> str:

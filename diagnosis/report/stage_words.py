@@ -6,6 +6,7 @@ from diagnosis.progress import Progress
 
 STAGES = {
     "reading": "reading the sweeps",
+    "estimated_motion": "estimating the shaft's motion from the readings",
     "judging": "judging what the readings can tell",
     "error_model": "fitting the paper's error model",
     "observe": "averaging repeated readings",

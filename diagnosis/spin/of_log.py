@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -49,10 +49,17 @@ class _Log:
         return cls(spin, time, even is not None or spin.time_s is None, found)
 
 
-def with_motion(recordings: Sequence[Sweep | Spin]) -> list[Sweep]:
+MOTION = "estimated_motion"
+"""The stage of a call in which it is estimated."""
+
+
+def with_motion(
+    recordings: Sequence[Sweep | Spin], *, begins: Callable[[str], object] = lambda stage: None
+) -> list[Sweep]:
     """Recordings of one device as sweeps: those without a reference with the motion estimated from all of them.
 
-    Raises SweepError where one of the others has no time stamps: speeds of all are told together.
+    ``begins`` hears of it before, where there is one. Raises SweepError where one of the others has no time stamps:
+    speeds of all are told together.
     """
     spins = [one for one in recordings if isinstance(one, Spin)]
     untimed = [one.name for one in recordings if isinstance(one, Sweep) and one.time_s is None]
@@ -61,6 +68,8 @@ def with_motion(recordings: Sequence[Sweep | Spin]) -> list[Sweep]:
             f"{untimed[0]}: no time_s beside {spins[0].name}, which has no reference_deg; expected the time of each "
             "reading in all of them: record time_s, or explain it by itself"
         )
+    if spins:
+        begins(MOTION)
     made = iter(sweeps_of(spins) if spins else [])
     return [next(made) if isinstance(one, Spin) else one for one in recordings]
 

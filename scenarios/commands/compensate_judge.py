@@ -31,9 +31,10 @@ class Judged:
     """Errors (n,) of a correction on readings: ``name`` says which ones, ``title`` what the picture calls them.
 
     ``own_zeros``: each turn's own zero counts for nothing, as where the reference was set anew. ``part``: the readings
-    are among those of the one before that is none. ``alone``: of a temperature that the correction was made without.
-    ``gross`` (n,): the readings that were set aside where the correction was made of these. ``lost`` (n,): those whose
-    word says nothing of the angle. ``sound``: the same readings without the faults of their words, where they have any.
+    are among those of the one before that is none. ``alone``: of a temperature, or a log, that the correction was made
+    without. ``gross`` (n,): the readings that were set aside where the correction was made of these. ``lost`` (n,):
+    those whose word says nothing of the angle. ``sound``: the same readings without the faults of their words, where
+    they have any.
     """
 
     name: str
@@ -98,11 +99,12 @@ def held_out(readings: Readings, build: Callable[[Recording], Shaft] | None = No
         return make(between_ways(given.kept_of(rows)))
 
     shafts = shafts_without(numbers, without)
-    whole = Judged("on held-out blocks", readings.title, on_held_out(recording, shafts), recording, readings.own_zeros)
+    name = f"on held-out blocks{', torques included' if readings.not_separable else ''}"
+    whole = Judged(name, readings.title, on_held_out(recording, shafts), recording, readings.own_zeros)
     gross = readings.calibration.gross
     whole = _beside_sound(whole, given, on_held_out(given.told, shafts), gross=gross)
     if not readings.over_temperature:
-        return [whole]
+        return [whole, *_by_log(readings, without)]
     judged = [whole, *_by_level(whole)]
     for k, one in between(recording, numbers, without).items():
         name = f"{level.temperature_c[k]:.1f} C, made without it"
@@ -110,6 +112,22 @@ def held_out(readings: Readings, build: Callable[[Recording], Shaft] | None = No
         judged.append(
             Judged(f"at {name}", f"{readings.title}, {name}", one, rows, readings.own_zeros, part=True, alone=True)
         )
+    return judged
+
+
+def _by_log(readings: Readings, without: Callable[[BoolArray], Shaft]) -> list[Judged]:
+    """Each of several logs without a reference, by the correction that the others make.
+
+    Where they are not of one device, or a torque is taken for the sensor's, the others make it worse.
+    """
+    if readings.estimated is None or len(readings.sweeps) == 1:
+        return []
+    recording, judged = readings.as_read.read, []
+    log = np.repeat(np.arange(len(readings.sweeps)), [len(sweep) for sweep in readings.sweeps])
+    for k, sweep in enumerate(readings.sweeps):
+        rows = recording.part(log == k)
+        name = f"{sweep.name}, made without it"
+        judged.append(Judged(f"on {name}", name, on(rows, without(log != k)), rows, part=True, alone=True))
     return judged
 
 

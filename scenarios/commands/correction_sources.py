@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from diagnosis.report.motion import judged_words
 from diagnosis.report.row_counts import counts_of, rejected_words
-from scenarios.commands.inputs import SweepFiles, SweepsRead, sweep_paths
+from scenarios.commands.inputs import SweepFiles, SweepsRead, in_motion, sweep_paths
 from twin.decoded import Decoded, decoded
 from twin.effect import Effect
 from twin.errors import UserError
@@ -35,11 +36,9 @@ def files_of(sources: Sequence[str | Path]) -> list[Path]:
 
 def read_files(paths: Sequence[Path], how: SweepFiles) -> SweepsRead:
     """The sweeps, read as those that the correction is checked on."""
-    from diagnosis.spin.of_log import with_motion
-
     if len(paths) > 1:
         return how.read(paths, spins=True)
-    return SweepsRead(tuple(with_motion([how.recording(paths[0])])))
+    return SweepsRead(in_motion([how.recording(paths[0])]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +58,11 @@ class Sound:
         became = f"are {'told back to make the correction, and ' * corrects}judged as they are read"
         return [line for one in self.decoded for line in one.lines_saying(became)]
 
+    def motion_lines(self) -> list[str]:
+        """What has to be kept in mind of those without a reference."""
+        moved = [(one.name, one.estimated) for one in self.read.sweeps]
+        return [f"{name}: {judged_words(motion)}" for name, motion in moved if motion is not None]
+
     def rejected_lines(self) -> list[str]:
         """Which sweeps hold rows that could not be used, or whose word says nothing of the angle."""
         counts = [(one.sweep.name, counts_of(one.usable, ())) for one in self.decoded if one.usable.rejected]
@@ -68,4 +72,5 @@ class Sound:
 def lines_of(given: Sound, checked: Sound) -> list[str]:
     """What is said of the sweeps that a correction is made of, and of those that it is tried on."""
     said = [*given.lines(corrects=True), *checked.lines(corrects=False), *checked.rejected_lines()]
+    said += checked.motion_lines()
     return [*said, *given.read.lines, *checked.read.lines]

@@ -193,8 +193,6 @@ def read_sweeps(
 
     ``spins``: logs without a reference will do, with the motion that is estimated from all of them.
     """
-    from diagnosis.spin.of_log import with_motion
-
     sweeps: list[Sweep | Spin] = []
     unusable = []
     read = read_recording if spins else Sweep.read
@@ -208,4 +206,15 @@ def read_sweeps(
     if first is not None and not sweeps:
         raise none_usable(first, len(paths))
     tell_how_read(sweeps, columns)
-    return SweepsRead(tuple(with_motion(sweeps)), tuple(unusable))
+    return SweepsRead(in_motion(sweeps), tuple(unusable))
+
+
+def in_motion(recordings: Sequence[Sweep | Spin]) -> tuple[Sweep, ...]:
+    """Those without a reference with the motion estimated from all of them; a line says so meanwhile."""
+    from diagnosis.blas_threads import one_blas_thread
+    from diagnosis.progress import Progress
+    from diagnosis.spin.of_log import with_motion
+    from scenarios.commands.progress import progress_line
+
+    with progress_line() as hear, one_blas_thread():
+        return tuple(with_motion(recordings, begins=lambda stage: hear(Progress(stage, 0.0))))

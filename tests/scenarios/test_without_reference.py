@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ import pytest
 from tests.command_line import Array, csv_text, explained, halltwin
 
 TIME = np.arange(0.0, 8.0, 0.001)
+COAST = np.linspace(27.0, 6.0, TIME.size)
+"""Turns a second."""
 
 
 def words_of(angle_deg: Array) -> Array:
@@ -20,14 +23,15 @@ def words_of(angle_deg: Array) -> Array:
     return np.floor(angle_deg * 16384.0 / 360.0) % 16384.0 * 360.0 / 16384.0
 
 
-def log(folder: Path, turns_per_s: Any = 3.0, *, name: str = "log.csv", seed: int = 5) -> Path:
+def log(folder: Path, turns_per_s: Any = 3.0, *, name: str = "log.csv", seed: int = 5, error: float = 1.0) -> Path:
     """A shaft whose cogging, of order 4, swings it, and a sensor of 14 bits with an error of orders 1 and 2."""
     speed = np.broadcast_to(np.asarray(turns_per_s, dtype=np.float64), TIME.shape)
     angle = 360.0 * (np.cumsum(speed) - speed[0]) * 0.001
     turn = np.radians(angle)
     swing = 0.4 * (3.0 / speed) ** 2 * np.sin(4.0 * turn + 0.4)
     noise = 0.02 * np.random.default_rng(seed).standard_normal(TIME.size)
-    reading = angle + swing + 123.0 + 0.8 * np.sin(turn + 0.5) + 0.35 * np.sin(2.0 * turn - 1.0) + noise
+    own = error * (0.8 * np.sin(turn + 0.5) + 0.35 * np.sin(2.0 * turn - 1.0))
+    reading = angle + swing + 123.0 + own + noise
     path = folder / name
     path.write_text(csv_text({"time_s": TIME, "measured_deg": words_of(reading)}))
     return path
@@ -48,7 +52,7 @@ def test_a_word_of_few_bits_hides_no_torque(tmp_path: Path) -> None:
     assert "Not told from a torque locked to the angle: orders 1 to 32" in page
 
 
-@pytest.mark.parametrize(("speeds", "open_orders"), [(3.0, "orders 1 to 32"), (np.linspace(27.0, 6.0, TIME.size), "")])
+@pytest.mark.parametrize(("speeds", "open_orders"), [(3.0, "orders 1 to 32"), (COAST, "")])
 def test_a_correction_says_what_of_it_may_be_a_torque(speeds: Any, open_orders: str, tmp_path: Path) -> None:
     path = log(tmp_path, speeds)
     files = [tmp_path / name for name in ("table.csv", "header.h", "table.toml")]
@@ -61,6 +65,40 @@ def test_a_correction_says_what_of_it_may_be_a_torque(speeds: Any, open_orders: 
         assert ("a log at a second speed" in words) == bool(open_orders)
     assert tomllib.loads(files[2].read_text())["not_separable"] == (list(range(1, 33)) if open_orders else [])
     assert "as the reference counted it" not in files[1].read_text()
+
+
+def test_its_gain_is_told_with_what_torques_do(tmp_path: Path) -> None:
+    held_out = "on held-out blocks, torques included"
+    assert held_out in " ".join(halltwin("compensate", log(tmp_path)).out.split())
+    assert held_out not in halltwin("compensate", log(tmp_path, COAST)).out
+
+
+def test_a_correction_is_tried_on_another_log_without_a_reference(tmp_path: Path) -> None:
+    made_of, other = log(tmp_path, COAST), log(tmp_path, COAST[::-1], name="other.csv", seed=6)
+    ended = halltwin("compensate", made_of, "--check", other)
+    assert ended.code == 0, ended.err
+    assert left_on(ended.out, "other.csv") < 0.1
+    assert "other.csv: no reference: the errors are told against the shaft's own even turning" in ended.out
+    at_one_speed = log(tmp_path, name="slow.csv", seed=6)
+    said = " ".join(halltwin("compensate", made_of, "--check", at_one_speed).out.split())
+    assert "turning, and in orders 1 to 32 with what torques turn it by" in said
+
+
+@pytest.mark.parametrize("error", [1.0, -1.0])
+def test_of_several_logs_each_is_tried_by_the_others_correction(error: float, tmp_path: Path) -> None:
+    """Those of two devices make each other worse."""
+    one, other = log(tmp_path, COAST), log(tmp_path, COAST, name="other.csv", seed=6, error=error)
+    out = halltwin("compensate", one, other).out
+    left = {name: left_on(out, f"{name}, made without it") for name in ("log.csv", "other.csv")}
+    assert all((size < 0.1) == (error > 0.0) for size in left.values())
+    assert ("on log.csv, made without it (" in out) == (error < 0.0)
+
+
+def left_on(out: str, name: str) -> float:
+    """RMS [deg] that a correction leaves of the readings of this name."""
+    found = re.search(rf"on {re.escape(name)} +\S+ -> (\S+)", out)
+    assert found is not None, out
+    return float(found.group(1))
 
 
 def test_a_drives_table_says_it_too(tmp_path: Path) -> None:

@@ -108,7 +108,7 @@ def test_a_command_that_needs_a_reference_says_which_does_not(command: str, tmp_
     for options in ((), ("--columns", FULL.strip('"'))):
         ended = halltwin(command, coast(tmp_path), *options)
         assert ended.code == 2
-        assert "explain and compensate take" in ended.err
+        assert "explain, compensate and export take" in ended.err
         assert bool(options) or FULL in ended.err
 
 
@@ -137,6 +137,13 @@ def test_the_column_that_is_missing_is_the_time(tmp_path: Path) -> None:
     path.write_text(table({"measured_deg": shaft_deg() % 360.0}))
     assert "column time_s is missing" in halltwin("explain", path).err
     assert "time_s is missing" in halltwin("explain", coast(tmp_path), "--columns", "measured_deg=#2").err
+    assert "index/1000" in halltwin("explain", path).err
+    rows = TIME_S.size / (TIME_S[-1] - TIME_S[0])
+    counted = read_recording(path, columns=f"time_s=index/{rows:.9g}, measured_deg=measured_deg")
+    np.testing.assert_allclose(counted.time_s, np.arange(TIME_S.size) / rows)
+    path.write_text(table({"measured_deg": shaft_deg() % 360.0, "index": 3.0 * TIME_S}))
+    own = read_recording(path, columns="time_s=index, measured_deg=measured_deg")
+    np.testing.assert_allclose(own.time_s, 3.0 * TIME_S, rtol=1e-6)
     with pytest.raises(SweepError, match="column time_s is missing"):
         explain({"measured_deg": shaft_deg() % 360.0})
 

@@ -14,7 +14,7 @@ from twin.angles import Array
 from twin.errors import SweepError
 from twin.logs.firmware import REGISTERS, SIGNED, is_known
 from twin.logs.own_tables import is_own
-from twin.logs.table import Table
+from twin.logs.table import INDEX, Table
 
 FEWEST_ENTRIES = 8
 _COMMENT = re.compile(r"//|/\*")
@@ -207,4 +207,4 @@ def _table(arrays: Mapping[str, tuple[Array, str]], constants: Mapping[str, floa
     left += [f"{name} ({len(made[0])} entries)" for name, made in kept.items() if name not in used]
     notes = (f"a table of {entries} entries", *(note for _, note in used.values() if note))
     values = (np.arange(entries, dtype=np.float64), *(made[0] for made in used.values()))
-    return Table(file, ("index", *used), values, notes=notes, left=tuple(left), entries=True, constants=constants)
+    return Table(file, (INDEX, *used), values, notes=notes, left=tuple(left), entries=True, constants=constants)

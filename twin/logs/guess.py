@@ -129,7 +129,7 @@ def _untold(values: Array) -> str:
 
 def unused_by(columns: tuple[Column, ...], table: Table, why: Mapping[int, str] | None = None) -> tuple[str, ...]:
     """The columns of a table that a statement leaves out, with why by their places, where that is known."""
-    used = {table.place(source) for one in columns for source in one.sources}
+    used = {table.place(source) for one in columns for source in one.sources if not table.counts_rows(source)}
     why = why or {}
     return tuple(_left(table, k, why.get(k, "")) for k in range(len(table.names)) if k not in used)
 

@@ -13,10 +13,9 @@ from twin.logs.firmware import ANGLE, CORRECTION, ERROR, READING, TORQUES, Rule,
 from twin.logs.names import SURE, Meaning, meaning_of
 from twin.logs.own_tables import is_own, own_statements
 from twin.logs.statement import Addend, Column, Term
-from twin.logs.table import LARGEST, Table
+from twin.logs.table import INDEX, LARGEST, Table
 from twin.logs.units import UNITS
 
-INDEX = "index"
 Statement = tuple[Column, Column]
 _LARGEST_DEG, _SMALLEST_DEG = 25.0, 0.003
 """Half the span of a correction: a sensor that is farther off is corrected by no table, one that is less needs none."""

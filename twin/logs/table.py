@@ -6,12 +6,18 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from twin.angles import Array
 from twin.errors import SweepError
 from twin.shown import shown
 
 LARGEST = 1e20
 """The largest number that a column of a bench may mean; nanoseconds since 1970 are 2e18."""
+
+
+INDEX = "index"
+"""Column that counts the rows, or the entries of a table."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +68,14 @@ class Table:
             raise SweepError(f"{self.file}: no column {shown(source)}; found {self.listed()}")
         return found[0]
 
+    def counts_rows(self, source: str) -> bool:
+        """Whether the rows are meant, counted from 0: a column ``index`` where there is none of that name."""
+        return source == INDEX and INDEX not in self.names and bool(self.values)
+
     def values_of(self, source: str) -> Array:
         """The values (n,) of a column. Raises SweepError where it is not there, or a cell is no number."""
+        if self.counts_rows(source):
+            return np.arange(self.values[0].size, dtype=np.float64)
         place = self.place(source)
         if place in self.faults:
             raise SweepError(f"{self.file}: {self.faults[place]}")

@@ -13,7 +13,7 @@ import numpy as np
 from twin.errors import SweepError
 from twin.logs.cells import Row, is_number, number_of, table_of
 from twin.logs.labelled import without_labels
-from twin.logs.table import Table
+from twin.logs.table import INDEX, Table
 from twin.shown import shown
 from twin.text_input import cells_of, no_text, utf8_or_latin1
 
@@ -76,7 +76,7 @@ def _entries(cells: Sequence[str], name: str, *, file: str, notes: tuple[str, ..
     if len(values) < _WIDE_ROW or any(value is None or math.isnan(value) for value in values):
         return None
     entries = np.array(values, dtype=np.float64)
-    return Table(file, ("index", name), (np.arange(entries.size, dtype=np.float64), entries), notes=notes, entries=True)
+    return Table(file, (INDEX, name), (np.arange(entries.size, dtype=np.float64), entries), notes=notes, entries=True)
 
 
 def decoded(raw: bytes, file: str) -> tuple[str, str]:

@@ -17,7 +17,7 @@ from twin.logs.table import Table
 from twin.sweep_columns import REQUIRED, is_spin
 
 _Checked = TypeVar("_Checked")
-_NEEDS_REFERENCE = "here a reference is needed; explain and compensate take this log without one, by"
+_NEEDS_REFERENCE = "here a reference is needed; explain, compensate and export take this log without one, by"
 LARGEST_READ_TWICE = 5_000_000
 """Of a longer file that was refused for what it holds, nothing is guessed: reading it once took its time."""
 

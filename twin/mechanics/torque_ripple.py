@@ -36,7 +36,7 @@ def response(
     turning = order * speed_rad_s
     x = 1j * order * acceleration_rad_s2 / turning**2
     even = (1.0 + 11.0 * x + 8.0 * x**2) / (1.0 + 14.0 * x + 35.0 * x**2)
-    size = even / (1j * turning * (1j * turning + damping_per_s))
+    size = np.asarray(even / (1j * turning * (1j * turning + damping_per_s)), dtype=np.complex128)
     if behind is None:
         wave = size * np.exp(1j * order * shaft_rad)
     else:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from diagnosis import Explanation, explain
 from diagnosis.progress import Progress
@@ -36,6 +37,22 @@ def stop_with_one(progress: Progress) -> None:
     """End the search as soon as it holds a cause."""
     if progress.causes:
         raise StopIteration
+
+
+def test_the_motion_is_a_stage_and_who_stops_there_gets_what_there_is() -> None:
+    """On one thread of the linear algebra as all else."""
+    told: list[tuple[str, set[int]]] = []
+
+    def stop(progress: Progress) -> None:
+        told.append((progress.stage, {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}))
+        raise StopIteration
+
+    with threadpool_limits(2, user_api="blas"):
+        answer = explain(even(9.0, order=5), progress=stop).to_dict()
+    assert told[0] == ("estimated_motion", {1})
+    assert answer["verdict"] == "stopped"
+    assert answer["cut_short"]["stage"] == "estimated_motion"
+    assert answer["motion"]["not_separable"] == list(range(1, 33))
 
 
 @cache

@@ -52,6 +52,53 @@ BESIDE: tuple[Mutation, ...] = (
                 "    return moved\n",
                 "tests/diagnosis/spin/test_beside_a_reference.py::test_torques_turn_no_shaft_that_a_reference_tells",
             ),
+            (
+                "spins.a_coast_slows_by_two_terms",
+                "twin/mechanics/torque_ripple.py",
+                "    even = (1.0 + 11.0 * x + 8.0 * x**2) / (1.0 + 14.0 * x + 35.0 * x**2)\n",
+                "    even = 1.0 - 3.0 * x\n",
+                "tests/twin/test_torque_ripple.py::test_the_response_is_that_of_the_equation_of_motion",
+            ),
+            *(
+                (f"spins.{name}", file, old, new, f"tests/scenarios/test_without_reference.py::{test}")
+                for name, file, old, new, test in (
+                    (
+                        "logs_of_two_devices_are_one",
+                        "scenarios/commands/compensate_judge.py",
+                        "    if readings.estimated is None or len(readings.sweeps) == 1:\n",
+                        "    if True:\n",
+                        "test_of_several_logs_each_is_tried_by_the_others_correction",
+                    ),
+                    (
+                        "a_log_is_tried_by_its_own_correction",
+                        "scenarios/commands/compensate_judge.py",
+                        "without(log != k)), rows",
+                        "without(log >= 0)), rows",
+                        "test_of_several_logs_each_is_tried_by_the_others_correction",
+                    ),
+                    (
+                        "nothing_is_said_of_a_check_without_a_reference",
+                        "scenarios/commands/correction_sources.py",
+                        "    said += checked.motion_lines()\n",
+                        "",
+                        "test_a_correction_is_tried_on_another_log_without_a_reference",
+                    ),
+                )
+            ),
+            (
+                "spins.the_motion_takes_all_threads",
+                "diagnosis/explain.py",
+                "    with one_blas_thread(), listening, ended_by_budget(watch):\n",
+                "    with listening, ended_by_budget(watch):\n",
+                "tests/diagnosis/spin/test_explain.py::test_the_motion_is_a_stage_and_who_stops_there_gets_what_there_is",
+            ),
+            (
+                "spins.no_stage_for_the_motion",
+                "diagnosis/spin/of_log.py",
+                "        begins(MOTION)\n",
+                "        pass\n",
+                "tests/diagnosis/spin/test_explain.py::test_the_motion_is_a_stage_and_who_stops_there_gets_what_there_is",
+            ),
             *(
                 (f"second_inertia.{name}", file, old, new, f"{_SECOND}::{test}")
                 for name, file, old, new, test in (

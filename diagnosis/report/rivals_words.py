@@ -9,10 +9,10 @@ from diagnosis.report.word_fault_words import same_words
 
 
 def rivals_words(cause: Mapping[str, Any]) -> str:
-    """What a cause cannot be told from, and what would part them; empty for structure without a name."""
-    if cause["name"] == "unnamed":
-        return ""
+    """What a cause cannot be told from, and what would part them; of structure without a name only what it may be."""
     rivals, same = cause["indistinguishable_from"], same_words(cause)
+    if cause["name"] == "unnamed" and not rivals:
+        return ""
     part = f". To tell them apart: {cause['to_tell_apart']}" if cause["to_tell_apart"] else ""
     told = f"cannot be told from: {'; '.join([*([', '.join(rivals)] if rivals else []), *same])}{part}"
     if not cause.get("rivals_sought", True):

@@ -281,3 +281,4 @@ def test_a_wave_in_time_may_be_times_that_are_told_wrong(frequency: float, usb: 
     assert ("frames of a USB" in text(answer, width=400)) is usb
     assert answer["causes"][0]["indistinguishable_from"] == ["torque_ripple", "time_stamps"]
     assert "a wave of 20 us" in answer["causes"][0]["to_tell_apart"]
+    assert "cannot be told from: torque_ripple, time_stamps" in text(answer, width=400)

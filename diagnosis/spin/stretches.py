@@ -13,8 +13,8 @@ from twin.spin import FEWEST_ROWS
 _GAP = 20.0
 """Spacings of readings without one, from which on nobody knows how far the shaft has turned meanwhile."""
 _SLOW = 0.1
-"""Largest change of the speed in a radian, as a share of it: there the response to a torque is told to 0.04 of it, by
-an acceleration that itself changes, as by friction that goes with the speed; beyond, it grows with the square."""
+"""Largest change of the speed in a radian, as a share of it. Where it is due to friction that goes with the speed, the
+response to a torque is off by four times its square, 0.04 (:func:`twin.mechanics.torque_ripple.response`)."""
 _REPAIR = 9
 
 

@@ -86,7 +86,7 @@ def run(
     twin = read_twin_or_preset(sources[0], effects=effects) if of_twin else Chain(effects=effects)
     checked_on, paths = check.paths(), [Path(sources[0])] if of_twin else files_of(sources)
     files = _files(outputs, inputs=[*paths, *checked_on, *effect_files])
-    others = check.read(checked_on, spins=True)
+    others = check.read_each(checked_on)
     given = SweepsRead(()) if of_twin else read_files(paths, check)
     words_of, checked = (Sound.of(one, effects) for one in (given, others))
     check_panels(outputs.plot, len(others.sweeps) if checked_on or of_twin else 1)

@@ -10,6 +10,7 @@ import numpy as np
 from diagnosis.correction.as_read import AsRead, as_read
 from diagnosis.correction.both_ways import between_ways
 from diagnosis.correction.cross_validation import BeforeAfter, Shaft, between, on, on_held_out, shafts_without
+from diagnosis.report.motion import not_separable
 from diagnosis.report.wording import plain
 from diagnosis.thermal.levels import levels_of
 from diagnosis.thermal.recording import Recording
@@ -31,10 +32,10 @@ class Judged:
     """Errors (n,) of a correction on readings: ``name`` says which ones, ``title`` what the picture calls them.
 
     ``own_zeros``: each turn's own zero counts for nothing, as where the reference was set anew. ``part``: the readings
-    are among those of the one before that is none. ``alone``: of a temperature, or a log, that the correction was made
-    without. ``gross`` (n,): the readings that were set aside where the correction was made of these. ``lost`` (n,):
-    those whose word says nothing of the angle. ``sound``: the same readings without the faults of their words, where
-    they have any.
+    are among those of the one before that is none. ``alone``: of a temperature that the correction was made without.
+    ``gross`` (n,): the readings that were set aside where the correction was made of these. ``lost`` (n,): those whose
+    word says nothing of the angle. ``sound``: the same readings without the faults of their words, where they have any.
+    ``with_torques``: torques turn the shaft by what is as good an error of the sensor.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Judged:
     gross: BoolArray | None = None
     lost: BoolArray | None = None
     sound: Judged | None = None
+    with_torques: bool = False
 
     @property
     def several_turns(self) -> bool:
@@ -80,6 +82,8 @@ def on_others(shaft: Shaft, sweeps: Sequence[Decoded]) -> list[Judged]:
     for sweep in sweeps:
         readings = as_read([sweep])
         whole = Judged(f"on {sweep.sweep.name}", sweep.sweep.name, on(readings.read, shaft), readings.read)
+        motion = sweep.sweep.estimated
+        whole = replace(whole, with_torques=motion is not None and bool(not_separable(motion)))
         whole = _beside_sound(whole, readings, on(readings.told, shaft))
         judged += [whole, *_by_level(whole)]
     return judged
@@ -104,7 +108,7 @@ def held_out(readings: Readings, build: Callable[[Recording], Shaft] | None = No
     gross = readings.calibration.gross
     whole = _beside_sound(whole, given, on_held_out(given.told, shafts), gross=gross)
     if not readings.over_temperature:
-        return [whole, *_by_log(readings, without)]
+        return [whole]
     judged = [whole, *_by_level(whole)]
     for k, one in between(recording, numbers, without).items():
         name = f"{level.temperature_c[k]:.1f} C, made without it"
@@ -112,22 +116,6 @@ def held_out(readings: Readings, build: Callable[[Recording], Shaft] | None = No
         judged.append(
             Judged(f"at {name}", f"{readings.title}, {name}", one, rows, readings.own_zeros, part=True, alone=True)
         )
-    return judged
-
-
-def _by_log(readings: Readings, without: Callable[[BoolArray], Shaft]) -> list[Judged]:
-    """Each of several logs without a reference, by the correction that the others make.
-
-    Where they are not of one device, or a torque is taken for the sensor's, the others make it worse.
-    """
-    if readings.estimated is None or len(readings.sweeps) == 1:
-        return []
-    recording, judged = readings.as_read.read, []
-    log = np.repeat(np.arange(len(readings.sweeps)), [len(sweep) for sweep in readings.sweeps])
-    for k, sweep in enumerate(readings.sweeps):
-        rows = recording.part(log == k)
-        name = f"{sweep.name}, made without it"
-        judged.append(Judged(f"on {name}", name, on(rows, without(log != k)), rows, part=True, alone=True))
     return judged
 
 
@@ -158,18 +146,24 @@ def say_where_worse(judged: Sequence[Judged], *, fails: bool) -> None:
     """Say on which readings the correction makes the error larger; raise FoundError there where that is a failure.
 
     Judged with each turn's own zero taken out: a reference that was mounted anew says nothing about the correction. No
-    more does a word that says nothing of the angle; all others count as the drive reads them.
+    more does a word that says nothing of the angle; all others count as the drive reads them. Where torques may be what
+    is larger, that is said, and no failure.
     """
-    larger = []
+    larger: dict[bool, list[str]] = {False: [], True: []}
     for one in judged:
         one = one.without_lost()
         before, after = one.without_zeros().found.rms_deg
         told = plain(before, _TOLD), plain(after, _TOLD)
         # What is the same as it is told is no larger: beside a stuck top bit no table does anything.
         if after > before and told[0] != told[1]:
-            larger.append(f"{one.name} ({told[0]} -> {told[1]} deg RMS, own zero taken out)")
-    if larger:
-        said = f"the correction makes the error larger {', '.join(larger)}; do not load it"
+            words = f"{one.name} ({told[0]} -> {told[1]} deg RMS, own zero taken out)"
+            larger[one.with_torques].append(words)
+    if larger[True]:
+        print(
+            f"larger with the correction {', '.join(larger[True])}: by the sensor or by torques, which it does not tell"
+        )
+    if larger[False]:
+        said = f"the correction makes the error larger {', '.join(larger[False])}; do not load it"
         if fails:
             raise FoundError(said)
         print(said)

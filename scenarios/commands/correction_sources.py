@@ -63,6 +63,15 @@ class Sound:
         moved = [(one.name, one.estimated) for one in self.read.sweeps]
         return [f"{name}: {judged_words(motion)}" for name, motion in moved if motion is not None]
 
+    def aside_lines(self) -> list[str]:
+        """Which logs without a reference hold rows that tell of no even turning."""
+        moved = [(one.name, one.estimated) for one in self.read.sweeps]
+        return [
+            f"{name}: {motion.rows_aside} rows without an even turning are left out"
+            for name, motion in moved
+            if motion is not None and motion.rows_aside
+        ]
+
     def rejected_lines(self) -> list[str]:
         """Which sweeps hold rows that could not be used, or whose word says nothing of the angle."""
         counts = [(one.sweep.name, counts_of(one.usable, ())) for one in self.decoded if one.usable.rejected]
@@ -72,5 +81,5 @@ class Sound:
 def lines_of(given: Sound, checked: Sound) -> list[str]:
     """What is said of the sweeps that a correction is made of, and of those that it is tried on."""
     said = [*given.lines(corrects=True), *checked.lines(corrects=False), *checked.rejected_lines()]
-    said += checked.motion_lines()
+    said += [*given.aside_lines(), *checked.aside_lines(), *checked.motion_lines()]
     return [*said, *given.read.lines, *checked.read.lines]

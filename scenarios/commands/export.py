@@ -59,7 +59,7 @@ def run(
     given_files = [(outputs.table, drive_table(wish.target.ending)), (outputs.json, JSON), (outputs.plot, PICTURE)]
     inputs = [*paths, *checked_on, *effect_files]
     files = OutputFiles.checked(given_files, inputs=inputs, force=outputs.force)
-    others = check.read(checked_on, spins=True)
+    others = check.read_each(checked_on)
     check_panels(outputs.plot, len(others.sweeps) if checked_on else 1)
     given = SweepsRead(()) if of_a_twin else read_files(paths, check)
     words_of, checked = (Sound.of(one, effects) for one in (given, others))

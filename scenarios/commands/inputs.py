@@ -136,6 +136,10 @@ class SweepFiles:
         """See :func:`read_sweeps`."""
         return read_sweeps(paths, max_bytes=self.max_bytes, columns=self.columns, spins=spins)
 
+    def read_each(self, paths: Sequence[Path]) -> SweepsRead:
+        """The same of sweeps that need not be of one device: a log without a reference has a motion of its own."""
+        return read_sweeps(paths, max_bytes=self.max_bytes, columns=self.columns, spins=True, together=False)
+
     def read_one(self, path: Path, *, name: str | None = None) -> Sweep:
         """One of the files, under the name that messages call it by. Raises SweepError."""
         found = Sweep.read(path, name=name, pole_pairs=self.pole_pairs, **self._reading())
@@ -188,10 +192,12 @@ def read_sweeps(
     max_bytes: int = LARGEST_SWEEP_BYTES,
     columns: str | None = None,
     spins: bool = False,
+    together: bool = True,
 ) -> SweepsRead:
     """Read these files; one that is no sweep is left out and listed. Raises SweepError where none can be used.
 
-    ``spins``: logs without a reference will do, with the motion that is estimated from all of them.
+    ``spins``: logs without a reference will do, with the motion that is estimated from all of them ``together``, as
+    logs of one device, or from each by itself.
     """
     sweeps: list[Sweep | Spin] = []
     unusable = []
@@ -206,7 +212,8 @@ def read_sweeps(
     if first is not None and not sweeps:
         raise none_usable(first, len(paths))
     tell_how_read(sweeps, columns)
-    return SweepsRead(in_motion(sweeps), tuple(unusable))
+    groups = [sweeps] if together else [[sweep] for sweep in sweeps]
+    return SweepsRead(tuple(one for group in groups for one in in_motion(group)), tuple(unusable))
 
 
 def in_motion(recordings: Sequence[Sweep | Spin]) -> tuple[Sweep, ...]:

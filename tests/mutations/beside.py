@@ -63,24 +63,31 @@ BESIDE: tuple[Mutation, ...] = (
                 (f"spins.{name}", file, old, new, f"tests/scenarios/test_without_reference.py::{test}")
                 for name, file, old, new, test in (
                     (
-                        "logs_of_two_devices_are_one",
-                        "scenarios/commands/compensate_judge.py",
-                        "    if readings.estimated is None or len(readings.sweeps) == 1:\n",
-                        "    if True:\n",
-                        "test_of_several_logs_each_is_tried_by_the_others_correction",
+                        "logs_for_a_check_are_of_one_device",
+                        "scenarios/commands/inputs.py",
+                        "    groups = [sweeps] if together else",
+                        "    groups = [sweeps] if True else",
+                        "test_logs_for_a_check_need_not_be_of_one_device",
                     ),
                     (
-                        "a_log_is_tried_by_its_own_correction",
+                        "a_torque_is_a_fault_of_the_correction",
                         "scenarios/commands/compensate_judge.py",
-                        "without(log != k)), rows",
-                        "without(log >= 0)), rows",
-                        "test_of_several_logs_each_is_tried_by_the_others_correction",
+                        "            larger[one.with_torques].append(words)\n",
+                        "            larger[False].append(words)\n",
+                        "test_what_torques_may_do_is_no_fault_of_the_correction",
+                    ),
+                    (
+                        "rows_set_aside_are_not_said",
+                        "scenarios/commands/correction_sources.py",
+                        "            if motion is not None and motion.rows_aside\n",
+                        "            if False\n",
+                        "test_rows_that_tell_no_turning_are_counted",
                     ),
                     (
                         "nothing_is_said_of_a_check_without_a_reference",
                         "scenarios/commands/correction_sources.py",
-                        "    said += checked.motion_lines()\n",
-                        "",
+                        ", *checked.motion_lines()]\n",
+                        "]\n",
                         "test_a_correction_is_tried_on_another_log_without_a_reference",
                     ),
                 )

@@ -84,14 +84,35 @@ def test_a_correction_is_tried_on_another_log_without_a_reference(tmp_path: Path
     assert "turning, and in orders 1 to 32 with what torques turn it by" in said
 
 
-@pytest.mark.parametrize("error", [1.0, -1.0])
-def test_of_several_logs_each_is_tried_by_the_others_correction(error: float, tmp_path: Path) -> None:
-    """Those of two devices make each other worse."""
-    one, other = log(tmp_path, COAST), log(tmp_path, COAST, name="other.csv", seed=6, error=error)
-    out = halltwin("compensate", one, other).out
-    left = {name: left_on(out, f"{name}, made without it") for name in ("log.csv", "other.csv")}
-    assert all((size < 0.1) == (error > 0.0) for size in left.values())
-    assert ("on log.csv, made without it (" in out) == (error < 0.0)
+def test_logs_for_a_check_need_not_be_of_one_device(tmp_path: Path) -> None:
+    """A motion that was estimated from both would hold what they differ by."""
+    made_of, same = log(tmp_path, COAST), log(tmp_path, COAST[::-1], name="same.csv", seed=6)
+    other = log(tmp_path, 0.7 * COAST, name="other.csv", seed=7, error=-1.0)
+    ended = halltwin("compensate", made_of, "--check", same, "--check", other)
+    assert ended.code == 1
+    assert left_on(ended.out, "same.csv") < 0.1 < 1.0 < left_on(ended.out, "other.csv")
+    assert "the correction makes the error larger on other.csv (" in ended.err
+
+
+def test_what_torques_may_do_is_no_fault_of_the_correction(tmp_path: Path) -> None:
+    """At one speed the cogging is as good an error of the sensor."""
+    made_of, other = log(tmp_path, COAST), log(tmp_path, name="other.csv", seed=6, error=-1.0)
+    ended = halltwin("compensate", made_of, "--check", other)
+    assert ended.code == 0, ended.err
+    assert "larger with the correction on other.csv (" in ended.out
+    assert "by the sensor or by torques" in ended.out
+
+
+def test_rows_that_tell_no_turning_are_counted(tmp_path: Path) -> None:
+    """A shaft that stands still for the last two seconds."""
+    path = log(tmp_path, COAST)
+    lines = path.read_text().splitlines()
+    stands = [f"{line.split(',')[0]},{lines[6000].split(',')[1]}" for line in lines[6001:]]
+    path.write_text("\n".join([*lines[:6001], *stands, ""]))
+    out = halltwin("compensate", path).out
+    counted = re.search(r"log.csv: (\d+) rows without an even turning are left out", out)
+    assert counted is not None, out
+    assert 2000 <= int(counted[1]) < 3000
 
 
 def left_on(out: str, name: str) -> float:

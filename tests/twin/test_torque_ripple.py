@@ -14,7 +14,7 @@ from twin.mechanics.torque_ripple import response, second_order
     [(1, 0.0, -6.0, 0.003), (4, 0.0, -6.0, 0.003), (1, 0.0, -8.0, 0.004), (1, 8.0, -6.0, 0.02)],
 )
 def test_the_response_is_that_of_the_equation_of_motion(order: int, damping: float, slows: float, off: float) -> None:
-    """The third slows by an eighth of its speed in a radian at the end, where the approximant is off by 0.004.
+    """The third slows by an eighth of its speed in a radian at the end, where the approximant is off by 0.005.
 
     Of the last, what the damping does while the speed changes is left out: twice 6/16^2 of 8/16 at the end.
     """

@@ -136,6 +136,12 @@ def readings_of(decoded: Sequence[Decoded], *, tolerance_deg: float, seed: int) 
     """
     found = Readings(tuple(decoded), tolerance_deg, seed)
     sweeps = found.sweeps
+    without = [sweep.name for sweep in sweeps if sweep.estimated is not None]
+    if without and found.estimated is None:
+        raise UserError(
+            f"{without[0]} has no reference_deg, and others have one; a correction is made of either: give the logs "
+            "without a reference, or those with one"
+        )
     if len(sweeps) > 1 and not found.over_temperature and found.estimated is None:
         for sweep in sweeps:
             if sweep.temperature_c is None:

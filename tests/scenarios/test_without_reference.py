@@ -103,6 +103,15 @@ def test_what_torques_may_do_is_no_fault_of_the_correction(tmp_path: Path) -> No
     assert "by the sensor or by torques" in ended.out
 
 
+def test_a_correction_is_made_of_logs_with_a_reference_or_of_those_without(tmp_path: Path) -> None:
+    angle = 360.0 * 3.0 * TIME
+    both = tmp_path / "both.csv"
+    both.write_text(csv_text({"time_s": TIME, "reference_deg": angle % 360.0, "measured_deg": words_of(angle)}))
+    ended = halltwin("compensate", both, log(tmp_path, COAST))
+    assert ended.code == 2
+    assert "log.csv has no reference_deg, and others have one" in ended.err
+
+
 def test_rows_that_tell_no_turning_are_counted(tmp_path: Path) -> None:
     """A shaft that stands still for the last two seconds."""
     path = log(tmp_path, COAST)

@@ -68,6 +68,6 @@ TARGET = Target(
     fitted=Lut.fitted,
     read=Lut.read,
     formula="shaft angle = {reading} + correction_deg {zero} deg",
-    load="draw straight lines between its rows: of shaft_deg, the shaft angle as the reference counts it, or of "
-    "correction_deg for the formula",
+    load="draw straight lines between its rows: of shaft_deg, the shaft angle as the reference counts it (without one "
+    "from a zero of its own), or of correction_deg for the formula",
 )

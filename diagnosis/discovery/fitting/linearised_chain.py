@@ -249,20 +249,23 @@ class Linear:
 def _through(step: Step, motion: Motion, sense: Array) -> Array:
     """Sensitivity (O, 2, n) ahead of a pointwise effect's step from the one behind it."""
     assert step.effect is not None
-    slope = _slopes(step, motion, _STEP)
-    if step.effect.acts_on == "word":
-        # Where a word begins anew there is an edge, which is no slope.
-        other = _slopes(step, motion, -_STEP)
-        slope = np.where(np.abs(other) < np.abs(slope), other, slope)
-    return np.asarray(np.einsum("okn,ckn->ocn", sense, slope))
+    before = step.before
+    out = np.empty((sense.shape[0], before.shape[0], before.shape[1]))
+    for channel in range(before.shape[0]):
+        slope = _slope(step, motion, channel, _STEP)
+        if step.effect.acts_on == "word":
+            # Where a word begins anew there is an edge, which is no slope.
+            other = _slope(step, motion, channel, -_STEP)
+            slope = np.where(np.abs(other) < np.abs(slope), other, slope)
+        out[:, channel] = np.einsum("okn,kn->on", sense, slope)
+    return out
 
 
-def _slopes(step: Step, motion: Motion, by: float) -> Array:
-    """Difference quotients (c, k, n) of an effect's signal as each channel of what it is given moves, side by side."""
+def _slope(step: Step, motion: Motion, channel: int, by: float) -> Array:
+    """Difference quotient (k, n) of an effect's signal as one channel of what it is given moves."""
     assert step.effect is not None
-    channels = len(step.before)
-    moved = np.tile(step.before, (channels, 1, 1))
-    moved[range(channels), range(channels)] += by
+    moved = np.array(step.before)
+    moved[channel] += by
     return np.asarray((step.effect.forward(moved, motion, step.values, None) - step.after) / by)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -68,9 +68,10 @@ def with_motion(
             f"{untimed[0]}: no time_s beside {spins[0].name}, which has no reference_deg; expected the time of each "
             "reading in all of them: record time_s, or explain it by itself"
         )
+    made: Iterator[Sweep] = iter(())
     if spins:
         begins(MOTION)
-    made = iter(sweeps_of(spins) if spins else [])
+        made = iter(sweeps_of(spins))
     return [next(made) if isinstance(one, Spin) else one for one in recordings]
 
 

@@ -81,9 +81,10 @@ def on_others(shaft: Shaft, sweeps: Sequence[Decoded]) -> list[Judged]:
     judged = []
     for sweep in sweeps:
         readings = as_read([sweep])
-        whole = Judged(f"on {sweep.sweep.name}", sweep.sweep.name, on(readings.read, shaft), readings.read)
-        motion = sweep.sweep.estimated
-        whole = replace(whole, with_torques=motion is not None and bool(not_separable(motion)))
+        name, motion = sweep.sweep.name, sweep.sweep.estimated
+        open_orders = [] if motion is None else not_separable(motion)
+        found = on(readings.read, shaft)
+        whole = Judged(f"on {name}", name, found, readings.read, with_torques=bool(open_orders))
         whole = _beside_sound(whole, readings, on(readings.told, shaft))
         judged += [whole, *_by_level(whole)]
     return judged
@@ -149,7 +150,8 @@ def say_where_worse(judged: Sequence[Judged], *, fails: bool) -> None:
     more does a word that says nothing of the angle; all others count as the drive reads them. Where torques may be what
     is larger, that is said, and no failure.
     """
-    larger: dict[bool, list[str]] = {False: [], True: []}
+    larger: list[str] = []
+    not_told: list[str] = []
     for one in judged:
         one = one.without_lost()
         before, after = one.without_zeros().found.rms_deg
@@ -157,13 +159,11 @@ def say_where_worse(judged: Sequence[Judged], *, fails: bool) -> None:
         # What is the same as it is told is no larger: beside a stuck top bit no table does anything.
         if after > before and told[0] != told[1]:
             words = f"{one.name} ({told[0]} -> {told[1]} deg RMS, own zero taken out)"
-            larger[one.with_torques].append(words)
-    if larger[True]:
-        print(
-            f"larger with the correction {', '.join(larger[True])}: by the sensor or by torques, which it does not tell"
-        )
-    if larger[False]:
-        said = f"the correction makes the error larger {', '.join(larger[False])}; do not load it"
+            (not_told if one.with_torques else larger).append(words)
+    if not_told:
+        print(f"larger with the correction {', '.join(not_told)}: by the sensor or by torques, which it does not tell")
+    if larger:
+        said = f"the correction makes the error larger {', '.join(larger)}; do not load it"
         if fails:
             raise FoundError(said)
         print(said)

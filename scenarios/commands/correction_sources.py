@@ -12,6 +12,7 @@ from scenarios.commands.inputs import SweepFiles, SweepsRead, in_motion, sweep_p
 from twin.decoded import Decoded, decoded
 from twin.effect import Effect
 from twin.errors import UserError
+from twin.estimated_motion import EstimatedMotion
 from twin.presets import is_twin
 from twin.shown_name import shown_name
 
@@ -58,18 +59,21 @@ class Sound:
         became = f"are {'told back to make the correction, and ' * corrects}judged as they are read"
         return [line for one in self.decoded for line in one.lines_saying(became)]
 
+    @property
+    def _without_reference(self) -> list[tuple[str, EstimatedMotion]]:
+        """Names and motions of the logs that have none."""
+        return [(one.name, one.estimated) for one in self.read.sweeps if one.estimated is not None]
+
     def motion_lines(self) -> list[str]:
         """What has to be kept in mind of those without a reference."""
-        moved = [(one.name, one.estimated) for one in self.read.sweeps]
-        return [f"{name}: {judged_words(motion)}" for name, motion in moved if motion is not None]
+        return [f"{name}: {judged_words(motion)}" for name, motion in self._without_reference]
 
     def aside_lines(self) -> list[str]:
         """Which logs without a reference hold rows that tell of no even turning."""
-        moved = [(one.name, one.estimated) for one in self.read.sweeps]
         return [
             f"{name}: {motion.rows_aside} rows without an even turning are left out"
-            for name, motion in moved
-            if motion is not None and motion.rows_aside
+            for name, motion in self._without_reference
+            if motion.rows_aside
         ]
 
     def rejected_lines(self) -> list[str]:

@@ -218,6 +218,9 @@ def read_sweeps(
 
 def in_motion(recordings: Sequence[Sweep | Spin]) -> tuple[Sweep, ...]:
     """Those without a reference with the motion estimated from all of them; a line says so meanwhile."""
+    with_reference = [one for one in recordings if isinstance(one, Sweep)]
+    if len(with_reference) == len(recordings):
+        return tuple(with_reference)
     from diagnosis.blas_threads import one_blas_thread
     from diagnosis.progress import Progress
     from diagnosis.spin.of_log import with_motion

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.mutations.mutation import Mutation, of_one_file
+from tests.mutations.mutation import Mutation, of_one_file, of_one_test
 
 _D, _T = "diagnosis/discovery", "tests/diagnosis/discovery"
 _SECOND = "tests/diagnosis/spin/test_second_inertia.py"
@@ -42,6 +42,130 @@ BESIDE: tuple[Mutation, ...] = (
             "fitting/test_open_effects.py::test_a_harmonic_of_order_4_hides_a_saturation_and_its_figures_hold_both",
         ),
     ),
+    *of_one_test(
+        "spins",
+        "tests/scenarios/test_without_reference.py",
+        (
+            "logs_for_a_check_are_of_one_device",
+            "scenarios/commands/inputs.py",
+            "    groups = [sweeps] if together else",
+            "    groups = [sweeps] if True else",
+            "test_logs_for_a_check_need_not_be_of_one_device",
+        ),
+        (
+            "a_torque_is_a_fault_of_the_correction",
+            "scenarios/commands/compensate_judge.py",
+            "            (not_told if one.with_torques else larger).append(words)\n",
+            "            larger.append(words)\n",
+            "test_what_torques_may_do_is_no_fault_of_the_correction",
+        ),
+        (
+            "rows_set_aside_are_not_said",
+            "scenarios/commands/correction_sources.py",
+            "            if motion.rows_aside\n",
+            "            if False\n",
+            "test_rows_that_tell_no_turning_are_counted",
+        ),
+        (
+            "nothing_is_said_of_a_check_without_a_reference",
+            "scenarios/commands/correction_sources.py",
+            ", *checked.motion_lines()]\n",
+            "]\n",
+            "test_a_correction_is_tried_on_another_log_without_a_reference",
+        ),
+    ),
+    *of_one_test(
+        "second_inertia",
+        _SECOND,
+        (
+            "a_rotor_is_always_of_one_piece",
+            "diagnosis/spin/smoother.py",
+            "undamped().tied() if passes else None\n",
+            "undamped().tied() if False else None\n",
+            "test_a_coast_tells_the_belt_and_with_it_the_sensor",
+        ),
+        (
+            "a_hum_is_a_resonance",
+            "diagnosis/spin/second_inertia.py",
+            "    beside = profile.beside_a_wave(found.second)\n",
+            "    beside = profile\n",
+            "test_the_way_from_one_speed_to_another_of_one_piece_tells_none",
+        ),
+        (
+            "any_gain_will_do",
+            "diagnosis/spin/second_inertia.py",
+            "if _log_odds(profile, one) > _SURELY]\n",
+            "if True]\n",
+            "test_the_way_from_one_speed_to_another_of_one_piece_tells_none",
+        ),
+        (
+            "a_swing_passes_for_a_damping",
+            "diagnosis/spin/smoother.py",
+            "        return replace(self, damped=False).rounds()\n",
+            "        return self.rounds()\n",
+            "test_a_swing_does_not_pass_for_a_damping",
+        ),
+        (
+            "two_steady_speeds_are_searched",
+            "diagnosis/spin/smoother.py",
+            "and not two_speeds_alone(found.rates[0])",
+            "",
+            "test_two_steady_speeds_pass_no_resonance",
+        ),
+        (
+            "a_resonance_needs_no_damping",
+            "diagnosis/spin/second_inertia.py",
+            "    told = [one for one in within if",
+            "    told = [one for one in found if",
+            "test_two_hums_of_the_torque_are_no_resonance",
+        ),
+        (
+            "the_way_between_two_speeds_is_forgotten",
+            "diagnosis/spin/of_log.py",
+            "most_growing=fit.growing, second=fit.second)",
+            "most_growing=fit.growing)",
+            "test_the_way_from_one_speed_to_another_tells_it",
+        ),
+        (
+            "it_is_known_exactly",
+            "diagnosis/spin/torques.py",
+            "    if found.second is not None:\n",
+            "    if False:\n",
+            "test_the_way_from_one_speed_to_another_tells_it",
+        ),
+        (
+            "it_is_not_of_one_piece_for_all_that",
+            "diagnosis/report/motion.py",
+            "    open_to_it = estimated.second is None and two_speeds_alone(speed)\n",
+            "    open_to_it = two_speeds_alone(speed)\n",
+            "test_the_answer_says_so",
+        ),
+    ),
+    *of_one_test(
+        "second_inertia",
+        _SWUNG,
+        (
+            "a_swing_follows_at_once",
+            "twin/second_inertia.py",
+            "        out[0] = size[0] / (turning[0] - pole)\n",
+            "        return size / (turning - pole)\n",
+            "test_a_coast_passes_the_resonance_as_the_equations_of_motion_say",
+        ),
+        (
+            "a_step_is_no_longer_than_a_swing",
+            "twin/second_inertia.py",
+            "            if last == first + 1:\n",
+            "            if False:\n",
+            "test_of_one_step_longer_than_any_swing_the_next_is_steady",
+        ),
+        (
+            "a_swing_never_dies_in_one_piece",
+            "twin/second_inertia.py",
+            "_BLOCK = 20.0\n",
+            "_BLOCK = 1e9\n",
+            "test_a_swing_that_has_long_died_away_is_worked_out_without_overflow",
+        ),
+    ),
     *(
         Mutation(name, file, old, new, (test,))
         for name, file, old, new, test in (
@@ -59,39 +183,6 @@ BESIDE: tuple[Mutation, ...] = (
                 "    even = 1.0 - 3.0 * x\n",
                 "tests/twin/test_torque_ripple.py::test_the_response_is_that_of_the_equation_of_motion",
             ),
-            *(
-                (f"spins.{name}", file, old, new, f"tests/scenarios/test_without_reference.py::{test}")
-                for name, file, old, new, test in (
-                    (
-                        "logs_for_a_check_are_of_one_device",
-                        "scenarios/commands/inputs.py",
-                        "    groups = [sweeps] if together else",
-                        "    groups = [sweeps] if True else",
-                        "test_logs_for_a_check_need_not_be_of_one_device",
-                    ),
-                    (
-                        "a_torque_is_a_fault_of_the_correction",
-                        "scenarios/commands/compensate_judge.py",
-                        "            larger[one.with_torques].append(words)\n",
-                        "            larger[False].append(words)\n",
-                        "test_what_torques_may_do_is_no_fault_of_the_correction",
-                    ),
-                    (
-                        "rows_set_aside_are_not_said",
-                        "scenarios/commands/correction_sources.py",
-                        "            if motion is not None and motion.rows_aside\n",
-                        "            if False\n",
-                        "test_rows_that_tell_no_turning_are_counted",
-                    ),
-                    (
-                        "nothing_is_said_of_a_check_without_a_reference",
-                        "scenarios/commands/correction_sources.py",
-                        ", *checked.motion_lines()]\n",
-                        "]\n",
-                        "test_a_correction_is_tried_on_another_log_without_a_reference",
-                    ),
-                )
-            ),
             (
                 "spins.the_motion_takes_all_threads",
                 "diagnosis/explain.py",
@@ -105,103 +196,6 @@ BESIDE: tuple[Mutation, ...] = (
                 "        begins(MOTION)\n",
                 "        pass\n",
                 "tests/diagnosis/spin/test_explain.py::test_the_motion_is_a_stage_and_who_stops_there_gets_what_there_is",
-            ),
-            *(
-                (f"second_inertia.{name}", file, old, new, f"{_SECOND}::{test}")
-                for name, file, old, new, test in (
-                    (
-                        "a_rotor_is_always_of_one_piece",
-                        "diagnosis/spin/smoother.py",
-                        "undamped().tied() if passes else None\n",
-                        "undamped().tied() if False else None\n",
-                        "test_a_coast_tells_the_belt_and_with_it_the_sensor",
-                    ),
-                    (
-                        "a_hum_is_a_resonance",
-                        "diagnosis/spin/second_inertia.py",
-                        "    beside = profile.beside_a_wave(found.second)\n",
-                        "    beside = profile\n",
-                        "test_the_way_from_one_speed_to_another_of_one_piece_tells_none",
-                    ),
-                    (
-                        "any_gain_will_do",
-                        "diagnosis/spin/second_inertia.py",
-                        "if _log_odds(profile, one) > _SURELY]\n",
-                        "if True]\n",
-                        "test_the_way_from_one_speed_to_another_of_one_piece_tells_none",
-                    ),
-                    (
-                        "a_swing_passes_for_a_damping",
-                        "diagnosis/spin/smoother.py",
-                        "        return replace(self, damped=False).rounds()\n",
-                        "        return self.rounds()\n",
-                        "test_a_swing_does_not_pass_for_a_damping",
-                    ),
-                    (
-                        "two_steady_speeds_are_searched",
-                        "diagnosis/spin/smoother.py",
-                        "and not two_speeds_alone(found.rates[0])",
-                        "",
-                        "test_two_steady_speeds_pass_no_resonance",
-                    ),
-                    (
-                        "a_resonance_needs_no_damping",
-                        "diagnosis/spin/second_inertia.py",
-                        "    told = [one for one in within if",
-                        "    told = [one for one in found if",
-                        "test_two_hums_of_the_torque_are_no_resonance",
-                    ),
-                    (
-                        "the_way_between_two_speeds_is_forgotten",
-                        "diagnosis/spin/of_log.py",
-                        "most_growing=fit.growing, second=fit.second)",
-                        "most_growing=fit.growing)",
-                        "test_the_way_from_one_speed_to_another_tells_it",
-                    ),
-                    (
-                        "it_is_known_exactly",
-                        "diagnosis/spin/torques.py",
-                        "    if found.second is not None:\n",
-                        "    if False:\n",
-                        "test_the_way_from_one_speed_to_another_tells_it",
-                    ),
-                    (
-                        "it_is_not_of_one_piece_for_all_that",
-                        "diagnosis/report/motion.py",
-                        "    open_to_it = estimated.second is None and two_speeds_alone(speed)\n",
-                        "    open_to_it = two_speeds_alone(speed)\n",
-                        "test_the_answer_says_so",
-                    ),
-                )
-            ),
-            *(
-                (
-                    f"second_inertia.{name}",
-                    "twin/second_inertia.py",
-                    old,
-                    new,
-                    f"tests/twin/test_second_inertia.py::{test}",
-                )
-                for name, old, new, test in (
-                    (
-                        "a_swing_follows_at_once",
-                        "        out[0] = size[0] / (turning[0] - pole)\n",
-                        "        return size / (turning - pole)\n",
-                        "test_a_coast_passes_the_resonance_as_the_equations_of_motion_say",
-                    ),
-                    (
-                        "a_step_is_no_longer_than_a_swing",
-                        "            if last == first + 1:\n",
-                        "            if False:\n",
-                        "test_of_one_step_longer_than_any_swing_the_next_is_steady",
-                    ),
-                    (
-                        "a_swing_never_dies_in_one_piece",
-                        "_BLOCK = 20.0\n",
-                        "_BLOCK = 1e9\n",
-                        "test_a_swing_that_has_long_died_away_is_worked_out_without_overflow",
-                    ),
-                )
             ),
             (
                 "as_read.what_is_as_named_stays_in_the_middle",

@@ -80,6 +80,21 @@ def of_one_file(file: str, tests: str, *rows: tuple[str, str, str, str]) -> tupl
     )
 
 
+def of_one_test(part: str, tests: str, *rows: tuple[str, str, str, str, str]) -> tuple[Mutation, ...]:
+    """Mutations of one part of the program, each noticed by one test of the same file.
+
+    Parameters
+    ----------
+    part, tests : str
+        What the names begin with, and the file of the tests, relative to the root of the repository.
+    *rows : tuple of str
+        Name, file that is changed, text that is replaced, what replaces it, and name of the test.
+    """
+    return tuple(
+        Mutation(f"{part}.{name}", file, old, new, (f"{tests}::{test}",)) for name, file, old, new, test in rows
+    )
+
+
 def checked(mutations: Iterable[Mutation], root: Path = ROOT) -> tuple[Mutation, ...]:
     """The mutations, each of which can be applied.
 

@@ -14,8 +14,6 @@ from twin.shown import shown
 
 LARGEST = 1e20
 """The largest number that a column of a bench may mean; nanoseconds since 1970 are 2e18."""
-
-
 INDEX = "index"
 """Column that counts the rows, or the entries of a table."""
 

@@ -30,7 +30,7 @@ def response(
     which friction and a drive that holds the speed slow a departure from it. Undamped and evenly accelerated, h is
     -1/(kw)^2 times 1 - 3x + 15x^2 - 105x^3 + ... with x = i w'/(k w^2), a series that converges nowhere. Its diagonal
     Pade approximant of order 2 is taken (G. A. Baker, P. Graves-Morris, Pade Approximants (1996), on Stieltjes series):
-    off by 0.003 where the speed changes by a tenth in a radian. ``speed_rad_s`` must nowhere be zero. ``behind``: the
+    off by 0.002 where the speed changes by a tenth in a radian. ``speed_rad_s`` must nowhere be zero. ``behind``: the
     rotor is not of one piece; accelerations are those of both inertias together.
     """
     turning = order * speed_rad_s
